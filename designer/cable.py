@@ -1,0 +1,82 @@
+"""Frozen values of a cable and of a continuous family of cables."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+STANDARD_GRAVITY_M_PER_S2 = 9.81
+"""Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cable:
+    """One cable that can be bought or computed.
+
+    Parameters
+    ----------
+    diameter_m : float
+        Nominal diameter [m].
+    linear_density_kg_per_m : float
+        Mass per unstrained length [kg/m].
+    axial_stiffness_N : float
+        EA, force per strain [N]; ``inf`` for an inextensible cable.
+    allowable_tension_N : float
+        Largest tension the design may use, safety factor included [N].
+    """
+
+    diameter_m: float
+    linear_density_kg_per_m: float
+    axial_stiffness_N: float
+    allowable_tension_N: float
+
+    @property
+    def weight_N_per_m(self) -> float:
+        """Weight per unstrained length [N/m]."""
+        return self.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A family of cables that differ in section only.
+
+    All three figures refer to the circle of the nominal diameter, so that a real rope, which
+    fills only a part of that circle, is a ``Material`` as well as a solid rod is.
+
+    Parameters
+    ----------
+    density_kg_per_m3 : float
+        Mass per length over the area of the nominal circle [kg/m³].
+    youngs_modulus_Pa : float
+        EA over the area of the nominal circle [Pa].
+    allowable_stress_Pa : float
+        Allowable tension over the area of the nominal circle, safety factor included [Pa].
+    """
+
+    density_kg_per_m3: float
+    youngs_modulus_Pa: float
+    allowable_stress_Pa: float
+
+    @property
+    def elastic_compliance_per_m(self) -> float:
+        """Weight per length over EA, κ = g ρ / E: the same for every section [1/m]."""
+        return STANDARD_GRAVITY_M_PER_S2 * self.density_kg_per_m3 / self.youngs_modulus_Pa
+
+    @property
+    def strength_length_m(self) -> float:
+        """Length whose own weight reaches the allowable stress, σ / (g ρ) [m]."""
+        return self.allowable_stress_Pa / (STANDARD_GRAVITY_M_PER_S2 * self.density_kg_per_m3)
+
+    def cable(self, diameter_m: float) -> Cable:
+        """Return the member of the family with this nominal diameter."""
+        area_m2 = math.pi * diameter_m**2 / 4.0
+        return Cable(
+            diameter_m=diameter_m,
+            linear_density_kg_per_m=self.density_kg_per_m3 * area_m2,
+            axial_stiffness_N=self.youngs_modulus_Pa * area_m2,
+            allowable_tension_N=self.allowable_stress_Pa * area_m2,
+        )
+
+    def diameter_for_tension_m(self, tension_N: float) -> float:
+        """Return the diameter that carries ``tension_N`` at the allowable stress [m]."""
+        return math.sqrt(4.0 * tension_N / (math.pi * self.allowable_stress_Pa))

@@ -1,0 +1,65 @@
+"""All exceptions that this package raises on purpose.
+
+::
+
+    DesignerError
+    ├── InputError          the user's files or arguments are wrong (exit status 2)
+    ├── OutputError         the results cannot be written where asked (exit status 2)
+    └── MissingLibraryError the machine lacks a system library (exit status 2)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class DesignerError(Exception):
+    """Base of all errors whose message is meant for the user as it stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that is wrong in an input file.
+
+    Parameters
+    ----------
+    file : str
+        The file as the user named it.
+    line : int or None
+        Line number from 1, where known.
+    field : str
+        Path into the document, such as ``robot.anchors[2]``; empty for the whole file.
+    problem : str
+        What was found.
+    expected : str
+        What was expected instead; may be empty.
+    """
+
+    file: str
+    line: int | None
+    field: str
+    problem: str
+    expected: str = ""
+
+    def __str__(self) -> str:
+        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        what = f"{self.field}: {self.problem}" if self.field else self.problem
+        hint = f" (expected {self.expected})" if self.expected else ""
+        return " ".join(f"{place}: {what}{hint}".split())
+
+
+class InputError(DesignerError):
+    """The input is wrong; carries every fault that was found, one line each."""
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+class OutputError(DesignerError):
+    """The output folder cannot be used."""
+
+
+class MissingLibraryError(DesignerError):
+    """A library of the operating system is missing; the message names its package."""

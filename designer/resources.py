@@ -1,0 +1,33 @@
+"""Where the shipped files live: in a checkout, or inside the installed wheel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+
+
+def data_folder(name: str) -> Path:
+    """Return the folder ``catalog`` or ``reports``.
+
+    A wheel carries them in ``designer/_data``; a checkout has them beside ``designer``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the installation is incomplete.
+    """
+    for candidate in (_PACKAGE / "_data" / name, _PACKAGE.parent / name):
+        if candidate.is_dir():
+            return candidate
+    raise FileNotFoundError(f"the folder {name!r} is missing from this installation")
+
+
+def example_file(name: str) -> Path:
+    """Return the path of a shipped example study, such as ``fast``."""
+    return _PACKAGE / "examples" / f"{name}.yaml"
+
+
+def example_names() -> tuple[str, ...]:
+    """Return the names of all shipped example studies."""
+    return tuple(sorted(path.stem for path in (_PACKAGE / "examples").glob("*.yaml")))
