@@ -119,6 +119,7 @@ class PointList:
 
 
 Region = Prism | PointList
+"""Any region."""
 
 
 def _deepest_point(halfplanes: FloatArray) -> tuple[FloatArray, float]:

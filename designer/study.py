@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from designer.cable import Material
+from designer.errors import Fault
 from designer.region import Region
 from designer.robot import Poses, Robot
 
@@ -86,11 +88,58 @@ class Source:
         Digest of its bytes.
     entries : tuple of Entry
         Every field, for the report's table of inputs.
+    lines : mapping of str to int
+        Line of each field that the file gives, by its path.
     """
 
     path: Path
     sha256: str
     entries: tuple[Entry, ...]
+    lines: Mapping[str, int] = field(default_factory=dict, repr=False, hash=False)
+
+    def fault(self, field: str, problem: str, expected: str = "") -> Fault:
+        """Return a fault at a field of the config file.
+
+        A field that the file leaves out gets the line of the nearest mapping around it.
+        """
+        nearest = field
+        while nearest and nearest not in self.lines:
+            nearest = nearest[: max(nearest.rfind("."), nearest.rfind("["), 0)]
+        return Fault(str(self.path), self.lines.get(nearest), field, problem, expected)
+
+
+@dataclass(frozen=True, slots=True)
+class Measurements:
+    """Data measured on the built machine, and what is known about it.
+
+    Parameters
+    ----------
+    file : Path
+        Table of measured poses, lengths and tensions.
+    linear_density_kg_per_m : float
+        Mass per length of the cable on the machine [kg/m].
+    axial_stiffness_N : float
+        EA of the cable on the machine [N].
+    columns : mapping
+        From a log's own columns, units and rotation form to ours, as the file gives it.
+    settled : bool
+        Whether the rows are poses at rest; False for samples of a slow motion.
+    unknown : tuple of str
+        Ids of what is fitted from the start and not counted as a finding.
+    length_noise_m : float or None
+        Standard deviation of a measured length [m]; None where not given.
+    tension_noise_N : float or None
+        Standard deviation of a measured tension [N]; None where not given.
+    """
+
+    file: Path
+    linear_density_kg_per_m: float
+    axial_stiffness_N: float
+    columns: Mapping[str, object] = field(default_factory=dict, hash=False)
+    settled: bool = True
+    unknown: tuple[str, ...] = ()
+    length_noise_m: float | None = None
+    tension_noise_N: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,3 +154,4 @@ class Study:
     workspace: Workspace | None = None
     selection: Selection | None = None
     catalogues: tuple[Path, ...] = ()
+    measurements: Measurements | None = None

@@ -1,0 +1,192 @@
+"""Brings the grades of all sources together into one catalogue."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from designer.catalogue.checks import find_flaws
+from designer.catalogue.files import id_fault, read_grades
+from designer.catalogue.grade import Grade
+from designer.catalogue.plugins import Offer, collect_offers, one_line
+from designer.config.node import path_text
+from designer.errors import Fault, InputError
+
+USER_FOLDER_NAME = "user folder"
+MOST_PROBLEMS_OF_A_SOURCE = 20
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueSource:
+    """Where grades came from.
+
+    Parameters
+    ----------
+    name : str
+        Name of the plugin, ``user folder``, or name of the file or folder.
+    source : str
+        The plugin's distribution and version, or the path.
+    n_grades : int
+        Number of grades that came in from there.
+    """
+
+    name: str
+    source: str
+    n_grades: int
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """All grades that are known.
+
+    Parameters
+    ----------
+    grades : tuple of Grade
+        Ids are unique; each grade's ``origin`` is the name of its source.
+    sources : tuple of CatalogueSource
+        What was loaded.
+    problems : tuple of str
+        What was left out and why, one line each.
+    """
+
+    grades: tuple[Grade, ...]
+    sources: tuple[CatalogueSource, ...]
+    problems: tuple[str, ...]
+
+    def grade(self, grade_id: str) -> Grade:
+        """Return the grade with this id.
+
+        Raises
+        ------
+        InputError
+            If there is none; names the nearest ids.
+        """
+        for grade in self.grades:
+            if grade.id == grade_id:
+                return grade
+        raise InputError([Fault("catalogue", None, "", *self.explain_unknown(grade_id))])
+
+    def explain_unknown(self, grade_id: str) -> tuple[str, str]:
+        """Return what is wrong with an id that no grade has, and what was expected."""
+        nearest = difflib.get_close_matches(grade_id, [grade.id for grade in self.grades], n=3)
+        names = " or ".join(repr(name) for name in nearest)
+        expected = f"{names}?" if names else "an id that `designer catalog list` shows"
+        return f"there is no grade {one_line(grade_id)!r}", expected
+
+
+def load_catalogue(paths: Sequence[Path] = (), with_plugins: bool = True) -> Catalogue:
+    """Return the shipped grades, those of all plugins and of the user folder, and of ``paths``.
+
+    A plugin, or a file of the user folder, that is faulty is left out and reported in
+    ``problems``; the user has asked for ``paths`` in this very study, so a fault there is fatal.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Grade files or folders that a config names.
+    with_plugins : bool
+        False leaves out plugins and the user folder, for studies that give the same answer on
+        every machine.
+
+    Raises
+    ------
+    InputError
+        If a file in ``paths`` is faulty, or has the id of another grade.
+    """
+    offers, problems = collect_offers(with_plugins)
+    shelf = _Shelf(problems=problems)
+    for offer in offers:
+        shelf.add_offer(offer)
+    user_folder = user_catalogue_folder()
+    if with_plugins and user_folder.is_dir():
+        shelf.add_offer(Offer(USER_FOLDER_NAME, str(user_folder), (user_folder,)))
+    shelf.add_paths(paths)
+    return Catalogue(tuple(shelf.grades.values()), tuple(shelf.sources), tuple(shelf.problems))
+
+
+def user_catalogue_folder() -> Path:
+    """Return the folder whose grade files are always loaded, if it exists."""
+    from platformdirs import user_data_path
+
+    return user_data_path("cdpr-designer", appauthor=False) / "catalog"
+
+
+@dataclass(slots=True)
+class _Shelf:
+    """The catalogue while it is being filled."""
+
+    problems: list[str]
+    grades: dict[str, Grade] = field(default_factory=dict)
+    sources: list[CatalogueSource] = field(default_factory=list)
+
+    def add_offer(self, offer: Offer) -> None:
+        """Add what is sound in an offer; report the rest."""
+        complaints: list[str] = []
+        before = len(self.grades)
+        for item in offer.items:
+            for grade in _grades_in(item, complaints.append):
+                self._add(replace(grade, origin=offer.name), complaints.append)
+        self._report(f"{offer.name!r} ({offer.source})", complaints)
+        self.sources.append(CatalogueSource(offer.name, offer.source, len(self.grades) - before))
+
+    def add_paths(self, paths: Sequence[Path]) -> None:
+        """Add what the config names; refuse all of it if anything is faulty."""
+        faults: list[Fault] = []
+        for path in paths:
+            found, unreadable = read_grades(path)
+            faults += unreadable
+            for one in found:
+                taken: list[str] = []
+                self._add(replace(one.grade, origin=path.name), taken.append)
+                faults += [id_fault(one, problem) for problem in taken]
+            self.sources.append(CatalogueSource(path.name, str(path), len(found)))
+        if faults:
+            raise InputError(faults)
+
+    def _add(self, grade: Grade, complain: Callable[[str], None]) -> None:
+        first = self.grades.setdefault(grade.id, grade)
+        if first is not grade:
+            complain(f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already")
+
+    def _report(self, label: str, complaints: Iterable[str]) -> None:
+        lines = [f"plugin {label}: {one_line(complaint)}: left out" for complaint in complaints]
+        hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
+        self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
+        if hidden > 0:
+            self.problems.append(f"plugin {label}: {hidden} more problems of this kind")
+
+
+def _label(grade: Grade) -> str:
+    return f"{grade.origin!r} ({grade.file})" if grade.file else repr(grade.origin)
+
+
+def _grades_in(item: object, complain: Callable[[str], None]) -> list[Grade]:
+    """Return the sound grades of one item that a plugin gave."""
+    if isinstance(item, Grade):
+        return _sound(item, complain)
+    if not isinstance(item, str | os.PathLike):
+        complain(f"register_grades() gave {type(item).__name__}, not a path or a Grade")
+        return []
+    path = Path(os.fsdecode(item))
+    if not path.is_absolute():
+        complain(f"register_grades() gave the relative path {str(path)!r}")
+        return []
+    found, faults = read_grades(path)
+    for fault in faults:
+        complain(str(fault))
+    return [one.grade for one in found]
+
+
+def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:
+    try:
+        flaws = find_flaws(grade)
+    except Exception as error:  # a grade made in Python may hold values of any type
+        complain(f"a Grade is not usable: {type(error).__name__}: {one_line(error)}")
+        return []
+    for flaw in flaws:
+        place = path_text(flaw.keys)
+        complain(str(Fault(f"grade {grade.id!r}", None, place, flaw.problem, flaw.expected)))
+    return [] if flaws else [grade]

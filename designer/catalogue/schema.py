@@ -1,0 +1,184 @@
+"""A grade file as pydantic models: which fields there are and what each may hold.
+
+What a figure may be beside the other figures is checked in `designer.catalogue.checks`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from designer.catalogue import grade as values
+from designer.config.fields import ListOf, Quantity, Text, refusal
+from designer.config.schema import Section
+from designer.units import (
+    AREA,
+    FORCE,
+    LENGTH,
+    LINEAR_DENSITY,
+    NUMBER,
+    PER_TEMPERATURE,
+    STRESS,
+    Dimension,
+    QuantityError,
+    describe,
+    read_quantity,
+)
+
+MOST_SIZES = 500
+DIMENSIONS = {
+    "diameter": LENGTH,
+    "minimum_breaking_load": FORCE,
+    "linear_mass": LINEAR_DENSITY,
+    "metallic_area": AREA,
+}
+"""The figures of a size, each with what it is."""
+
+
+def _on_one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _unit_of(dimension: Dimension) -> BeforeValidator:
+    def check(given: object) -> str:
+        if not isinstance(given, str):
+            raise refusal(f"{describe(given)} is not a unit", f"a unit of {dimension.noun}")
+        try:
+            read_quantity(f"1 {given}", dimension)
+        except QuantityError:
+            expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
+            raise refusal(f"{describe(given)} does not fit", expected) from None
+        return given
+
+    return BeforeValidator(check)
+
+
+Line = Annotated[Text, AfterValidator(_on_one_line)]
+Lines = Annotated[tuple[Line, ...], BeforeValidator(ListOf(0, 100, "a list of texts"))]
+Number = Annotated[float, Quantity(NUMBER)]
+
+
+class SourceSection(Section):
+    """Where the table was read."""
+
+    publisher: Line = Field(description="who published the table")
+    document: Line = Field(description="the name of the sheet, page or standard")
+    url: Line | None = None
+    date: Line | None = None
+
+
+class ModulusSection(Section):
+    """Effective modulus of elasticity."""
+
+    value: Annotated[float, Quantity(STRESS, above=0.0)] = Field(
+        description="a modulus such as '62.7 GPa'"
+    )
+    reference_area: values.ReferenceArea = Field(description="'nominal' or 'metallic'")
+    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    source: Line = Field(description="where the figure comes from")
+    uncertainty: Number = Field(description="a fraction such as 0.15")
+
+
+class ThermalExpansionSection(Section):
+    """Axial thermal expansion."""
+
+    value: Annotated[float, Quantity(PER_TEMPERATURE)] = Field(
+        description="a coefficient such as '12.5e-6 /K'"
+    )
+    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    source: Line = Field(description="where the figure comes from")
+
+
+class AreaFactorSection(Section):
+    """Metallic area over d²."""
+
+    value: Number = Field(description="a number such as 0.449")
+    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    source: Line = Field(description="where the figure comes from")
+
+
+class SheaveRatioSection(Section):
+    """Sheave over rope diameter, D/d."""
+
+    suggested: Number = Field(description="a number such as 35")
+    minimum: Number = Field(description="a number such as 23")
+    source: Line = Field(description="where the figures come from")
+
+
+class UnitsSection(Section):
+    """Units of the bare numbers in the table of sizes."""
+
+    diameter: Annotated[str | None, _unit_of(LENGTH)] = None
+    minimum_breaking_load: Annotated[str | None, _unit_of(FORCE)] = None
+    linear_mass: Annotated[str | None, _unit_of(LINEAR_DENSITY)] = None
+    metallic_area: Annotated[str | None, _unit_of(AREA)] = None
+
+
+class SizeSection(Section):
+    """One row of the table of sizes."""
+
+    id: Line = Field(description="the size as its source names it, such as '6 mm'")
+    diameter: Annotated[float, Quantity(LENGTH, above=0.0)] = Field(
+        description="a length such as '6 mm'"
+    )
+    minimum_breaking_load: Annotated[float, Quantity(FORCE, above=0.0)] = Field(
+        description="a force such as '25 kN'"
+    )
+    linear_mass: Annotated[float, Quantity(LINEAR_DENSITY, above=0.0)] = Field(
+        description="a mass per length such as '0.137 kg/m'"
+    )
+    metallic_area: Annotated[float, Quantity(AREA, above=0.0)] | None = None
+    doubt: Line | None = None
+
+
+class GradeSection(Section):
+    """The whole file."""
+
+    id: Line = Field(description="a unique name such as 'maker-7x19-galvanised'")
+    manufacturer: Line = Field(description="who makes the rope")
+    product: Line = Field(description="the name it is sold under")
+    construction: Line = Field(description="such as '7x19'")
+    core: Line = Field(description="such as 'WSC', 'IWRC' or 'FC'")
+    finish: Line = Field(description="such as 'galvanised'")
+    standard: Line | None = None
+    wire_grade: Line | None = None
+    trust: values.Trust = Field(description="'A', 'B' or 'C'")
+    source: SourceSection = Field(description="a mapping with publisher and document")
+    modulus: ModulusSection = Field(description="a mapping with value, reference_area, …")
+    area_factor: AreaFactorSection | None = None
+    thermal_expansion: ThermalExpansionSection | None = None
+    sheave_ratio: SheaveRatioSection | None = None
+    notes: Lines = ()
+    units: UnitsSection = UnitsSection()
+    sizes: Annotated[
+        tuple[SizeSection, ...], BeforeValidator(ListOf(1, MOST_SIZES, f"1 to {MOST_SIZES} sizes"))
+    ] = Field(description="a list of sizes")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _apply_units(cls, given: object) -> object:
+        """Give each bare number of the table the unit that ``units`` declares for it."""
+        if not isinstance(given, dict) or not isinstance(given.get("sizes"), list):
+            return given
+        units = _valid_units(given.get("units"))
+        return {**given, "sizes": [_with_units(row, units) for row in given["sizes"]]}
+
+
+def _valid_units(given: object) -> dict[str, str]:
+    """Return the units that fit; the others are reported once, not in every row."""
+    try:
+        return UnitsSection.model_validate(given).model_dump(exclude_none=True)
+    except ValueError:  # pydantic's ValidationError is one
+        return {}
+
+
+def _with_units(row: Any, units: dict[str, str]) -> Any:
+    if not isinstance(row, dict):
+        return row
+    return {key: _with_unit(value, units.get(key)) for key, value in row.items()}
+
+
+def _with_unit(value: object, unit: str | None) -> object:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return f"{value!r} {unit}" if is_number and unit else value

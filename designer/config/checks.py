@@ -1,0 +1,204 @@
+"""Checks that need several fields at once: geometry, counts, files.
+
+Each check looks only at parts that are valid in themselves, so that all faults of a file come out
+together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+from scipy.spatial import QhullError
+
+from designer.arrays import FloatArray
+from designer.config.document import Document
+from designer.config.fields import Distance, Point, Rotation
+from designer.config.node import Data, Key
+from designer.config.schema import Anchors, Attachments, Corners, PrismBase
+from designer.errors import Fault
+from designer.region import Prism
+from designer.units import describe
+
+_COINCIDENT = 1e-9
+_FLAT = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """A document whose parts can be had one by one, whatever is wrong with the others."""
+
+    document: Document
+    data: Data
+
+    def raw(self, *keys: str) -> Data:
+        """Return what the file holds at a path, None for nothing."""
+        found = self.data
+        for key in keys:
+            found = found.get(key) if isinstance(found, dict) else None
+        return found
+
+    def read(self, kind: Any, *keys: str) -> Any:
+        """Return the value at a path, checked as ``kind``; None if it is absent or faulty."""
+        try:
+            return TypeAdapter(kind).validate_python(self.raw(*keys))
+        except ValidationError:
+            return None
+
+    def array(self, kind: Any, *keys: str) -> FloatArray | None:
+        """Return the value at a path as an array; None if it is absent or faulty."""
+        value = self.read(kind, *keys)
+        return None if value is None else np.array(value, dtype=np.float64)
+
+    def fault(self, keys: tuple[Key, ...], problem: str, expected: str = "") -> Fault:
+        """Return a fault at a path."""
+        return self.document.fault(keys, problem, expected)
+
+
+_ANCHORS = ("robot", "anchors")
+_ATTACHMENTS = ("robot", "platform", "attachments")
+_REGION = ("workspace", "region")
+_PRISM = (*_REGION, "prism")
+
+
+def all_faults(document: Document) -> list[Fault]:
+    """Return every fault that concerns more than one field of the document."""
+    parts = Parts(document, document.root.data())
+    return [fault for check in CHECKS for fault in check(parts)]
+
+
+def cable_count(parts: Parts) -> Iterator[Fault]:
+    """Only as many cables as degrees of freedom, which is all that this version solves."""
+    anchors = parts.read(Anchors, *_ANCHORS)
+    is_point_mass = parts.raw(*_ATTACHMENTS) is None
+    needed = 3 if is_point_mass else 6
+    if anchors is None or len(anchors) == needed:
+        return
+    load = "a point mass" if is_point_mass else "a platform with attachments"
+    problem = (
+        f"{len(anchors)} cables on {load}; this version solves as many cables as degrees of freedom"
+    )
+    alternative = ", or 6 and as many attachments" if is_point_mass else ""
+    yield parts.fault(_ANCHORS, problem, f"{needed}{alternative}")
+
+
+def distinct_anchors(parts: Parts) -> Iterator[Fault]:
+    """No two cables leave the base at one point."""
+    anchors = parts.array(Anchors, *_ANCHORS)
+    if anchors is None:
+        return
+    for first, second in combinations(range(len(anchors)), 2):
+        if np.linalg.norm(anchors[first] - anchors[second]) <= _COINCIDENT * _extent(anchors):
+            problem = f"is the same point as robot.anchors[{first}]"
+            yield parts.fault((*_ANCHORS, second), problem, "distinct exit points")
+            return
+
+
+def anchors_span_area(parts: Parts) -> Iterator[Fault]:
+    """Seen from above, the exit points are not on one line."""
+    anchors = parts.array(Anchors, *_ANCHORS)
+    if anchors is not None and _rank(anchors[:, :2]) < 2:
+        problem = "all anchors lie on one line when seen from above"
+        yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
+
+
+def attachment_count(parts: Parts) -> Iterator[Fault]:
+    """Each cable has its attachment."""
+    anchors = parts.read(Anchors, *_ANCHORS)
+    attachments = parts.read(Attachments, *_ATTACHMENTS)
+    if anchors and attachments and len(anchors) != len(attachments):
+        problem = f"{len(attachments)} attachments for {len(anchors)} anchors"
+        yield parts.fault(_ATTACHMENTS, problem, "one attachment for each anchor, in their order")
+
+
+def attachments_span_plane(parts: Parts) -> Iterator[Fault]:
+    """The platform cannot turn freely about a point or a line of attachments."""
+    attachments = parts.array(Attachments, *_ATTACHMENTS)
+    if attachments is None or _rank(attachments) >= 2:
+        return
+    where = "on one line" if _rank(attachments) else "at one point"
+    problem = f"all attachments lie {where}, so nothing keeps the platform from turning"
+    yield parts.fault(_ATTACHMENTS, problem, "attachments apart, or none for a point mass")
+
+
+def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
+    """A point mass has neither a centre of mass of its own nor an orientation."""
+    if parts.raw(*_ATTACHMENTS) is not None:
+        return
+    for kind, keys in (
+        (Point, ("robot", "platform", "centre_of_mass")),
+        (Rotation, ("pose", "rotation_vector")),
+    ):
+        value = parts.read(kind, *keys)
+        if value is not None and any(value):
+            problem = "has no meaning for a point mass"
+            yield parts.fault(keys, problem, "robot.platform.attachments, or leave it out")
+
+
+def prism_has_area(parts: Parts) -> Iterator[Fault]:
+    """Something is left of the prism's base inside the inset."""
+    base = parts.read(PrismBase, *_PRISM)
+    inset_m = parts.read(Distance, *_REGION, "inset") or 0.0
+    is_over_anchors = base == "anchors"
+    kind, keys = (Anchors, _ANCHORS) if is_over_anchors else (Corners, _PRISM)
+    corners = parts.array(kind, *keys)
+    if corners is None:
+        return
+    if _rank(corners[:, :2]) < 2:
+        if not is_over_anchors:  # the anchors have their own check
+            yield parts.fault(_PRISM, "all corners lie on one line", "corners that span an area")
+    elif not _has_inside(corners, inset_m):
+        problem = f"nothing of the region is left inside an inset of {inset_m:g} m"
+        yield parts.fault((*_REGION, "inset"), problem, "a smaller inset")
+
+
+def catalogues_exist(parts: Parts) -> Iterator[Fault]:
+    """Each extra catalogue is a file or folder beside the config."""
+    folder = Path(parts.document.name).parent
+    names = parts.raw("catalogues")
+    for index, name in enumerate(names if isinstance(names, list) else ()):
+        if isinstance(name, str) and not _exists(folder / name):
+            expected = "a grade file or a folder, relative to this file"
+            yield parts.fault(("catalogues", index), f"there is no {describe(name)}", expected)
+
+
+CHECKS = (
+    cable_count,
+    distinct_anchors,
+    anchors_span_area,
+    attachment_count,
+    attachments_span_plane,
+    point_mass_has_no_body,
+    prism_has_area,
+    catalogues_exist,
+)
+
+
+def _extent(points: FloatArray) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _rank(points: FloatArray) -> int:
+    """Return 0 for one point, 1 for a line, 2 or more otherwise."""
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return int(np.sum(spread > _FLAT * max(spread[0], np.finfo(float).tiny)))
+
+
+def _has_inside(corners_m: FloatArray, inset_m: float) -> bool:
+    try:
+        Prism.over(corners_m, inset_m, (0.0, 1.0))
+    except (ValueError, QhullError):
+        return False
+    return True
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # such as a name longer than the file system takes
+        return False

@@ -1,0 +1,104 @@
+"""A YAML document as a tree in which every value knows its line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+Data = dict[str, "Data"] | list["Data"] | str | int | float | bool | None
+"""What a document holds, in plain Python."""
+
+Key = str | int
+"""A field name, or the place in a list."""
+
+_WHOLE = re.compile(r"[-+]?\d{1,18}")
+_DECIMAL = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_SPECIAL: dict[str, Data] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+    **dict.fromkeys((".nan", ".NaN", ".NAN"), float("nan")),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One value of a document.
+
+    Parameters
+    ----------
+    line : int
+        Line from 1; for a field of a mapping, the line of its name.
+    content : str, tuple of Node, or dict of Node
+        Text as written, items, or fields.
+    is_plain : bool
+        Whether a text stands without quotes, so that it may be a number or a truth value.
+    size : int
+        Number of values below this one and itself, aliases expanded.
+    height : int
+        Levels of nesting below this one, aliases expanded.
+    """
+
+    line: int
+    content: str | tuple[Node, ...] | dict[str, Node]
+    is_plain: bool = False
+    size: int = 1
+    height: int = 0
+
+    def data(self) -> Data:
+        """Return the value in plain Python, by the rules of YAML 1.2 (``no`` is a text)."""
+        if isinstance(self.content, dict):
+            return {key: child.data() for key, child in self.content.items()}
+        if isinstance(self.content, tuple):
+            return [child.data() for child in self.content]
+        return _scalar(self.content) if self.is_plain else self.content
+
+    def as_written(self) -> str:
+        """Return the value on one line, numbers and units as the file has them."""
+        if isinstance(self.content, dict):
+            fields = (f"{key}: {child.as_written()}" for key, child in self.content.items())
+            return "{" + ", ".join(fields) + "}"
+        if isinstance(self.content, tuple):
+            return "[" + ", ".join(child.as_written() for child in self.content) + "]"
+        return " ".join(self.content.split())
+
+    def child(self, key: Key) -> Node | None:
+        """Return the field or item ``key``, None where there is none."""
+        if isinstance(self.content, dict):
+            return self.content.get(key) if isinstance(key, str) else None
+        if isinstance(self.content, tuple) and isinstance(key, int) and key < len(self.content):
+            return self.content[key]
+        return None
+
+    def walk(self, keys: tuple[Key, ...] = ()) -> Iterator[tuple[tuple[Key, ...], Node]]:
+        """Yield this value and all below it, each with its path."""
+        yield keys, self
+        if isinstance(self.content, dict):
+            for name, child in self.content.items():
+                yield from child.walk((*keys, name))
+        elif isinstance(self.content, tuple):
+            for index, child in enumerate(self.content):
+                yield from child.walk((*keys, index))
+
+
+def path_text(keys: Sequence[Key]) -> str:
+    """Return a path as text, such as ``robot.anchors[2]``."""
+    parts = (f"[{key}]" if isinstance(key, int) else f".{printable(key)}" for key in keys)
+    return "".join(parts).removeprefix(".")
+
+
+def printable(name: str) -> str:
+    """Return a field name cut short, with control characters replaced."""
+    shown = "".join(letter if letter.isprintable() else "?" for letter in name)
+    return shown if len(shown) <= 60 else shown[:60] + "…"
+
+
+def _scalar(text: str) -> Data:
+    if text in _SPECIAL:
+        return _SPECIAL[text]
+    if _WHOLE.fullmatch(text):
+        return int(text)
+    if _DECIMAL.fullmatch(text):
+        return float(text)
+    return text

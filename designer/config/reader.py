@@ -1,0 +1,59 @@
+"""From a config file to a study: read, check everything, build."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from designer.config.build import build_study
+from designer.config.checks import all_faults
+from designer.config.document import Document, read_document
+from designer.config.entries import all_entries
+from designer.config.faults import schema_faults
+from designer.config.node import path_text
+from designer.config.schema import StudySection
+from designer.errors import Fault, InputError
+from designer.study import Source, Study
+
+
+def read_study(path: Path) -> Study:
+    """Return the study that the config file describes.
+
+    Parameters
+    ----------
+    path : Path
+        A YAML file.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong with it; carries every fault, in the order of the lines.
+    """
+    document = read_document(path)
+    section = _checked(document)
+    if section.name is None:
+        section = section.model_copy(update={"name": path.stem})
+    return build_study(section, _source(path, document, section))
+
+
+def _checked(document: Document) -> StudySection:
+    faults = [*document.faults, *all_faults(document)]
+    section = None
+    try:
+        section = StudySection.model_validate(document.root.data())
+    except ValidationError as error:
+        faults += schema_faults(error, document, StudySection)
+    if section is None or faults:
+        raise InputError(sorted(faults, key=_place))
+    return section
+
+
+def _place(fault: Fault) -> tuple[int, str]:
+    return fault.line or 0, fault.field
+
+
+def _source(path: Path, document: Document, section: StudySection) -> Source:
+    lines = {path_text(keys): node.line for keys, node in document.root.walk()}
+    entries = all_entries(section, document.root)
+    return Source(path, document.sha256, tuple(entries), lines)

@@ -1,0 +1,244 @@
+"""The config file as pydantic models: which fields there are and what each may hold.
+
+Geometry, which needs several fields at once, is checked in `designer.config.checks`.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, StrictBool, Tag
+from pydantic import model_validator as validator_of_model
+
+from designer.config.fields import (
+    Corner,
+    Density,
+    Distance,
+    Force,
+    FreeMapping,
+    Interval,
+    LengthNoise,
+    LinearDensity,
+    ListOf,
+    Mass,
+    Modulus,
+    OnlyWord,
+    Point,
+    Rotation,
+    SafetyFactor,
+    Stress,
+    Text,
+    WholeNumber,
+    refusal,
+)
+from designer.study import HangsBelow, Sampling
+from designer.units import describe
+
+MOST_CABLES = 64
+_GRADES = "'all' or a list of grade ids"
+_CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
+
+_points = ListOf(3, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z]")
+_names = ListOf(0, 1000, "a list")
+_corners = ListOf(3, 1000, _CORNERS)
+_positions = ListOf(1, 50_000, "1 to 50000 positions [x, y, z]")
+_box = ListOf(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+
+Anchors = Annotated[tuple[Point, ...], BeforeValidator(_points)]
+Attachments = Annotated[tuple[Point, ...], BeforeValidator(_points)]
+Corners = Annotated[tuple[Corner, ...], BeforeValidator(_corners)]
+Positions = Annotated[tuple[Point, ...], BeforeValidator(_positions)]
+Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
+Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
+
+
+def _word_or_list(given: object) -> str:
+    return "a word" if isinstance(given, str) else "a list"
+
+
+PrismBase = Annotated[
+    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _CORNERS)), Tag("a word")]
+    | Annotated[Corners, Tag("a list")],
+    Discriminator(_word_or_list),
+]
+GradeIds = Annotated[
+    Annotated[Literal["all"], BeforeValidator(OnlyWord("all", _GRADES)), Tag("a word")]
+    | Annotated[tuple[Text, ...], BeforeValidator(ListOf(1, 1000, _GRADES)), Tag("a list")],
+    Discriminator(_word_or_list),
+]
+
+
+def _no_effects(given: object) -> object:
+    if isinstance(given, dict) and given:
+        raise refusal("effects are not supported by this version", "an empty mapping {}")
+    return given
+
+
+class Section(BaseModel):
+    """A mapping of the config file."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @validator_of_model(mode="before")
+    @classmethod
+    def _leave_out_empty_fields(cls, given: object) -> object:
+        """Take ``samples:`` with nothing after it as a field that is not given."""
+        if not isinstance(given, dict):
+            return given
+        fields = cls.model_fields
+        return {
+            key: value
+            for key, value in given.items()
+            if value is not None or key not in fields or fields[key].is_required()
+        }
+
+
+class PlatformSection(Section):
+    """What the cables carry."""
+
+    mass: Mass = Field(description="a mass such as '4000 kg'")
+    attachments: Attachments | None = None
+    centre_of_mass: Point = (0.0, 0.0, 0.0)
+
+
+class RobotSection(Section):
+    """The machine."""
+
+    anchors: Anchors = Field(description="at least 3 exit points [x, y, z]")
+    platform: PlatformSection = Field(description="a mapping with the platform's mass")
+
+
+class CableSection(Section):
+    """The continuous family of cables in which the optimum is computed."""
+
+    density: Density = Field(description="a density such as '7800 kg/m^3'")
+    youngs_modulus: Modulus = Field(description="a modulus such as '200 GPa'")
+    allowable_stress: Stress = Field(description="a stress such as '180 MPa'")
+
+
+class PoseSection(Section):
+    """One pose of the platform."""
+
+    position: Point = Field(description="three lengths [x, y, z]")
+    rotation_vector: Rotation = (0.0, 0.0, 0.0)
+
+    @validator_of_model(mode="before")
+    @classmethod
+    def _from_list(cls, given: object) -> object:
+        return {"position": given} if isinstance(given, list) else given
+
+
+class PrismSection(Section):
+    """An upright prism over the anchors or over corners of one's own."""
+
+    prism: PrismBase = Field(description=_CORNERS)
+    inset: Distance = 0.0
+    z: Interval = Field(description="[lower, upper]")
+
+
+class BoxSection(Section):
+    """An axis-parallel box."""
+
+    box: Box = Field(description="[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+
+
+class PointsSection(Section):
+    """A list of positions."""
+
+    points: Positions = Field(description="a list of positions [x, y, z]")
+
+
+REGION_KINDS: dict[str, type[Section]] = {
+    "prism": PrismSection,
+    "box": BoxSection,
+    "points": PointsSection,
+}
+
+
+def _kinds_named(region: dict[str, object]) -> list[str]:
+    """Return the kinds of region that the fields stand for, misspelt ones if there is no other."""
+    names = [name for name, value in region.items() if value is not None]
+    nearest = [kind for name in names for kind in get_close_matches(name, REGION_KINDS, n=1)]
+    return [kind for kind in REGION_KINDS if kind in names] or nearest
+
+
+def _of_one_kind(given: object) -> object:
+    if not isinstance(given, dict):
+        raise refusal(f"{describe(given)} is not a mapping", "one of prism, box and points in it")
+    kinds = _kinds_named(given)
+    if len(kinds) != 1:
+        found = " and ".join(kinds) or "none of the three kinds"
+        raise refusal(f"the region has {found}", "exactly one of prism, box and points")
+    return given
+
+
+def _region_tag(given: dict[str, object]) -> str:
+    return f"{_kinds_named(given)[0]} region"
+
+
+Region = Annotated[
+    Annotated[PrismSection, Tag("prism region")]
+    | Annotated[BoxSection, Tag("box region")]
+    | Annotated[PointsSection, Tag("points region")],
+    Discriminator(_region_tag),
+    BeforeValidator(_of_one_kind),
+]
+
+
+class WorkspaceSection(Section):
+    """Which poses the cable must serve."""
+
+    region: Region = Field(description="one of {prism, z}, {box} and {points}")
+    samples: Annotated[int, WholeNumber(1, 10**8)] = 20_000
+    sampling: Sampling = "low_discrepancy"
+    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
+    hangs_below: HangsBelow = "include"
+
+
+class SelectionSection(Section):
+    """How a product is chosen."""
+
+    grades: GradeIds = "all"
+    safety_factor: SafetyFactor = 5.0
+
+
+class MeasuredCableSection(Section):
+    """The cable that is on the machine."""
+
+    linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
+    axial_stiffness: Force = Field(description="a force such as '3.3 MN'")
+
+
+class NoiseSection(Section):
+    """Standard deviations of the measured values."""
+
+    length: LengthNoise | None = None
+    tension: Force | None = None
+
+
+class MeasurementsSection(Section):
+    """Data measured on the built machine."""
+
+    file: Text = Field(description="the name of a CSV file")
+    columns: FreeMapping = Field(default_factory=dict)
+    settled: StrictBool = True
+    unknown: Names = ()
+    cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
+    noise: NoiseSection = NoiseSection()
+
+
+class StudySection(Section):
+    """The whole file."""
+
+    name: Text | None = None
+    robot: RobotSection = Field(description="a mapping with anchors and platform")
+    cable: CableSection = Field(
+        description="a mapping with density, youngs_modulus and allowable_stress"
+    )
+    pose: PoseSection | None = None
+    workspace: WorkspaceSection | None = None
+    selection: SelectionSection | None = None
+    catalogues: Names = ()
+    measurements: MeasurementsSection | None = None
+    effects: Annotated[dict[str, Any], BeforeValidator(_no_effects)] = Field(default_factory=dict)

@@ -1,0 +1,68 @@
+"""Many small linear systems at once, one per lane."""
+
+from __future__ import annotations
+
+from designer.arrays import FloatArray
+from designer.kernel.compiling import kernel
+
+
+@kernel
+def solve_lanes(A: FloatArray, n: int, columns: int) -> None:
+    """Solve A x = b in place in every lane by Gauss elimination with pairwise pivoting.
+
+    Parameters
+    ----------
+    A : array (n + 1, columns, n_lanes)
+        The matrix in the first n columns, right-hand sides in the others; these are overwritten by
+        the solutions. The last row is scratch. A singular lane ends as infinity or NaN.
+    n, columns : int
+        Number of unknowns; number of columns with the right-hand sides.
+    """
+    for k in range(n):
+        for r in range(k + 1, n):
+            _eliminate(A[k], A[r], k, columns, A[n, 0], A[n, 1])
+    for k in range(n - 1, -1, -1):
+        for m in range(n, columns):
+            for i in range(k + 1, n):
+                _subtract(A[k, m], A[k, i], A[i, m])
+            _divide(A[k, m], A[k, k])
+
+
+@kernel
+def _eliminate(
+    upper: FloatArray,
+    lower: FloatArray,
+    k: int,
+    columns: int,
+    keep: FloatArray,
+    factor: FloatArray,
+) -> None:
+    """Clear column k of `lower`, after moving the row with the larger entry into `upper`.
+
+    The exchange is arithmetic (`keep` is 1 or 0), so that lanes stay in step.
+    """
+    for j in range(factor.size):
+        a, b = upper[k, j], lower[k, j]
+        keeps = abs(a) >= abs(b)
+        keep[j] = 1.0 if keeps else 0.0
+        factor[j] = b / a if keeps else a / b
+    for m in range(k, columns):
+        for j in range(factor.size):
+            a, b = upper[m, j], lower[m, j]
+            keeps = keep[j] > 0.5
+            top = a if keeps else b
+            bottom = b if keeps else a
+            upper[m, j] = top
+            lower[m, j] = bottom - factor[j] * top
+
+
+@kernel
+def _subtract(target: FloatArray, a: FloatArray, b: FloatArray) -> None:
+    for j in range(target.size):
+        target[j] -= a[j] * b[j]
+
+
+@kernel
+def _divide(target: FloatArray, a: FloatArray) -> None:
+    for j in range(target.size):
+        target[j] /= a[j]

@@ -1,0 +1,1 @@
+"""One cable: pure functions on arrays, no robot."""

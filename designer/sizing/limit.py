@@ -1,0 +1,34 @@
+"""The infinite section: how near a pose is to having no finite cable at all."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import Material
+from designer.robot import Poses, Robot
+from designer.statics.inverse import solve_flat
+
+
+def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
+    """Return the stress at infinite section over the allowable stress, for each pose (...).
+
+    As the section grows, the platform's weight stops mattering: the cables hang between the exit
+    points and a weightless platform, and their stress tends to a value that depends on geometry
+    and ρ g only. The margin to the boundary of the workspace is 1 minus this ratio: below 1, a
+    finite cable exists. At or above 1 none does where the taut cable sets the ratio; where it is
+    the slack one, pulling it up may still help, which the verdict of the sizing decides.
+
+    NaN where that limit was not solved.
+    """
+    from designer.kernel.square import TOLERANCE
+
+    solution = solve_flat(
+        robot,
+        poses,
+        kappa_per_m=material.elastic_compliance_per_m,
+        strength_m=material.strength_length_m,
+        inverse_weight_m_per_N=0.0,
+    )
+    ratio = np.where(solution.residual <= TOLERANCE, solution.overload, np.nan)
+    return ratio.reshape(poses.shape)

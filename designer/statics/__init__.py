@@ -1,0 +1,1 @@
+"""One pose: balance of the platform, with straight or with sagging cables."""

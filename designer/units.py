@@ -1,0 +1,240 @@
+"""Quantities as people write them, such as ``4000 kg`` or ``200 GPa``, read into SI numbers.
+
+A text is taken apart by a small grammar of our own, so that nothing in it is ever evaluated, and
+only the names of units go to pint.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import math
+import re
+import unicodedata
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pint import Unit, UnitRegistry
+
+_LONGEST_TEXT = 64
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?(?![\d.])")
+_FACTOR = re.compile(
+    r"\s*(?:(?P<divided>/)|[*·])?\s*(?P<name>[^\W\d]{1,40}|°[CF]?|%)"
+    r"(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>[-+]?[1-9]))?(?!\d)"
+)
+_COMMON_UNITS = (
+    *("m", "mm", "cm", "km", "in", "ft", "metre", "meter", "millimetre", "inch", "foot", "feet"),
+    *("kg", "g", "t", "lb", "kilogram", "gram", "tonne", "pound"),
+    *("N", "kN", "MN", "kgf", "lbf", "newton", "kilonewton", "meganewton"),
+    *("Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "pascal", "megapascal", "gigapascal"),
+    *("rad", "deg", "radian", "degree", "K", "degC", "kelvin", "s", "min", "h", "second"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """A kind of quantity.
+
+    Parameters
+    ----------
+    noun : str
+        Its name with the article, such as ``a length``.
+    unit : str
+        Its SI unit; empty for a plain number.
+    example : str
+        How a value may be written.
+    """
+
+    noun: str
+    unit: str
+    example: str
+
+    @property
+    def expected(self) -> str:
+        """What to write, for an error message."""
+        if not self.unit:
+            return f"{self.noun} such as {self.example}"
+        return f"{self.noun} such as '{self.example}'"
+
+
+NUMBER = Dimension("a plain number", "", "5")
+LENGTH = Dimension("a length", "m", "2 mm")
+AREA = Dimension("an area", "m^2", "20 mm^2")
+ANGLE = Dimension("an angle", "rad", "10 deg")
+MASS = Dimension("a mass", "kg", "4000 kg")
+FORCE = Dimension("a force", "N", "10 kN")
+STRESS = Dimension("a stress or a modulus", "Pa", "200 GPa")
+DENSITY = Dimension("a density", "kg/m^3", "7800 kg/m^3")
+LINEAR_DENSITY = Dimension("a mass per length", "kg/m", "0.142 kg/m")
+PER_TEMPERATURE = Dimension("a strain per temperature", "1/K", "1.2e-5 /K")
+
+
+class QuantityError(ValueError):
+    """A value is no quantity of the wanted kind.
+
+    The reader of a file turns it into a `designer.errors.Fault`, which knows the line.
+
+    Parameters
+    ----------
+    problem : str
+        What was found.
+    expected : str
+        What was expected instead.
+    """
+
+    def __init__(self, problem: str, expected: str) -> None:
+        super().__init__(f"{problem} (expected {expected})")
+        self.problem = problem
+        self.expected = expected
+
+
+def read_quantity(given: object, dimension: Dimension) -> float:
+    """Return the SI value of ``given``.
+
+    Parameters
+    ----------
+    given : int, float or str
+        A bare number, which is SI already, or a text that may carry a unit.
+    dimension : Dimension
+        What kind of quantity it has to be.
+
+    Returns
+    -------
+    float
+        Finite value in ``dimension.unit``.
+
+    Raises
+    ------
+    QuantityError
+        If it is no number, not finite, or has an unknown unit or one of another dimension.
+    """
+    try:
+        return _read(given, dimension)
+    except _MisreadError as error:
+        expected = error.instead or dimension.expected
+        hint = f"; did you mean '{error.nearest}'?" if error.nearest else ""
+        raise QuantityError(f"{describe(given)} {error.problem}", expected + hint) from None
+
+
+def format_SI(value: float, dimension: Dimension) -> str:
+    """Return ``value`` (in SI) as text with its SI unit, such as ``0.002 m`` or ``2e11 Pa``."""
+    shown = f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0
+    if abs(value) >= 1e6:
+        digits, power = f"{value:.9e}".split("e")
+        shown = f"{digits.rstrip('0').rstrip('.')}e{int(power)}"
+    return f"{shown} {dimension.unit}".rstrip()
+
+
+def describe(given: object) -> str:
+    """Name a value of a file within an error message, cut short and free of control codes."""
+    if given is None:
+        return "an empty value"
+    if isinstance(given, bool):
+        return str(given).lower()
+    if isinstance(given, str):
+        return repr(given if len(given) <= _LONGEST_TEXT else given[:_LONGEST_TEXT] + "…")
+    if isinstance(given, int | float):
+        return f"{_as_float(given):.10g}"
+    return "a mapping" if isinstance(given, dict) else "a list"
+
+
+class _MisreadError(Exception):
+    def __init__(self, problem: str, *, instead: str = "", nearest: str | None = None) -> None:
+        super().__init__(problem)
+        self.problem, self.instead, self.nearest = problem, instead, nearest
+
+
+def _read(given: object, dimension: Dimension) -> float:
+    if isinstance(given, bool) or not isinstance(given, int | float | str):
+        raise _MisreadError("is not a number")
+    value = _read_text(given, dimension) if isinstance(given, str) else _as_float(given)
+    if not math.isfinite(value):
+        raise _MisreadError("is not a finite number")
+    return value
+
+
+def _as_float(number: float) -> float:
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf
+
+
+def _read_text(text: str, dimension: Dimension) -> float:
+    if len(text) > _LONGEST_TEXT:
+        raise _MisreadError(f"is too long for a number ({len(text)} characters)")
+    plain = unicodedata.normalize("NFKC", text).replace("−", "-").strip()
+    number = _NUMBER.match(plain)
+    if number is None:
+        is_infinite = plain.strip("+-.").lower() in {"nan", "inf", "infinity"}
+        raise _MisreadError("is not a finite number" if is_infinite else "is not a number")
+    value, unit = float(number[0]), plain[number.end() :].strip()
+    if unit.startswith(","):
+        raise _MisreadError("has a decimal comma", instead="a decimal point")
+    return _to_SI(value, _unit(unit), dimension) if unit else value
+
+
+def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
+    from pint import PintError
+
+    try:
+        converted = _converted(value, unit, dimension)
+    except (PintError, ArithmeticError):  # such as a logarithmic unit in a product
+        converted = None
+    if converted is None:
+        raise _MisreadError(f"has the unit {unit:P}")
+    return converted
+
+
+def _converted(value: float, unit: Unit, dimension: Dimension) -> float | None:
+    """Return the SI value; None for another dimension, where an angle is not a plain ratio."""
+    if not dimension.unit:
+        return None
+    wanted = _registry().parse_units(dimension.unit)
+    if _root(unit) != _root(wanted):
+        return None
+    return float(_registry().Quantity(value, unit).to(wanted).magnitude)
+
+
+@functools.lru_cache(maxsize=1024)
+def _unit(text: str) -> Unit:
+    """Return the unit that ``text`` names, a product of powers of names that pint knows."""
+    rest = text.removeprefix("1") if text.startswith("1/") else text
+    factors = []
+    while rest:
+        factor = _FACTOR.match(rest)
+        if factor is None:
+            raise _MisreadError(f"has the unreadable unit {text!r}")
+        _named_unit(factor["name"])
+        power = int(factor["power"] or 1) * (-1 if factor["divided"] else 1)
+        factors.append(f"{factor['name']}**{power}" if power != 1 else factor["name"])
+        rest = rest[factor.end() :]
+    return _registry().parse_units("*".join(factors))
+
+
+def _named_unit(name: str) -> Unit:
+    from pint import PintError
+
+    try:
+        return _registry().parse_units(name)
+    except PintError:
+        nearest = _nearest_unit(name)
+        raise _MisreadError(f"has the unknown unit '{name}'", nearest=nearest) from None
+
+
+def _nearest_unit(name: str) -> str | None:
+    same_letters = [unit for unit in _COMMON_UNITS if unit.lower() == name.lower()]
+    return next(iter(same_letters or difflib.get_close_matches(name, _COMMON_UNITS, n=1)), None)
+
+
+@functools.lru_cache(maxsize=1024)
+def _root(unit: Unit) -> Unit:
+    return _registry().get_root_units(unit)[1]
+
+
+@functools.cache
+def _registry() -> UnitRegistry[float]:
+    from pint import UnitRegistry
+
+    return UnitRegistry()

@@ -1,0 +1,87 @@
+"""What a sweep over the workspace found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from designer.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Extreme:
+    """The pose that asks for the most.
+
+    Parameters
+    ----------
+    position_m : array (3,)
+        Where it is [m].
+    diameter_m : float
+        The cable that it needs [m]; for a given cable, the diameter of that cable.
+    max_tension_N : float
+        The largest tension there [N].
+    """
+
+    position_m: FloatArray
+    diameter_m: float
+    max_tension_N: float
+
+
+@dataclass(frozen=True, slots=True)
+class Census:
+    """How many samples met with which verdict.
+
+    Parameters
+    ----------
+    samples : int
+        All samples.
+    statuses : mapping of str to int
+        Count of each verdict by its label, every label present.
+    hangs_below : int
+        Solved samples in which a cable hangs below the platform.
+    excluded : int
+        Those of them that the study leaves out.
+    """
+
+    samples: int
+    statuses: Mapping[str, int]
+    hangs_below: int
+    excluded: int
+
+    def fraction(self, status: str) -> float:
+        """Return the share of the samples, hence of the volume, with this verdict."""
+        return self.statuses[status] / self.samples
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorkspaceMap:
+    """Sizing over the whole workspace.
+
+    Parameters
+    ----------
+    census : Census
+        Verdict counts.
+    is_feasible : bool
+        Whether every pose of the region has a finite cable: every sample is solved (or left out
+        on purpose) and the continuous search met no pose without one.
+    sagging : Extreme or None
+        The worst pose of the region, refined beyond the samples; None if not feasible, because
+        then the needed diameter grows without bound toward the infeasible part.
+    sampled : Extreme or None
+        The worst solved sample; None if no sample is solved.
+    massless : Extreme or None
+        The worst pose of the region with straight weightless cables; None if none can be held.
+    infeasible_example_m : array (3,) or None
+        A position without a finite cable, where there is one [m].
+    limit_ratio : float
+        Stress at infinite section over allowable stress at the worst pose; 1 is the boundary
+        beyond which no cable exists. NaN if not feasible.
+    """
+
+    census: Census
+    is_feasible: bool
+    sagging: Extreme | None
+    sampled: Extreme | None
+    massless: Extreme | None
+    infeasible_example_m: FloatArray | None
+    limit_ratio: float
