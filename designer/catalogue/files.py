@@ -11,7 +11,6 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from designer.catalogue.checks import find_flaws
-from designer.catalogue.faults import schema_faults
 from designer.catalogue.grade import (
     AreaFactor,
     Grade,
@@ -23,6 +22,7 @@ from designer.catalogue.grade import (
 )
 from designer.catalogue.schema import GradeSection, SizeSection
 from designer.config.document import Document, read_document
+from designer.config.faults import schema_faults
 from designer.errors import Fault, InputError
 
 MOST_FILES = 1000
@@ -52,7 +52,7 @@ def read_grade(path: Path) -> Grade:
     try:
         grade = _grade(GradeSection.model_validate(document.root.data()), path.name)
     except ValidationError as error:
-        faults += schema_faults(error, document)
+        faults += schema_faults(error, document, GradeSection)
     if grade is not None:
         faults += _flaws(grade, document)
     if grade is None or faults:
@@ -86,6 +86,11 @@ def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
 def id_fault(found: GradeFile, problem: str) -> Fault:
     """Return a fault of this grade's id, with its line."""
     return read_document(found.path).fault(("id",), problem, "an id of its own")
+
+
+def nothing_found_fault(path: Path) -> Fault:
+    """Return the fault that a folder, which was meant to have grades, has none."""
+    return Fault(str(path), None, "", "there is no grade file in this folder", "*.yaml files")
 
 
 def grade_files(path: Path) -> list[Path]:

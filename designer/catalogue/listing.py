@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from designer.catalogue.files import read_grades
+from designer.catalogue.files import nothing_found_fault, read_grades
 from designer.catalogue.grade import (
     TRUST_MEANING,
     FamilyFit,
@@ -88,7 +88,7 @@ def check_path(path: Path) -> list[Fault]:
     """
     found, faults = read_grades(path)
     if not found and not faults:
-        return [Fault(str(path), None, "", "there is no grade file in this folder", "*.yaml")]
+        return [nothing_found_fault(path)]
     return faults
 
 

@@ -9,11 +9,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
+from typing import TypeVar
 
 import pluggy
 
 import designer
 from designer.catalogue import builtin, hookspecs
+
+Value = TypeVar("Value")
 
 BUILTIN_NAME = "builtin"
 _BUILTIN_MODULE = builtin.__name__
@@ -21,20 +24,23 @@ _BUILTIN_MODULE = builtin.__name__
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """What one plugin returned.
+    """What one plugin, or the user's folder, has to offer.
 
     Parameters
     ----------
     name : str
         Name of the plugin.
     source : str
-        Its distribution and version.
+        Its distribution and version, or the path of the folder.
+    label : str
+        Both, for a line about a problem.
     items : tuple
         What `register_grades` gave, not looked at yet.
     """
 
     name: str
     source: str
+    label: str
     items: tuple[object, ...]
 
 
@@ -66,48 +72,60 @@ def one_line(text: object) -> str:
 class _Plugin:
     name: str
     source: str
-    register_grades: Callable[[], object] | None
+    register_grades: Callable[[], object]
 
 
 def _find(with_plugins: bool, problems: list[str]) -> list[_Plugin]:
     """Load the entry points, ours first; in a checkout, where we have none, our module itself."""
     manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
-    found = []
     entries = entry_points(group=hookspecs.ENTRY_POINT_GROUP)
-    for entry in sorted(entries, key=lambda entry: (not _is_builtin(entry), entry.name)):
-        if with_plugins or _is_builtin(entry):
-            source = _distribution(entry)
-            with _guarded(f"{entry.name!r} ({source})", "cannot be loaded", problems):
-                found.append(_registered(manager, entry.load(), entry.name, source))
+    found: list[_Plugin] = []
     if not any(_is_builtin(entry) for entry in entries):
         source = f"cdpr-designer {designer.__version__}"
-        found.insert(0, _registered(manager, builtin, BUILTIN_NAME, source))
+        found.append(_registered(manager, builtin, BUILTIN_NAME, source))
+    for entry in sorted(entries, key=lambda entry: (not _is_builtin(entry), entry.name)):
+        if with_plugins or _is_builtin(entry):
+            found += _loaded(manager, entry, problems)
     return found
+
+
+def _loaded(manager: pluggy.PluginManager, entry: EntryPoint, problems: list[str]) -> list[_Plugin]:
+    name, source = one_line(entry.name), _distribution(entry)
+    plugin = _attempt(
+        lambda: _registered(manager, entry.load(), name, source),
+        _label(name, source),
+        "cannot be loaded",
+        problems,
+    )
+    return [] if plugin is None else [plugin]
 
 
 def _registered(manager: pluggy.PluginManager, module: object, name: str, source: str) -> _Plugin:
     manager.register(module, name)
     hooks = manager.hook.register_grades.get_hookimpls()
-    own = (hook.function for hook in hooks if hook.plugin_name == name)
-    return _Plugin(name, source, next(own, None))
+    own = next((hook.function for hook in hooks if hook.plugin_name == name), None)
+    if own is None:
+        raise TypeError("it has no hook register_grades()")
+    return _Plugin(name, source, own)
 
 
 def _ask(plugin: _Plugin, problems: list[str]) -> Offer | None:
-    label = f"{plugin.name!r} ({plugin.source})"
-    if plugin.register_grades is None:
-        problems.append(f"plugin {label} has no hook register_grades(): left out")
-        return None
-    answer: object = None
-    with _guarded(label, "fails in register_grades()", problems) as has_failed:
-        answer = plugin.register_grades()
-    if has_failed():
-        return None
+    label = _label(plugin.name, plugin.source)
+    items = _attempt(
+        lambda: _listed(plugin.register_grades()), label, "fails in register_grades()", problems
+    )
+    return None if items is None else Offer(plugin.name, plugin.source, label, items)
+
+
+def _listed(answer: object) -> tuple[object, ...]:
     if not isinstance(answer, list | tuple):
-        found = f"register_grades() returned {type(answer).__name__}, not a list"
-        problems.append(f"plugin {label}: {found}: left out")
-        return None
-    return Offer(plugin.name, plugin.source, tuple(answer))
+        raise TypeError(f"it returned {type(answer).__name__}, not a list")
+    return tuple(answer)
+
+
+def _label(name: str, source: str) -> str:
+    return f"plugin {name} ({source})"
 
 
 def _is_builtin(entry: EntryPoint) -> bool:
@@ -119,24 +137,21 @@ def _distribution(entry: EntryPoint) -> str:
     return one_line(f"{dist.name} {dist.version}") if dist is not None else entry.value
 
 
-@contextmanager
-def _guarded(label: str, failure: str, problems: list[str]) -> Iterator[Callable[[], bool]]:
-    """Turn whatever a plugin raises or prints into a line of ``problems``.
-
-    Yields a function that tells, afterwards, whether it failed.
-    """
-    failed = False
+def _attempt(
+    action: Callable[[], Value], label: str, failure: str, problems: list[str]
+) -> Value | None:
+    """Return what a stranger's code gives; None, and a line in ``problems``, where it fails."""
     caught = io.StringIO()
+    value = None
     try:
         with _descriptor_to_stderr(), redirect_stdout(caught):
-            yield lambda: failed
-    except (Exception, SystemExit) as error:  # a stranger's code may raise anything
-        failed = True
-        reason = one_line(f"{type(error).__name__}: {one_line(error)}")
-        problems.append(f"plugin {label} {failure}: {reason}: left out")
+            value = action()
+    except (Exception, SystemExit) as error:  # it may raise anything
+        problems.append(f"{label} {failure}: {type(error).__name__}: {one_line(error)}: left out")
     printed = "" if caught.closed else caught.getvalue()
     if printed:
-        problems.append(f"plugin {label} wrote to standard output: {one_line(printed)!r}")
+        problems.append(f"{label} wrote to standard output: {one_line(printed)!r}")
+    return value
 
 
 @contextmanager

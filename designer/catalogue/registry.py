@@ -9,13 +9,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from designer.catalogue.checks import find_flaws
-from designer.catalogue.files import id_fault, read_grades
+from designer.catalogue.files import id_fault, nothing_found_fault, read_grades
 from designer.catalogue.grade import Grade
 from designer.catalogue.plugins import Offer, collect_offers, one_line
 from designer.config.node import path_text
 from designer.errors import Fault, InputError
 
-USER_FOLDER_NAME = "user folder"
 MOST_PROBLEMS_OF_A_SOURCE = 20
 
 
@@ -73,7 +72,7 @@ class Catalogue:
         """Return what is wrong with an id that no grade has, and what was expected."""
         nearest = difflib.get_close_matches(grade_id, [grade.id for grade in self.grades], n=3)
         names = " or ".join(repr(name) for name in nearest)
-        expected = f"{names}?" if names else "an id that `designer catalog list` shows"
+        expected = names or "an id that `designer catalog list` shows"
         return f"there is no grade {one_line(grade_id)!r}", expected
 
 
@@ -102,7 +101,7 @@ def load_catalogue(paths: Sequence[Path] = (), with_plugins: bool = True) -> Cat
         shelf.add_offer(offer)
     user_folder = user_catalogue_folder()
     if with_plugins and user_folder.is_dir():
-        shelf.add_offer(Offer(USER_FOLDER_NAME, str(user_folder), (user_folder,)))
+        shelf.add_offer(_offer_of(user_folder))
     shelf.add_paths(paths)
     return Catalogue(tuple(shelf.grades.values()), tuple(shelf.sources), tuple(shelf.problems))
 
@@ -112,6 +111,10 @@ def user_catalogue_folder() -> Path:
     from platformdirs import user_data_path
 
     return user_data_path("cdpr-designer", appauthor=False) / "catalog"
+
+
+def _offer_of(folder: Path) -> Offer:
+    return Offer("user folder", str(folder), f"user folder ({folder})", (folder,))
 
 
 @dataclass(slots=True)
@@ -128,8 +131,8 @@ class _Shelf:
         before = len(self.grades)
         for item in offer.items:
             for grade in _grades_in(item, complaints.append):
-                self._add(replace(grade, origin=offer.name), complaints.append)
-        self._report(f"{offer.name!r} ({offer.source})", complaints)
+                complaints += self._add(replace(grade, origin=offer.name))
+        self._report(offer.label, complaints)
         self.sources.append(CatalogueSource(offer.name, offer.source, len(self.grades) - before))
 
     def add_paths(self, paths: Sequence[Path]) -> None:
@@ -138,25 +141,28 @@ class _Shelf:
         for path in paths:
             found, unreadable = read_grades(path)
             faults += unreadable
+            if not found and not unreadable:
+                faults.append(nothing_found_fault(path))
             for one in found:
-                taken: list[str] = []
-                self._add(replace(one.grade, origin=path.name), taken.append)
-                faults += [id_fault(one, problem) for problem in taken]
+                problems = self._add(replace(one.grade, origin=path.name))
+                faults += [id_fault(one, problem) for problem in problems]
             self.sources.append(CatalogueSource(path.name, str(path), len(found)))
         if faults:
             raise InputError(faults)
 
-    def _add(self, grade: Grade, complain: Callable[[str], None]) -> None:
+    def _add(self, grade: Grade) -> list[str]:
+        """Add a grade, unless its id is taken; return what is wrong."""
         first = self.grades.setdefault(grade.id, grade)
-        if first is not grade:
-            complain(f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already")
+        if first is grade:
+            return []
+        return [f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already"]
 
     def _report(self, label: str, complaints: Iterable[str]) -> None:
-        lines = [f"plugin {label}: {one_line(complaint)}: left out" for complaint in complaints]
+        lines = [f"{label}: {one_line(complaint)}: left out" for complaint in complaints]
         hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
         self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
         if hidden > 0:
-            self.problems.append(f"plugin {label}: {hidden} more problems of this kind")
+            self.problems.append(f"{label}: {hidden} more problems of this kind")
 
 
 def _label(grade: Grade) -> str:

@@ -5,13 +5,14 @@ What a figure may be beside the other figures is checked in `designer.catalogue.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from designer.catalogue import grade as values
 from designer.config.fields import ListOf, Quantity, Text, refusal
-from designer.config.schema import Section
+from designer.config.section import Section
 from designer.units import (
     AREA,
     FORCE,
@@ -180,5 +181,6 @@ def _with_units(row: Any, units: dict[str, str]) -> Any:
 
 
 def _with_unit(value: object, unit: str | None) -> object:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return f"{value!r} {unit}" if is_number and unit else value
+    if not unit or isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    return f"{value!r} {unit}" if math.isfinite(value) else value

@@ -90,19 +90,18 @@ def cable_count(parts: Parts) -> Iterator[Fault]:
 def distinct_anchors(parts: Parts) -> Iterator[Fault]:
     """No two cables leave the base at one point."""
     anchors = parts.array(Anchors, *_ANCHORS)
-    if anchors is None:
-        return
-    for first, second in combinations(range(len(anchors)), 2):
-        if np.linalg.norm(anchors[first] - anchors[second]) <= _COINCIDENT * _extent(anchors):
-            problem = f"is the same point as robot.anchors[{first}]"
-            yield parts.fault((*_ANCHORS, second), problem, "distinct exit points")
-            return
+    pair = None if anchors is None else _coincident_pair(anchors)
+    if pair is not None:
+        problem = f"is the same point as robot.anchors[{pair[0]}]"
+        yield parts.fault((*_ANCHORS, pair[1]), problem, "distinct exit points")
 
 
 def anchors_span_area(parts: Parts) -> Iterator[Fault]:
     """Seen from above, the exit points are not on one line."""
     anchors = parts.array(Anchors, *_ANCHORS)
-    if anchors is not None and _rank(anchors[:, :2]) < 2:
+    if anchors is None or _coincident_pair(anchors) is not None:
+        return
+    if _rank(anchors[:, :2]) < 2:
         problem = "all anchors lie on one line when seen from above"
         yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
 
@@ -179,8 +178,12 @@ CHECKS = (
 )
 
 
-def _extent(points: FloatArray) -> float:
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
+def _coincident_pair(points: FloatArray) -> tuple[int, int] | None:
+    extent = np.linalg.norm(np.ptp(points, axis=0))
+    for first, second in combinations(range(len(points)), 2):
+        if np.linalg.norm(points[first] - points[second]) <= _COINCIDENT * extent:
+            return first, second
+    return None
 
 
 def _rank(points: FloatArray) -> int:

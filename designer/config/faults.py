@@ -15,6 +15,9 @@ from designer.config.node import Key, printable
 from designer.errors import Fault
 from designer.units import describe
 
+MOST_FAULTS = 100
+"""As many as anybody reads; a wrong generated file could have one in each of its lines."""
+
 
 def schema_faults(
     error: ValidationError, document: Document, schema: type[BaseModel]
@@ -22,9 +25,9 @@ def schema_faults(
     """Return one fault for each thing in the document that does not follow the schema.
 
     A field that is missing while another one beside it has nearly its name is reported once, as
-    misspelt.
+    misspelt. After the first hundred the rest are left out.
     """
-    details = error.errors(include_url=False)
+    details = error.errors(include_url=False)[:MOST_FAULTS]
     misspelt = set(_misspelt_fields(details, schema))
     return [
         document.fault(_document_path(one, document), *_words(one, schema))

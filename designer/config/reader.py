@@ -10,26 +10,15 @@ from designer.config.build import build_study
 from designer.config.checks import all_faults
 from designer.config.document import Document, read_document
 from designer.config.entries import all_entries
-from designer.config.faults import schema_faults
+from designer.config.faults import MOST_FAULTS, schema_faults
 from designer.config.node import path_text
 from designer.config.schema import StudySection
 from designer.errors import Fault, InputError
 from designer.study import Source, Study
 
 
-def read_study(path: Path) -> Study:
-    """Return the study that the config file describes.
-
-    Parameters
-    ----------
-    path : Path
-        A YAML file.
-
-    Raises
-    ------
-    InputError
-        If anything is wrong with it; carries every fault, in the order of the lines.
-    """
+def study_from(path: Path) -> Study:
+    """Return the study that the config file describes, see `designer.config.read_study`."""
     document = read_document(path)
     section = _checked(document)
     if section.name is None:
@@ -45,7 +34,7 @@ def _checked(document: Document) -> StudySection:
     except ValidationError as error:
         faults += schema_faults(error, document, StudySection)
     if section is None or faults:
-        raise InputError(sorted(faults, key=_place))
+        raise InputError(sorted(faults, key=_place)[:MOST_FAULTS])
     return section
 
 

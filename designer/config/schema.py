@@ -8,8 +8,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, StrictBool, Tag
-from pydantic import model_validator as validator_of_model
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
 from designer.config.fields import (
     Corner,
@@ -32,6 +31,7 @@ from designer.config.fields import (
     WholeNumber,
     refusal,
 )
+from designer.config.section import Section
 from designer.study import HangsBelow, Sampling
 from designer.units import describe
 
@@ -75,25 +75,6 @@ def _no_effects(given: object) -> object:
     return given
 
 
-class Section(BaseModel):
-    """A mapping of the config file."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    @validator_of_model(mode="before")
-    @classmethod
-    def _leave_out_empty_fields(cls, given: object) -> object:
-        """Take ``samples:`` with nothing after it as a field that is not given."""
-        if not isinstance(given, dict):
-            return given
-        fields = cls.model_fields
-        return {
-            key: value
-            for key, value in given.items()
-            if value is not None or key not in fields or fields[key].is_required()
-        }
-
-
 class PlatformSection(Section):
     """What the cables carry."""
 
@@ -123,7 +104,7 @@ class PoseSection(Section):
     position: Point = Field(description="three lengths [x, y, z]")
     rotation_vector: Rotation = (0.0, 0.0, 0.0)
 
-    @validator_of_model(mode="before")
+    @model_validator(mode="before")
     @classmethod
     def _from_list(cls, given: object) -> object:
         return {"position": given} if isinstance(given, list) else given

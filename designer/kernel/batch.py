@@ -21,8 +21,9 @@ class UnitSolution:
 
     Parameters
     ----------
-    pull, length_m, upward_pull_m, top_tension_m : array (n_cables, n_poses)
-        H / (w X), unstrained length, vertical pull on the platform, tension at the upper end.
+    horizontal_pull_m, length_m, upward_pull_m, top_tension_m : array (n_cables, n_poses)
+        Horizontal force, unstrained length, vertical pull on the platform, tension at the upper
+        end.
     massless_tension_N : array (n_cables, n_poses)
         Tension of straight, weightless cables; negative where no pulling cable can balance.
     inverse_weight_m_per_N : array (n_poses,)
@@ -34,7 +35,7 @@ class UnitSolution:
         Largest top tension over strength.
     """
 
-    pull: FloatArray
+    horizontal_pull_m: FloatArray
     length_m: FloatArray
     upward_pull_m: FloatArray
     top_tension_m: FloatArray
@@ -92,7 +93,7 @@ def solve_units(
             for future in [pool.submit(square.solve_range, *share, *arguments) for share in shares]:
                 future.result()
     return UnitSolution(
-        pull=out_cables[:, square.OUT_P],
+        horizontal_pull_m=out_cables[:, square.OUT_H],
         length_m=out_cables[:, square.OUT_L],
         upward_pull_m=out_cables[:, square.OUT_V],
         top_tension_m=out_cables[:, square.OUT_T],

@@ -21,7 +21,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import kernel
 from designer.kernel.linear import solve_lanes
-from designer.kernel.unit_cable import unit_cable
+from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
 LANES = 128
 
@@ -32,16 +32,17 @@ _ROWS = 16
 # Rows of a pose in the pose array: load (6), inverse weight, largest relative step, what is left of
 # the balance (6), its scales of force and length, and the figures of merit that are stored.
 _C, _STEP, _REST, _SCALE, _REACH = 6, 7, 8, 14, 15
-_CLOSURE, _BALANCE, _RESIDUAL, _OVERLOAD = range(16, 20)
+_CLOSURE, _BALANCE, _RESIDUAL, _OVERLOAD, _GOAL = range(16, 21)
 
 # Rows of a cable in the results, and of a pose.
-OUT_P, OUT_L, OUT_V, OUT_T, OUT_MASSLESS = range(5)
+OUT_H, OUT_L, OUT_V, OUT_T, OUT_MASSLESS = range(5)
 OUT_C, OUT_CLOSURE, OUT_BALANCE, OUT_RESIDUAL, OUT_OVERLOAD = range(5)
 
-_QUICK, _CAREFUL = 5, 60
-_QUICK_STEP, _CAREFUL_STEP = 1e-6, 1e-11
-"""Relative steps at which Newton stops. It converges quadratically: as a rule a step of 1e-6 leaves
-an error near 1e-12. Where the residual shows otherwise, the pose is solved again with patience."""
+_ATTEMPTS = ((5, 1e-6, 0.0), (40, 1e-11, 0.0), (120, 1e-11, 30.0))
+"""Iterations, relative step at which Newton stops, and lightness of the start of each attempt; only
+the poses that fail go on to the next one. Newton converges quadratically, so as a rule a step of
+1e-6 leaves an error near 1e-12."""
+_LARGEST_FALL = 0.7
 TOLERANCE = 1e-10
 """Largest residual of closure (over length) and of balance (over the largest force)."""
 
@@ -154,27 +155,29 @@ def _assemble(
 
 
 @kernel
-def _lighten(
-    poses: FloatArray,
-    A: FloatArray,
-    cables: FloatArray,
-    strength: FloatArray,
-    n: int,
+def _aim_at_strength(
+    poses: FloatArray, A: FloatArray, cables: FloatArray, strength: FloatArray, n: int
 ) -> None:
-    """Take the largest c that no linearised top tension forbids."""
-    for j in range(LANES):
-        poses[_STEP, j] = poses[_C, j]
-        poses[_C, j] = np.inf
+    """Set as goal the largest c that no linearised top tension forbids."""
+    poses[_GOAL] = np.inf
     for i in range(n):
         row = cables[i]
         for j in range(LANES):
             slope = row[_TP, j] * A[i, n + 1, j]
             room = strength[i] - row[_T, j] - row[_TP, j] * A[i, n, j]
             bound = room / slope if slope > 0.0 else np.inf
-            poses[_C, j] = min(poses[_C, j], bound)
+            poses[_GOAL, j] = min(poses[_GOAL, j], bound)
+
+
+@kernel
+def _approach(poses: FloatArray, largest_fall: float) -> None:
+    """Move c to its goal, but down by no more than a factor, and only once p has followed."""
     for j in range(LANES):
-        c = poses[_C, j]
-        poses[_STEP, j] = abs(c - poses[_STEP, j]) / abs(c)
+        old = poses[_C, j]
+        limit = largest_fall * old if poses[_STEP, j] < 0.1 else old
+        c = max(poses[_GOAL, j], limit) if largest_fall > 0.0 else poses[_GOAL, j]
+        poses[_C, j] = c
+        poses[_STEP, j] = abs(c - old) / (abs(c) + 1e-300)
 
 
 @kernel
@@ -218,7 +221,8 @@ def _evaluate(cables: FloatArray, kappa: FloatArray, n: int) -> None:
             )
             row[_V, j] = v
             row[_T, j] = t
-            row[_L0, j] = abs(F / F_l)
+            # A cable stretched through zero length closes too, with a negative tension.
+            row[_L0, j] = abs(F / F_l) if t > 0.0 else np.inf
 
 
 @kernel
@@ -249,7 +253,8 @@ def _check(
             poses[_REACH, j] = max(poses[_REACH, j], abs(rx) + abs(ry) + abs(rz))
             poses[_CLOSURE, j] = max(poses[_CLOSURE, j], row[_L0, j])
             poses[_RESIDUAL, j] = max(poses[_RESIDUAL, j], row[_L0, j] / row[_L, j])
-            poses[_OVERLOAD, j] = max(poses[_OVERLOAD, j], row[_T, j] / strength[i])
+            burst = row[_T, j] / strength[i] if row[_P, j] >= PULL_FLOOR else np.inf
+            poses[_OVERLOAD, j] = max(poses[_OVERLOAD, j], burst)
     for j in range(LANES):
         force = abs(poses[_REST, j]) + abs(poses[_REST + 1, j]) + abs(poses[_REST + 2, j])
         moment = abs(poses[_REST + 3, j]) + abs(poses[_REST + 4, j]) + abs(poses[_REST + 5, j])
@@ -271,7 +276,8 @@ def _store(
     for j in range(LANES):
         at = indices[j]
         for i in range(n):
-            for out, row in ((OUT_P, _P), (OUT_L, _L), (OUT_V, _V), (OUT_T, _T)):
+            out_cables[i, OUT_H, at] = cables[i, _P, j] * np.sqrt(cables[i, _X2, j])
+            for out, row in ((OUT_L, _L), (OUT_V, _V), (OUT_T, _T)):
                 out_cables[i, out, at] = cables[i, row, j]
             out_cables[i, OUT_MASSLESS, at] = cables[i, _MASSLESS, j]
         out_poses[OUT_C, at] = poses[_C, j]
@@ -292,10 +298,15 @@ def _solve_block(
     inverse_weight: float,
     iterations: int,
     smallest_step: float,
+    lightness: float,
 ) -> None:
-    """Newton on one placed block; a negative `inverse_weight` asks for the largest instead."""
+    """Newton on one placed block; a negative `inverse_weight` asks for the largest instead.
+
+    With `lightness` above zero it starts from cables lighter by that factor, which are nearly
+    straight, and lets them grow heavier step by step.
+    """
     n = kappa.size
-    poses[_C] = inverse_weight
+    poses[_GOAL] = inverse_weight
     for iteration in range(iterations):
         if iteration == 0:
             _linearise_taut(cables, n)
@@ -303,12 +314,15 @@ def _solve_block(
             _linearise(cables, kappa, n)
         _assemble(A, cables, poses, weights, n)
         solve_lanes(A, n, n + 2)
-        poses[_STEP] = 0.0
         if inverse_weight < 0.0:
-            _lighten(poses, A, cables, strength, n)
+            _aim_at_strength(poses, A, cables, strength, n)
         if iteration == 0:
+            for j in range(LANES):
+                poses[_C, j] = poses[_GOAL, j] + lightness * abs(poses[_GOAL, j])
             _first_guess(cables, A, poses, weights, n)
+            poses[_STEP] = 0.0
         else:
+            _approach(poses, _LARGEST_FALL if lightness > 0.0 else 0.0)
             _advance(cables, A, poses, n)
             if np.max(poses[_STEP]) < smallest_step:
                 break
@@ -331,22 +345,23 @@ def solve_range(
     out_cables: FloatArray,
     out_poses: FloatArray,
 ) -> None:
-    """Solve the poses from `start` to `stop`: all quickly, then the failed ones with patience."""
+    """Solve the poses from `start` to `stop`: all quickly, then the failed ones with more patience."""
     n = kappa.size
     cables = np.empty((n, _ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
-    poses = np.empty((20, LANES))
+    poses = np.empty((21, LANES))
     pending = np.arange(start, stop)
-    for patient in (False, True):
-        iterations = _CAREFUL if patient else _QUICK
-        step = _CAREFUL_STEP if patient else _QUICK_STEP
+    for iterations, step, lightness in _ATTEMPTS:
         failed = 0
         for first in range(0, pending.size, LANES):
             lane = pending[np.minimum(np.arange(first, first + LANES), pending.size - 1)]
             _place(
                 cables, poses, exit_points, attachments, load, load_point, positions, rotations, lane
             )
-            _solve_block(cables, A, poses, kappa, weights, strength, inverse_weight, iterations, step)
+            _solve_block(
+                cables, A, poses, kappa, weights, strength, inverse_weight,
+                iterations, step, lightness,
+            )  # fmt: skip
             _evaluate(cables, kappa, n)
             _check(poses, cables, weights, strength, n)
             _store(out_cables, out_poses, cables, poses, lane, n)
@@ -356,3 +371,5 @@ def solve_range(
                     pending[failed] = lane[j]
                     failed += 1
         pending = pending[:failed]
+        if failed == 0:
+            break

@@ -204,11 +204,10 @@ def statics_of(
     solved = verdict == Verdict.SOLVED
     with np.errstate(divide="ignore", invalid="ignore"):
         weight = np.where(solved, 1.0 / solution.inverse_weight_m_per_N, np.nan)
-    distance = cable_geometry(robot, poses).horizontal_distance_m
     blank = np.where(solved, 1.0, np.nan)
 
     def shaped(values: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(values.T).reshape(*poses.shape, -1)
+        return values.T.reshape(*poses.shape, -1)
 
     return Statics(
         robot=robot,
@@ -217,7 +216,7 @@ def statics_of(
         weight_N_per_m=shaped(weight[None]),
         axial_stiffness_N=shaped((axial_stiffness_N * blank)[None]),
         length_m=shaped(solution.length_m * blank),
-        force_x_N=shaped(solution.pull * weight) * distance,
+        force_x_N=shaped(solution.horizontal_pull_m * weight),
         force_z_N=shaped(-solution.upward_pull_m * weight),
     )
 

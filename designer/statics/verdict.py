@@ -58,7 +58,8 @@ def judge(
     Parameters
     ----------
     residual, inverse_weight, overload : array (n_poses,)
-        From `designer.kernel.batch.UnitSolution`.
+        From `designer.kernel.batch.UnitSolution`. An infinite overload marks a cable so slack that
+        it was not evaluated.
     tolerance : float
         Largest residual of a solved pose.
     massless_tension : array (n_cables, n_poses)
@@ -69,7 +70,9 @@ def judge(
     converged = residual <= tolerance
     lowest = massless_tension.min(axis=0) / np.abs(massless_tension).max(axis=0)
     verdict = np.full(residual.shape, int(Verdict.NOT_CONVERGED))
-    if sizing:
+    if not sizing:
+        converged = converged & np.isfinite(overload)
+    else:
         finite = (inverse_weight > 0.0) & (overload <= 1.0 + 1e-9)
         verdict[converged & ~finite] = Verdict.NO_FINITE_CABLE
         verdict[np.abs(lowest) <= _ON_BOUNDARY] = Verdict.NO_FINITE_CABLE

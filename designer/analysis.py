@@ -1,0 +1,190 @@
+"""The pipeline: from a study to everything that the report shows."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Protocol
+
+from designer import __version__
+from designer.catalogue.registry import Catalogue
+from designer.selection.result import SelectionResult
+from designer.selection.select import select
+from designer.sizing.limit import limit_ratio
+from designer.sizing.loop import LoopSizing, size_by_loop
+from designer.sizing.newton import Sizing, size_poses
+from designer.statics.inverse import MasslessStatics, solve_massless
+from designer.study import Study
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.samples import sample_count
+from designer.workspace.sweep import map_workspace
+
+Advance = Callable[[int], None]
+
+
+class Reporter(Protocol):
+    """Shows progress: a context for each long task, which hands out a function to advance it."""
+
+    def task(self, name: str, total: int) -> AbstractContextManager[Advance]:
+        """Open a task of ``total`` steps."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseAnalysis:
+    """The configured pose alone.
+
+    Parameters
+    ----------
+    sizing : Sizing
+        Optimum by Newton, no leading axes.
+    massless : MasslessStatics
+        Straight weightless cables.
+    loop : LoopSizing
+        The basic loop with its iterates.
+    limit_ratio : float
+        Stress at infinite section over allowable stress; at 1 no finite cable is left.
+    """
+
+    sizing: Sizing
+    massless: MasslessStatics
+    loop: LoopSizing
+    limit_ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Where the numbers come from.
+
+    Parameters
+    ----------
+    version : str
+        Of this program.
+    libraries : tuple of (name, version)
+        What computed and drew them.
+    system : str
+        Operating system and Python.
+    created : datetime
+        When the analysis was started.
+    """
+
+    version: str
+    libraries: tuple[tuple[str, str], ...]
+    system: str
+    created: datetime
+
+    @classmethod
+    def now(cls) -> Provenance:
+        """Return the provenance of an analysis that starts now."""
+        names = ("numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint")
+        return cls(
+            version=__version__,
+            libraries=tuple((name, version(name)) for name in names),
+            system=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            created=datetime.now().astimezone(),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Analysis:
+    """Everything that the report shows.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    catalogue : Catalogue
+        The grades it was solved with.
+    provenance : Provenance
+        Versions and time.
+    pose : PoseAnalysis or None
+        If the study has a pose.
+    workspace : WorkspaceMap or None
+        If the study has a workspace.
+    sweep_file : Path or None
+        NetCDF file with every sample.
+    selection : SelectionResult or None
+        If the study has a workspace and a selection.
+    """
+
+    study: Study
+    catalogue: Catalogue
+    provenance: Provenance
+    pose: PoseAnalysis | None
+    workspace: WorkspaceMap | None
+    sweep_file: Path | None
+    selection: SelectionResult | None
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the answer is yes: the pose is solved, the workspace served, a product found."""
+        pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
+        workspace_ok = self.workspace is None or self.workspace.is_feasible
+        product_ok = self.selection is None or self.selection.chosen is not None
+        return pose_ok and workspace_ok and product_ok
+
+
+def analyse_pose(study: Study) -> PoseAnalysis | None:
+    """Size the configured pose in every way; None if the study has none."""
+    if study.pose is None:
+        return None
+    return PoseAnalysis(
+        sizing=size_poses(study.robot, study.pose, study.material),
+        massless=solve_massless(study.robot, study.pose),
+        loop=size_by_loop(study.robot, study.pose, study.material),
+        limit_ratio=float(limit_ratio(study.robot, study.pose, study.material)),
+    )
+
+
+def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter) -> Analysis:
+    """Size the pose, sweep the workspace, choose a product.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    catalogue : Catalogue
+        All grades.
+    folder : Path
+        Existing folder that receives ``workspace.nc``.
+    reporter : Reporter
+        Shows progress.
+    """
+    provenance = Provenance.now()
+    pose = analyse_pose(study)
+    workspace = sweep_file = chosen = None
+    if study.workspace is not None:
+        sweep_file = folder / "workspace.nc"
+        with reporter.task("workspace", sample_count(study.workspace)) as advance:
+            workspace = map_workspace(
+                study.robot,
+                study.workspace,
+                study.material,
+                file=sweep_file,
+                attributes=_attributes(study, provenance),
+                progress=advance,
+            )
+    if study.workspace is not None and study.selection is not None:
+        names = study.selection.grades
+        with reporter.task("grades", len(names or catalogue.grades)) as advance:
+            chosen = select(
+                study.robot,
+                study.workspace,
+                study.selection,
+                catalogue.grades,
+                progress=lambda: advance(1),
+            )
+    return Analysis(study, catalogue, provenance, pose, workspace, sweep_file, chosen)
+
+
+def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:
+    return {
+        "title": study.name,
+        "source": f"cdpr-designer {provenance.version}",
+        "config_sha256": study.source.sha256,
+        "history": f"{provenance.created.isoformat(timespec='seconds')} created",
+    }

@@ -1,0 +1,60 @@
+"""What a position asks for: a diameter, or a tension; the objective of the search for the worst."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.cable import Cable, Material
+from designer.robot import Poses, Robot
+from designer.sizing.newton import size_poses
+from designer.statics.inverse import Statics, solve_massless, solve_sagging
+from designer.statics.verdict import Verdict
+from designer.study import HangsBelow
+from designer.workspace.refine import Demand
+
+
+def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
+    """Tell which poses (...) the study leaves out because a cable hangs below the platform.
+
+    Poses without a finite cable are among them: as the section grows, the platform's weight stops
+    mattering, so the pulls on it sum to zero, and one cable at least hangs below it.
+    """
+    if hangs_below == "include":
+        return np.zeros(statics.verdict.shape, dtype=np.bool_)
+    return np.asarray(statics.hangs_below | (statics.verdict == Verdict.NO_FINITE_CABLE))
+
+
+def diameter_demand(robot: Robot, material: Material, hangs_below: HangsBelow) -> Demand:
+    """Needed diameter [m]; inf where no cable of the family will do."""
+
+    def demand(positions_m: FloatArray) -> FloatArray:
+        sizing = size_poses(robot, Poses.at(positions_m), material)
+        return _demand(sizing.diameter_m, sizing.statics, hangs_below)
+
+    return demand
+
+
+def tension_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Demand:
+    """Largest tension of a given cable [N]; inf where the pose cannot be held."""
+
+    def demand(positions_m: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(positions_m), cable)
+        return _demand(statics.largest_tension_N, statics, hangs_below)
+
+    return demand
+
+
+def massless_demand(robot: Robot) -> Demand:
+    """Largest tension of straight weightless cables [N]; does not count where they would push."""
+
+    def demand(positions_m: FloatArray) -> FloatArray:
+        tension = solve_massless(robot, Poses.at(positions_m)).largest_tension_N
+        return np.where(np.isnan(tension), -np.inf, tension)
+
+    return demand
+
+
+def _demand(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> FloatArray:
+    asked = np.where(statics.is_solved, value, np.inf)
+    return np.where(is_left_out(statics, hangs_below), -np.inf, asked)

@@ -1,0 +1,162 @@
+"""Sizing over the whole workspace: samples first, then the continuous search for the worst."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import Material
+from designer.robot import Poses, Robot
+from designer.sizing.limit import limit_ratio
+from designer.sizing.newton import Sizing, size_poses
+from designer.statics.verdict import Verdict
+from designer.study import Workspace
+from designer.workspace.demand import diameter_demand, is_left_out, massless_demand
+from designer.workspace.refine import refine, spread_starts
+from designer.workspace.result import Census, Extreme, WorkspaceMap
+from designer.workspace.samples import positions_m
+from designer.workspace.store import SweepFile
+
+Progress = Callable[[int], None]
+"""Called with the number of poses done since the last call."""
+
+_STARTS = 8
+
+
+def map_workspace(
+    robot: Robot,
+    workspace: Workspace,
+    material: Material,
+    *,
+    file: Path | None = None,
+    attributes: Mapping[str, Any] | None = None,
+    progress: Progress = lambda _: None,
+) -> WorkspaceMap:
+    """Size every sample of the workspace, and find the worst pose of the region.
+
+    Parameters
+    ----------
+    robot, workspace, material
+        What to solve.
+    file : Path, optional
+        NetCDF file that receives every sample; without it only the summary is kept, and memory
+        does not grow with the number of samples in either case.
+    attributes : mapping, optional
+        Provenance that is stored in the file.
+    progress : callable
+        Called after each chunk.
+    """
+    gathered = _Gathered(workspace)
+    if file is None:
+        for positions, sizing in _sweep(robot, workspace, material, progress):
+            gathered.add(positions, sizing)
+    else:
+        with SweepFile(file, robot.n_cables, attributes or {}) as store:
+            for positions, sizing in _sweep(robot, workspace, material, progress):
+                gathered.add(positions, sizing)
+                store.append(positions, sizing)
+    return _summarise(robot, workspace, material, gathered)
+
+
+def _sweep(robot: Robot, workspace: Workspace, material: Material, progress: Progress) -> Any:
+    for positions in positions_m(workspace):
+        yield positions, size_poses(robot, Poses.at(positions), material)
+        progress(len(positions))
+
+
+class _Gathered:
+    """Running totals of a sweep, and the few samples that the search starts from."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self.verdicts: Counter[int] = Counter()
+        self.hangs_below = 0
+        self.excluded = 0
+        self.best: dict[str, tuple[FloatArray, FloatArray]] = {}
+        self.sampled: Extreme | None = None
+        self.infeasible_example_m: FloatArray | None = None
+
+    def add(self, positions: FloatArray, sizing: Sizing) -> None:
+        statics = sizing.statics
+        left_out = is_left_out(statics, self._workspace.hangs_below)
+        self.verdicts.update(statics.verdict.tolist())
+        self.hangs_below += int(statics.hangs_below.sum())
+        self.excluded += int(left_out.sum())
+        counts = statics.is_solved & ~left_out
+        diameter = np.where(counts, sizing.diameter_m, -np.inf)
+        massless = np.where(
+            np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N
+        )
+        self._keep("sagging", positions, diameter)
+        self._keep("massless", positions, massless)
+        self._keep_worst(positions, diameter, statics.largest_tension_N)
+        served = statics.is_solved | left_out
+        if self.infeasible_example_m is None and not served.all():
+            self.infeasible_example_m = positions[int(np.argmin(served))]
+
+    def census(self) -> Census:
+        statuses = {v.label: self.verdicts.get(int(v), 0) for v in Verdict}
+        return Census(sum(statuses.values()), statuses, self.hangs_below, self.excluded)
+
+    def _keep(self, name: str, positions: FloatArray, demand: FloatArray) -> None:
+        if name in self.best:
+            positions = np.concatenate([self.best[name][0], positions])
+            demand = np.concatenate([self.best[name][1], demand])
+        starts = spread_starts(self._workspace.region, positions, demand, _STARTS)
+        at = [int(np.argmin(np.abs(positions - start).sum(axis=1))) for start in starts]
+        self.best[name] = (positions[at], demand[at])
+
+    def _keep_worst(
+        self, positions: FloatArray, diameter: FloatArray, tension: FloatArray
+    ) -> None:
+        at = int(np.argmax(diameter))
+        if not np.isneginf(diameter[at]) and (
+            self.sampled is None or diameter[at] > self.sampled.diameter_m
+        ):
+            self.sampled = Extreme(positions[at], float(diameter[at]), float(tension[at]))
+
+
+def _summarise(
+    robot: Robot, workspace: Workspace, material: Material, gathered: _Gathered
+) -> WorkspaceMap:
+    census = gathered.census()
+    example = gathered.infeasible_example_m
+    sagging: Extreme | None = None
+    ratio = np.nan
+    if example is None and gathered.sampled is not None:
+        demand = diameter_demand(robot, material, workspace.hangs_below)
+        worst = refine(workspace.region, demand, gathered.best["sagging"][0])
+        if np.isfinite(worst.demand):
+            sagging = _extreme(worst.position_m, worst.demand, material)
+            ratio = float(limit_ratio(robot, Poses.at(worst.position_m), material))
+        else:
+            example = worst.position_m
+    return WorkspaceMap(
+        census=census,
+        is_feasible=sagging is not None,
+        sagging=sagging,
+        sampled=gathered.sampled,
+        massless=_worst_massless(robot, workspace, material, gathered.best["massless"][0]),
+        infeasible_example_m=example,
+        limit_ratio=ratio,
+    )
+
+
+def _worst_massless(
+    robot: Robot, workspace: Workspace, material: Material, starts: FloatArray
+) -> Extreme | None:
+    if len(starts) == 0:
+        return None
+    worst = refine(workspace.region, massless_demand(robot), starts)
+    return Extreme(
+        worst.position_m, material.diameter_for_tension_m(worst.demand), worst.demand
+    )
+
+
+def _extreme(position_m: FloatArray, diameter_m: float, material: Material) -> Extreme:
+    return Extreme(position_m, diameter_m, material.cable(diameter_m).allowable_tension_N)
