@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -71,7 +72,7 @@ def solve_units(
     n, count = robot.n_cables, len(poses.position_m)
     out_cables = np.empty((n, 5, count))
     out_poses = np.empty((5, count))
-    arguments = (
+    arguments: tuple[Any, ...] = (
         robot.exit_points_m,
         robot.attachments_m,
         np.array([0.0, 0.0, robot.weight_N, 0.0, 0.0, 0.0]),

@@ -123,7 +123,8 @@ def _linearise(cables: FloatArray, kappa: FloatArray, n: int) -> None:
 
 @kernel
 def _assemble(
-    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, n: int) -> None:
+    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, n: int
+) -> None:
     """Write the linearised balance: columns dp, then minus the present wrench, then the load."""
     for m in range(n):
         for j in range(LANES):
@@ -345,7 +346,7 @@ def solve_range(
     out_cables: FloatArray,
     out_poses: FloatArray,
 ) -> None:
-    """Solve the poses from `start` to `stop`: all quickly, then the failed ones with more patience."""
+    """Solve the poses from `start` to `stop`: all quickly, then the failed ones again."""
     n = kappa.size
     cables = np.empty((n, _ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
@@ -356,7 +357,15 @@ def solve_range(
         for first in range(0, pending.size, LANES):
             lane = pending[np.minimum(np.arange(first, first + LANES), pending.size - 1)]
             _place(
-                cables, poses, exit_points, attachments, load, load_point, positions, rotations, lane
+                cables,
+                poses,
+                exit_points,
+                attachments,
+                load,
+                load_point,
+                positions,
+                rotations,
+                lane,
             )
             _solve_block(
                 cables, A, poses, kappa, weights, strength, inverse_weight,

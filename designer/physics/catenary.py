@@ -78,15 +78,13 @@ def end_position_m(
 
     Riehl et al., ICRA 2010, eqs. (7) and (8).
     """
-    return position_m(
-        length_m, length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m
-    )
+    return position_m(length_m, length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
 
 
 def end_tensions_N(
     length_m: ArrayLike, force_x_N: ArrayLike, force_z_N: ArrayLike, weight_N_per_m: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the tension at the exit point, eq. (10) of the paper, and at the platform (...) [N]."""
+    """Return the tension at the exit point, eq. (10), and at the platform (...) [N]."""
     length, F_x, F_z, w = _floats(length_m, force_x_N, force_z_N, weight_N_per_m)
     return np.hypot(F_x, F_z - w * length), np.hypot(F_x, F_z)
 
@@ -118,19 +116,35 @@ def length_and_force_z(
     density, X, D, EA, w = _floats(
         force_density_N_per_m, horizontal_distance_m, drop_m, axial_stiffness_N, weight_N_per_m
     )
-    p = np.where(density > 0.0, density / w, np.nan)
     kappa = w / EA
-    length = np.hypot(X, D)
-    for _ in range(200):  # contracts by about the strain at each turn
-        theta = np.clip(0.5 * (1.0 / p - kappa * length), 0.0, _LARGEST_THETA)
-        y = _mean_tension(length, theta, kappa)
-        g = 1.0 - kappa * length * p
-        new = np.sqrt((D / (1.0 + kappa * y)) ** 2 + (X * g) ** 2 * (1.0 + theta**2 * _sag(theta)))
-        change = np.abs(new - length) / new
-        length = new
-        if np.nanmax(change, initial=0.0) < 4e-16:
-            break
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        p = np.where(density > 0.0, density / w, np.nan)
+        length = _length_from_pull(p, X, D, kappa)
+        y = _mean_tension(length, 0.5 * (1.0 / p - kappa * length))
     return length, _force_z(length, y, D, kappa, w)
+
+
+def _length_from_pull(p: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatArray) -> FloatArray:
+    """Return the root l of the closure for a given pull p; it lies below 1/(κ p), where θ = 0."""
+    p, X, D, kappa = np.broadcast_arrays(p, X, D, kappa)
+    low, high = np.zeros(p.shape), 1.0 / (kappa * p)
+    theta = np.minimum(0.5 / p, _LARGEST_THETA)
+    straight = np.hypot(D, X * np.sinh(theta) / theta)
+    length = straight / (1.0 + kappa * p * straight)
+    for _ in range(200):
+        theta = np.minimum(0.5 * (1.0 / p - kappa * length), _LARGEST_THETA)
+        f, slope = _closure(theta, length, X, D, kappa)
+        # The same closure, but now its slope in l, with θ going along.
+        fall = -0.5 * kappa * slope + _closure_slope_in_length(theta, length, X, D, kappa)
+        low, high = np.where(f > 0.0, length, low), np.where(f > 0.0, high, length)
+        newton = length - f / fall
+        inside = (newton >= low) & (newton <= high)
+        new = np.where(inside, newton, 0.5 * (low + np.minimum(high, 4.0 * length)))
+        done = ~(np.abs(new - length) > 4e-16 * length)
+        length = new
+        if np.all(done):
+            break
+    return length
 
 
 def forces_from_length(
@@ -154,9 +168,10 @@ def forces_from_length(
         *_floats(length_m, horizontal_distance_m, drop_m, axial_stiffness_N, weight_N_per_m)
     )
     kappa = w / EA
-    theta = _theta_from_length(length, X, D, kappa)
+    with np.errstate(over="ignore"):  # far from the root the closure grows like exp(2 θ)
+        theta = _theta_from_length(length, X, D, kappa)
     p = 1.0 / (2.0 * theta + kappa * length)
-    y = _mean_tension(length, theta, kappa)
+    y = _mean_tension(length, theta)
     return np.asarray(w * p * X), _force_z(length, y, D, kappa, w)
 
 
@@ -165,7 +180,7 @@ def _theta_from_length(
 ) -> FloatArray:
     """Return the root θ of the closure, infinity for a folded vertical cable, NaN for none."""
     low = np.full(length.shape, np.log(1e-9))
-    low = np.minimum(low, np.log(np.maximum(kappa * length, 1e-300)) - 20.0)
+    low = np.minimum(low, np.log(np.maximum(kappa * length, 1e-30)) - 20.0)
     high = np.full(length.shape, np.log(_LARGEST_THETA))
     u = np.clip(0.5 * np.log(np.maximum(6.0 * (length / np.hypot(X, D) - 1.0), 1e-8)), low, high)
     reachable = _closure(np.exp(low), length, X, D, kappa)[0] < 0.0
@@ -173,7 +188,7 @@ def _theta_from_length(
     for _ in range(200):
         f, slope = _closure(np.exp(u), length, X, D, kappa)
         low, high = np.where(f < 0.0, u, low), np.where(f < 0.0, high, u)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             # Newton on the logarithm of the closure, which is nearly straight at both ends.
             newton = u - np.log1p(f) * (1.0 + f) / (slope * np.exp(u))
         inside = (newton >= low) & (newton <= high)
@@ -209,6 +224,21 @@ def _closure(
     return excess / length**2, slope / length**2
 
 
+def _closure_slope_in_length(
+    theta: FloatArray, length: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatArray
+) -> FloatArray:
+    """Return the slope of D² q² + X² g² S - l² in l at fixed θ, over l², where g = 1 - κ l p.
+
+    At fixed θ the pull is 1/(2θ + κ l), as in `_closure`.
+    """
+    width = 2.0 * theta + kappa * length
+    coth = 1.0 / np.tanh(theta)
+    q = 1.0 / (1.0 + 0.5 * kappa * length * coth)
+    arc = (2.0 * X * np.sinh(theta) / width) ** 2
+    slope = -((D * q) ** 2) * q * kappa * coth - 2.0 * arc * kappa / width - 2.0 * length
+    return slope / length**2
+
+
 def _sag(theta: FloatArray) -> FloatArray:
     """Return ((sinh θ / θ)² - 1) / θ²; a series where the difference would cancel."""
     t = theta * theta
@@ -217,7 +247,7 @@ def _sag(theta: FloatArray) -> FloatArray:
     return np.where(theta < 0.1, series, ((np.sinh(safe) / safe) ** 2 - 1.0) / safe**2)
 
 
-def _mean_tension(length: FloatArray, theta: FloatArray, kappa: FloatArray) -> FloatArray:
+def _mean_tension(length: FloatArray, theta: FloatArray) -> FloatArray:
     """Return the mean of the end tensions over the weight per length, (l/2) coth θ [m]."""
     with np.errstate(divide="ignore"):
         return np.asarray(0.5 * length / np.tanh(theta))

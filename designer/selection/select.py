@@ -105,4 +105,3 @@ def _reason(outcomes: Sequence[GradeOutcome]) -> str:
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]
     nearest = min(thin, key=lambda o: o.continuous_diameter_m / o.grade.thickest.diameter_m)
     return f"every grade ends too thin; the nearest is {nearest.grade.id}, which {nearest.sentence}"
-

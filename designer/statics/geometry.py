@@ -73,7 +73,5 @@ def weight_wrench_N(robot: Robot, poses: Poses) -> FloatArray:
     if robot.is_point_mass:
         return np.broadcast_to(force, poses.position_m.shape)
     arm = np.einsum("...ij,j->...i", poses.rotation, robot.platform.centre_of_mass_m)
-    wrench = np.concatenate(
-        [np.broadcast_to(force, arm.shape), np.cross(arm, force)], axis=-1
-    )
+    wrench = np.concatenate([np.broadcast_to(force, arm.shape), np.cross(arm, force)], axis=-1)
     return np.broadcast_to(wrench, (*poses.shape, 6))

@@ -228,4 +228,3 @@ def _solve_or_nan(matrices: FloatArray, right: FloatArray) -> FloatArray:
     safe = np.where(singular[..., None, None], np.eye(matrices.shape[-1]), matrices)
     solution = np.linalg.solve(safe, right[..., None])[..., 0]
     return np.where(singular[..., None], np.nan, solution)
-

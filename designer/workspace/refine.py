@@ -54,9 +54,7 @@ def refine(region: Region, demand: Demand, starts_m: FloatArray) -> Worst:
     while radius.max() > _TOLERANCE and not np.isposinf(values).any():
         # A new direction of the cloud each turn: on a curved boundary a fixed one would stall.
         sign = np.where(np.arange(3) == int(-np.log2(radius.min())) % 3, -1.0, 1.0)
-        trials = region.nearest(
-            at[:, None] + radius[:, None, None] * size * sign * cloud[None]
-        )
+        trials = region.nearest(at[:, None] + radius[:, None, None] * size * sign * cloud[None])
         asked = demand(trials.reshape(-1, 3)).reshape(len(at), -1)
         best = np.argmax(asked, axis=1)
         rows = np.arange(len(at))

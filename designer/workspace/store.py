@@ -97,8 +97,12 @@ class SweepFile:
         self._file.close()
 
     def _create(self, name: str, dtype: str, dimensions: tuple[str, ...]) -> None:
-        chunks = tuple(2**15 if d == "sample" else self._file.dimensions[d].size for d in dimensions)
-        self._file.createVariable(name, dtype, dimensions, chunksizes=chunks, zlib=True, complevel=1)
+        chunks = tuple(
+            2**15 if d == "sample" else self._file.dimensions[d].size for d in dimensions
+        )
+        self._file.createVariable(
+            name, dtype, dimensions, chunksizes=chunks, zlib=True, complevel=1
+        )
 
 
 def open_sweep(path: Path) -> xr.Dataset:

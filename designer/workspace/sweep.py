@@ -89,9 +89,7 @@ class _Gathered:
         self.excluded += int(left_out.sum())
         counts = statics.is_solved & ~left_out
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
-        massless = np.where(
-            np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N
-        )
+        massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
         self._keep("sagging", positions, diameter)
         self._keep("massless", positions, massless)
         self._keep_worst(positions, diameter, statics.largest_tension_N)
@@ -111,9 +109,7 @@ class _Gathered:
         at = [int(np.argmin(np.abs(positions - start).sum(axis=1))) for start in starts]
         self.best[name] = (positions[at], demand[at])
 
-    def _keep_worst(
-        self, positions: FloatArray, diameter: FloatArray, tension: FloatArray
-    ) -> None:
+    def _keep_worst(self, positions: FloatArray, diameter: FloatArray, tension: FloatArray) -> None:
         at = int(np.argmax(diameter))
         if not np.isneginf(diameter[at]) and (
             self.sampled is None or diameter[at] > self.sampled.diameter_m
@@ -153,9 +149,7 @@ def _worst_massless(
     if len(starts) == 0:
         return None
     worst = refine(workspace.region, massless_demand(robot), starts)
-    return Extreme(
-        worst.position_m, material.diameter_for_tension_m(worst.demand), worst.demand
-    )
+    return Extreme(worst.position_m, material.diameter_for_tension_m(worst.demand), worst.demand)
 
 
 def _extreme(position_m: FloatArray, diameter_m: float, material: Material) -> Extreme:

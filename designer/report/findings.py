@@ -1,0 +1,186 @@
+"""What a reviewer asks next: a few small extra solves about the answer.
+
+What would ignoring sag have led to? How much does the doubt about the rope's modulus matter? How
+near is the chosen rope to the boundary of what any section can hold? What changes if poses with a
+cable below the platform count, or not? How wide is the strip that cannot be served?
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.analysis import Analysis
+from designer.arrays import FloatArray
+from designer.catalogue.grade import Size
+from designer.region import Prism
+from designer.robot import Poses, Robot
+from designer.selection.result import Candidate, GradeOutcome
+from designer.selection.verify import Verification, verify
+from designer.sizing.limit import limit_ratio
+from designer.statics.inverse import solve_sagging
+from designer.statics.verdict import Verdict
+from designer.study import HangsBelow
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.store import open_sweep
+from designer.workspace.sweep import map_workspace
+
+_MOST_SAMPLES = 20_000
+_CHUNK = 2**18
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MasslessChoice:
+    """The size of the chosen grade that a design without sag would have picked.
+
+    Parameters
+    ----------
+    size : Size
+        The thinnest size whose breaking load covers the massless tension with the safety factor.
+    verification : Verification
+        What that size really meets in the workspace.
+    """
+
+    size: Size
+    verification: Verification
+
+    @property
+    def safety_factor(self) -> float:
+        """Breaking load over the largest tension that the size really meets."""
+        return self.size.minimum_breaking_load_N / self.verification.max_tension_N
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OtherPolicy:
+    """The workspace with the opposite setting of ``hangs_below``.
+
+    Parameters
+    ----------
+    hangs_below : str
+        The opposite setting.
+    map : WorkspaceMap
+        What it leads to, from at most 20 000 samples and the search between them.
+    """
+
+    hangs_below: HangsBelow
+    map: WorkspaceMap
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Findings:
+    """Answers to the questions of this module; None where a question does not arise.
+
+    Parameters
+    ----------
+    chosen_outcome : GradeOutcome or None
+        The grade of the chosen product.
+    chosen_limit_ratio : float or None
+        Stress at infinite section over allowable stress, in that grade's family, at the worst
+        pose of the chosen product.
+    massless_choice : MasslessChoice or None
+        None also where the grade has no size thick enough for the massless tension.
+    modulus_utilisation : tuple of float or None
+        Utilisation at the worst pose with the lowest and the highest modulus that is possible.
+    other_policy : OtherPolicy or None
+        None where no cable hangs below the platform.
+    unserved_depth_m : float or None
+        Largest distance of an unserved sample from the sides of the region [m].
+    """
+
+    chosen_outcome: GradeOutcome | None = None
+    chosen_limit_ratio: float | None = None
+    massless_choice: MasslessChoice | None = None
+    modulus_utilisation: tuple[float, float] | None = None
+    other_policy: OtherPolicy | None = None
+    unserved_depth_m: float | None = None
+
+
+def find(analysis: Analysis) -> Findings:
+    """Answer the questions of this module."""
+    chosen = analysis.selection.chosen if analysis.selection else None
+    findings = Findings(
+        other_policy=_other_policy(analysis), unserved_depth_m=_unserved_depth_m(analysis)
+    )
+    if chosen is None or analysis.selection is None:
+        return findings
+    outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
+    robot = analysis.study.robot
+    worst = Poses.at(chosen.verification.worst_position_m)
+    return replace(
+        findings,
+        chosen_outcome=outcome,
+        chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
+        massless_choice=_massless_choice(analysis, outcome),
+        modulus_utilisation=modulus_utilisation(robot, chosen),
+    )
+
+
+def modulus_utilisation(robot: Robot, candidate: Candidate) -> tuple[float, float]:
+    """Return the utilisation at the worst pose with the lowest and the highest modulus."""
+    cable, doubt = candidate.cable, candidate.grade.modulus.uncertainty
+    worst = Poses.at(candidate.verification.worst_position_m)
+
+    def at(scale: float) -> float:
+        other = replace(cable, axial_stiffness_N=scale * cable.axial_stiffness_N)
+        tension = float(solve_sagging(robot, worst, other).largest_tension_N)
+        return tension / cable.allowable_tension_N
+
+    return at(1.0 - doubt), at(1.0 + doubt)
+
+
+def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
+    study, workspace = analysis.study, analysis.workspace
+    assert study.workspace is not None
+    assert study.selection is not None
+    if workspace is None or workspace.massless is None:
+        return None
+    factor = study.selection.safety_factor
+    needed_N = factor * workspace.massless.max_tension_N
+    enough = [s for s in outcome.grade.sizes if s.minimum_breaking_load_N >= needed_N]
+    if not enough:
+        return None
+    tried = {c.size: c.verification for c in outcome.candidates}
+    verification = tried.get(enough[0]) or verify(
+        study.robot, study.workspace, outcome.grade.cable(enough[0], factor)
+    )
+    return MasslessChoice(enough[0], verification)
+
+
+def _other_policy(analysis: Analysis) -> OtherPolicy | None:
+    study, workspace = analysis.study, analysis.workspace
+    if study.workspace is None or workspace is None or workspace.census.hangs_below == 0:
+        return None
+    other: HangsBelow = "exclude" if study.workspace.hangs_below == "include" else "include"
+    samples = min(study.workspace.samples, _MOST_SAMPLES)
+    changed = replace(study.workspace, hangs_below=other, samples=samples)
+    return OtherPolicy(other, map_workspace(study.robot, changed, study.material))
+
+
+def _unserved_depth_m(analysis: Analysis) -> float | None:
+    study, workspace = analysis.study, analysis.workspace
+    if study.workspace is None or workspace is None or analysis.sweep_file is None:
+        return None
+    region = study.workspace.region
+    if workspace.is_feasible or not isinstance(region, Prism):
+        return None
+    served = {Verdict.SOLVED}
+    if study.workspace.hangs_below == "exclude":
+        served.add(Verdict.NO_FINITE_CABLE)
+    deepest = None
+    with open_sweep(analysis.sweep_file) as sweep:
+        for start in range(0, sweep.sizes["sample"], _CHUNK):
+            part = sweep.isel(sample=slice(start, start + _CHUNK))
+            unserved = ~np.isin(part["verdict"].values, [int(v) for v in served])
+            if unserved.any():
+                depth = distance_to_sides_m(region, part["position"].values[unserved]).max()
+                deepest = max(float(depth), deepest or 0.0)
+    return deepest
+
+
+def distance_to_sides_m(region: Prism, positions_m: FloatArray) -> FloatArray:
+    """Return the horizontal distance of positions (n, 3) inside a prism to its nearest side [m]."""
+    edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
+    to_point = positions_m[:, None, :2] - region.polygon_m
+    area = edge[:, 0] * to_point[..., 1] - edge[:, 1] * to_point[..., 0]
+    return np.asarray((area / np.linalg.norm(edge, axis=1)).min(axis=1))

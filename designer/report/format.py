@@ -1,0 +1,143 @@
+"""Numbers as a reader of a report wants them: a unit, few digits, thin spaces for thousands.
+
+A no-break space stands before each unit and a narrow one between thousands, so that no line of
+the report breaks inside a figure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+MISSING = "–"
+"""Stands for a number that does not exist."""
+
+_THIN = "\u202f"
+_BEFORE_UNIT = "\u00a0"
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POSITION_DIGITS = 2
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number with ``digits`` significant digits, and all digits before the point."""
+    if math.isnan(value):
+        return MISSING
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0.0:
+        return "0"
+    leading = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    return fixed(value, max(digits - 1 - leading, 0))
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with ``decimals`` digits after the point."""
+    text = f"{round(value, decimals) + 0.0:,.{decimals}f}"  # 0.0 makes a plain zero of −0
+    return text.replace(",", _THIN).replace("-", "−")
+
+
+def count(value: int) -> str:
+    """Return a whole number, such as ``20 000``."""
+    return fixed(value, 0)
+
+
+def metres(value: float) -> str:
+    """Return a length such as ``324.22 m``."""
+    return _with_unit(fixed(value, 2) if math.isfinite(value) else number(value), "m")
+
+
+def millimetres(value_m: float) -> str:
+    """Return a small length such as ``51.2 mm``; the argument is in metres."""
+    return _with_unit(number(1e3 * value_m, 3), "mm")
+
+
+def newtons(value: float) -> str:
+    """Return a force in N, kN or MN, such as ``371.0 kN``."""
+    return _scaled(value, (("N", 1.0, 1e3), ("kN", 1e3, 1e7), ("MN", 1e6, math.inf)))
+
+
+def pascals(value: float) -> str:
+    """Return a stress in MPa or GPa, such as ``180.0 MPa``."""
+    return _scaled(value, (("MPa", 1e6, 1e10), ("GPa", 1e9, math.inf)))
+
+
+def kilograms(value: float) -> str:
+    """Return a mass such as ``3 217 kg``."""
+    return _with_unit(number(value), "kg")
+
+
+def kilograms_per_metre(value: float) -> str:
+    """Return a mass per length such as ``1.662 kg/m``."""
+    return _with_unit(number(value), "kg/m")
+
+
+def kilograms_per_cubic_metre(value: float) -> str:
+    """Return a density such as ``7 800 kg/m³``."""
+    return _with_unit(number(value), "kg/m³")
+
+
+def percent(fraction: float, digits: int = 3) -> str:
+    """Return a share such as ``4.05 %``."""
+    return _with_unit(number(100.0 * fraction, digits), "%")
+
+
+def share(part: int, whole: int) -> str:
+    """Return a share such as ``4.05 %``; never ``100 %`` for what is not all."""
+    nearly_all = part < whole and round(part / whole, 3) == 1.0
+    return f"over{_BEFORE_UNIT}{percent(0.999)}" if nearly_all else percent(part / whole)
+
+
+def signed_percent(fraction: float) -> str:
+    """Return a change such as ``+12.3 %``."""
+    return ("+" if fraction > 0 else "") + percent(fraction)
+
+
+def utilisation(fraction: float) -> str:
+    """Return tension over what is allowed; never ``100.0 %`` for what exceeds it."""
+    if math.isinf(fraction):
+        return "cannot hold"
+    if fraction > 1.0 and round(100.0 * fraction, 1) == 100.0:
+        return f"over{_BEFORE_UNIT}100{_BEFORE_UNIT}%"
+    return _with_unit(fixed(100.0 * fraction, 1) if math.isfinite(fraction) else MISSING, "%")
+
+
+def factor(value: float) -> str:
+    """Return a plain ratio such as ``3.06``."""
+    return number(value, 3)
+
+
+def position(xyz_m: Iterable[float]) -> str:
+    """Return a position such as ``(256.52, 10.35, −40.00) m``."""
+    inside = ", ".join(fixed(float(x), _POSITION_DIGITS) for x in xyz_m)
+    return _with_unit(f"({inside})", "m")
+
+
+def power_of_ten(value: float, unit: str = "") -> str:
+    """Return a tiny or huge number such as ``3.1 × 10⁻¹² m``."""
+    if not math.isfinite(value) or value == 0.0:
+        return _with_unit(number(value), unit)
+    digits, exponent = f"{value:.1e}".split("e")
+    power = str(int(exponent)).translate(_SUPERSCRIPTS)
+    return _with_unit(f"{digits.replace('-', '−')}{_THIN}×{_THIN}10{power}", unit)
+
+
+def plural(amount: int, noun: str) -> str:
+    """Return a count with its noun, such as ``1 grade`` or ``19 grades``."""
+    return f"{count(amount)}{_BEFORE_UNIT}{noun}{'' if amount == 1 else 's'}"
+
+
+def listing(words: Iterable[str], last: str = "and") -> str:
+    """Return words as ``a, b and c``."""
+    *head, tail = list(words)
+    return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+def _scaled(value: float, units: tuple[tuple[str, float, float], ...]) -> str:
+    if not math.isfinite(value):
+        return number(value)
+    unit, scale = next((name, scale) for name, scale, end in units if abs(value) < end)
+    return _with_unit(number(value / scale), unit)
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return text if not unit or text == MISSING else f"{text}{_BEFORE_UNIT}{unit}"

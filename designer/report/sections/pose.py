@@ -1,0 +1,190 @@
+"""The configured pose alone: massless, the loop turn by turn, the optimum, every cable."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.analysis import Analysis, PoseAnalysis
+from designer.report import format as fmt
+from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.sizing.loop import LoopSizing
+from designer.statics.verdict import Verdict
+
+_MOST_TURNS = 16
+_LAST_TURNS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class PoseSection:
+    """The configured pose.
+
+    Parameters
+    ----------
+    verdict : Statement
+        Whether it can be held.
+    facts : tuple of Fact
+        Position, margins and residuals.
+    methods : Table or None
+        The diameter by each way of sizing; None if no way gives one.
+    cables : Table or None
+        Every cable at the optimum; None if the pose is not solved.
+    turns : Table or None
+        Iterates of the loop; None if it could not start.
+    loop_chart, scene : Picture or None
+        The iterates over the turns, and the robot in this pose.
+    """
+
+    verdict: Statement
+    facts: tuple[Fact, ...]
+    methods: Table | None
+    cables: Table | None
+    turns: Table | None
+    loop_chart: Picture | None
+    scene: Picture | None
+
+
+def pose_section(
+    analysis: Analysis, loop_chart: Picture | None, scene: Picture | None
+) -> PoseSection | None:
+    """Return the section on the configured pose; None if the study has none."""
+    pose = analysis.pose
+    if pose is None:
+        return None
+    verdict = Verdict(int(pose.sizing.statics.verdict))
+    solved = verdict is Verdict.SOLVED
+    return PoseSection(
+        verdict=_statement(pose, verdict),
+        facts=_facts(pose),
+        methods=_methods(pose),
+        cables=_cables(pose) if solved else None,
+        turns=_turns(pose.loop) if pose.loop.iterates else None,
+        loop_chart=loop_chart,
+        scene=scene,
+    )
+
+
+def _statement(pose: PoseAnalysis, verdict: Verdict) -> Statement:
+    if verdict is not Verdict.SOLVED:
+        return Statement("This pose cannot be held", verdict.sentence, "bad")
+    text = (
+        f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} holds this pose. "
+        f"Its largest tension is {fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
+    )
+    if pose.sizing.statics.hangs_below:
+        text += " At least one cable hangs below the platform."
+    return Statement("This pose can be held", text, "good")
+
+
+def _facts(pose: PoseAnalysis) -> tuple[Fact, ...]:
+    statics = pose.sizing.statics
+    facts = [Fact("Position", fmt.position(statics.poses.position_m))]
+    if not statics.robot.is_point_mass:
+        facts.append(Fact("Rotation vector", _rotation(statics.poses.rotation)))
+    facts.append(
+        Fact(
+            "Limit ratio",
+            fmt.percent(pose.limit_ratio),
+            "stress of a cable of infinite section over the allowable stress; "
+            "at 100 % no finite cable is left",
+        )
+    )
+    if statics.is_solved:
+        closure = float(np.max(statics.closure_residual_m()))
+        balance = float(np.max(np.abs(statics.equilibrium_residual_N())))
+        scale = f"weight of the platform {fmt.newtons(statics.robot.weight_N)}"
+        facts.append(Fact("Largest closure residual", fmt.power_of_ten(closure, "m")))
+        facts.append(Fact("Largest balance residual", fmt.power_of_ten(balance, "N"), scale))
+    return tuple(facts)
+
+
+def _rotation(matrix: np.ndarray) -> str:
+    from scipy.spatial.transform import Rotation
+
+    degrees = np.degrees(Rotation.from_matrix(matrix).as_rotvec())
+    return f"({', '.join(fmt.fixed(float(x), 2) for x in degrees)}) deg"
+
+
+def _methods(pose: PoseAnalysis) -> Table | None:
+    massless, sizing, loop = pose.massless, pose.sizing, pose.loop
+    rows = []
+    if np.isfinite(massless.largest_tension_N):
+        rows.append(
+            Row(
+                (
+                    "Straight weightless cables",
+                    fmt.millimetres(float(sizing.massless_diameter_m)),
+                    fmt.newtons(float(massless.largest_tension_N)),
+                    "sag ignored",
+                )
+            )
+        )
+    if loop.iterates:
+        last = loop.iterates[-1]
+        turns = fmt.plural(len(loop.iterates) - 1, "turn")
+        outcome = f"settled after {turns}" if loop.has_converged else f"not settled after {turns}"
+        found = (fmt.millimetres(last.diameter_m), fmt.newtons(last.max_tension_N))
+        rows.append(Row(("Loop of section IV-B", *found, outcome)))
+    if sizing.statics.is_solved:
+        found = (
+            fmt.millimetres(float(sizing.diameter_m)),
+            fmt.newtons(float(sizing.statics.largest_tension_N)),
+        )
+        rows.append(Row(("Optimum of section IV-C", *found, "Newton's method"), "good"))
+    columns = (
+        Column("Way", is_number=False),
+        Column("Diameter"),
+        Column("Largest tension"),
+        Column("Remark", is_number=False),
+    )
+    return Table.of("The diameter of this pose by each way.", columns, *rows) if rows else None
+
+
+def _cables(pose: PoseAnalysis) -> Table:
+    statics = pose.sizing.statics
+    columns = (
+        Column("Cable"),
+        Column("Chord", "m"),
+        Column("Unstrained length", "m"),
+        Column("F_x", "kN"),
+        Column("F_z", "kN"),
+        Column("Tension at platform", "kN"),
+        Column("Tension at exit", "kN"),
+        Column("Weightless", "kN"),
+    )
+    metres = zip(statics.geometry().chord_m, statics.length_m, strict=True)
+    forces = zip(
+        statics.force_x_N,
+        statics.force_z_N,
+        statics.platform_tension_N,
+        statics.exit_tension_N,
+        pose.massless.tension_N,
+        strict=True,
+    )
+    largest = float(statics.largest_tension_N)
+    rows = []
+    for index, (lengths, loads) in enumerate(zip(metres, forces, strict=True)):
+        cells = [fmt.fixed(float(x), 3) for x in lengths]
+        cells += [fmt.fixed(float(x) / 1e3, 3) for x in loads]
+        is_worst = max(loads[2:4]) >= largest * (1.0 - 1e-9)
+        rows.append(Row((str(index + 1), *cells), "good" if is_worst else ""))
+    caption = (
+        "Every cable at the optimum; the most loaded is marked. F_x and F_z act on the cable at "
+        "the platform, F_x away from the exit point and F_z upward."
+    )
+    return Table.of(caption, columns, *rows)
+
+
+def _turns(loop: LoopSizing) -> Table:
+    numbered = list(enumerate(loop.iterates))
+    if len(numbered) > _MOST_TURNS:
+        numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
+    rows: list[Row] = []
+    for turn, iterate in numbered:
+        if rows and turn > int(rows[-1].cells[0]) + 1:
+            rows.append(Row(("…", "…", "…"), "muted"))
+        tension, diameter = iterate.max_tension_N / 1e3, 1e3 * iterate.diameter_m
+        rows.append(Row((str(turn), fmt.fixed(tension, 3), fmt.fixed(diameter, 3))))
+    columns = (Column("Turn"), Column("Largest tension", "kN"), Column("Diameter", "mm"))
+    return Table.of("Turns of the loop; turn 0 is the massless start.", columns, *rows)

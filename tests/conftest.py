@@ -1,0 +1,37 @@
+"""The paper's robot and cables, for all tests."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from designer.arrays import frozen_array
+from designer.cable import Material
+from designer.robot import Platform, Robot
+
+
+@pytest.fixture(scope="session")
+def fast_robot() -> Robot:
+    """Riehl et al., ICRA 2010, Table I, with 4000 kg."""
+    anchors = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+    return Robot(frozen_array(anchors), Platform(4000.0))
+
+
+@pytest.fixture(scope="session")
+def steel() -> Material:
+    """The paper's idealised cable."""
+    return Material(7800.0, 200e9, 180e6)
+
+
+@pytest.fixture(scope="session")
+def six_cable_robot() -> Robot:
+    """Three masts with two cables each, to a triangular platform turned by 60 degrees."""
+
+    def ring(radius: float, degrees: list[float]) -> np.ndarray:
+        angle = np.radians(degrees)
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], axis=1)
+
+    exits = ring(150.0, [0, 0, 120, 120, 240, 240])
+    attachments = ring(5.0, [60, -60, 180, 60, 300, 180])
+    centre = frozen_array([0.1, -0.2, -1.0])
+    return Robot(frozen_array(exits), Platform(4000.0, frozen_array(attachments), centre))

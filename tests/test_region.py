@@ -1,0 +1,68 @@
+"""Regions: insets, containment, nearest points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from designer.arrays import frozen_array
+from designer.region import PointList, Prism
+
+TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+
+
+def test_inset_moves_every_edge_inward() -> None:
+    prism = Prism.over(TRIANGLE, 10.35, (-200.0, -40.0))
+    edges = np.roll(TRIANGLE, -1, axis=0)[:, :2] - np.array(TRIANGLE)[:, :2]
+    for start, edge in zip(np.array(TRIANGLE)[:, :2], edges, strict=True):
+        offset = prism.polygon_m - start
+        distance = (edge[0] * offset[:, 1] - edge[1] * offset[:, 0]) / np.linalg.norm(edge)
+        assert np.sort(distance)[:2] == pytest.approx(10.35)
+
+
+def test_area_of_the_triangle() -> None:
+    prism = Prism.over(TRIANGLE, 0.0, (-200.0, -40.0))
+    assert prism.area_m2 == pytest.approx(0.5 * 500 * 433.01)
+    assert prism.volume_m3 == pytest.approx(0.5 * 500 * 433.01 * 160)
+
+
+def test_box_is_a_prism() -> None:
+    box = Prism.box((0, 2), (1, 4), (-1, 1))
+    assert box.volume_m3 == pytest.approx(12.0)
+    assert list(box.contains(np.array([[1, 2, 0], [3, 2, 0], [1, 2, 2], [0, 1, -1]]))) == [
+        True,
+        False,
+        False,
+        True,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("points", "inset", "message"),
+    [([[0, 0], [1, 1], [2, 2]], 0.0, "one line"), (TRIANGLE, 200.0, "nothing is left")],
+)
+def test_impossible_prisms(points, inset, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        Prism.over(points, inset, (0.0, 1.0))
+
+
+def test_nearest_is_inside_and_no_inside_point_is_nearer() -> None:
+    prism = Prism.over(TRIANGLE, 20.0, (-200.0, -40.0))
+    rng = np.random.default_rng(0)
+    points = rng.uniform([-200, -200, -400], [700, 600, 100], (200, 3))
+    nearest = prism.nearest(points)
+    grown = Prism(prism.polygon_m, (prism.z_m[0] - 1e-9, prism.z_m[1] + 1e-9))
+    assert grown.contains(nearest).all()
+    inside = prism.contains(points)
+    assert np.array_equal(nearest[inside], points[inside])
+    low, high = prism.bounds_m
+    others = rng.uniform(low, high, (4000, 3))
+    others = others[prism.contains(others)]
+    distance = np.linalg.norm(points - nearest, axis=1)
+    rivals = np.linalg.norm(points[:, None] - others, axis=2).min(axis=1)
+    assert np.all(distance <= rivals + 1e-9)
+
+
+def test_point_list_bounds() -> None:
+    points = PointList(frozen_array([[0, 1, 2], [3, -1, 5]]))
+    assert points.bounds_m.tolist() == [[0, -1, 2], [3, 1, 5]]

@@ -1,0 +1,189 @@
+"""Samples, sweep, refinement and store, on the paper's robot and on made-up demands."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from designer.arrays import frozen_array
+from designer.region import PointList, Prism
+from designer.robot import Poses
+from designer.sizing.newton import size_poses
+from designer.study import Workspace
+from designer.workspace.refine import refine, spread_starts
+from designer.workspace.samples import CHUNK, positions_m, sample_count
+from designer.workspace.store import open_sweep
+from designer.workspace.sweep import map_workspace
+
+TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+
+
+def paper_workspace(inset: float, **options) -> Workspace:
+    return Workspace(Prism.over(TRIANGLE, inset, (-200.0, -40.0)), **options)
+
+
+def all_positions(workspace: Workspace) -> np.ndarray:
+    return np.concatenate(list(positions_m(workspace)))
+
+
+def test_low_discrepancy_samples_are_inside_repeatable_and_even() -> None:
+    workspace = paper_workspace(10.35, samples=5000, seed=3)
+    positions = all_positions(workspace)
+    assert positions.shape == (5000, 3)
+    assert workspace.region.contains(positions).all()
+    assert np.array_equal(positions, all_positions(workspace))
+    assert not np.array_equal(positions, all_positions(paper_workspace(10.35, samples=5000, seed=4)))
+    assert np.mean(positions[:, 2] < -120) == pytest.approx(0.5, abs=0.01)
+
+
+def test_grid_reaches_the_boundary() -> None:
+    positions = all_positions(paper_workspace(0.0, samples=5000, sampling="grid"))
+    assert 3000 < len(positions) < 9000
+    assert positions[:, 2].min() == -200
+    assert positions[:, 2].max() == -40
+    assert positions[:, 1].min() == pytest.approx(0.0)
+
+
+def test_samples_come_in_chunks() -> None:
+    workspace = paper_workspace(10.35, samples=CHUNK + 10)
+    sizes = [len(chunk) for chunk in positions_m(workspace)]
+    assert sum(sizes) == CHUNK + 10
+    assert max(sizes) <= CHUNK
+    assert sample_count(workspace) == CHUNK + 10
+
+
+def test_point_list_is_taken_whole() -> None:
+    points = frozen_array([[0.0, 0, 0], [1, 2, 3]])
+    assert np.array_equal(all_positions(Workspace(PointList(points), samples=7)), points)
+
+
+def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
+    box = Prism.box((0, 10), (0, 10), (0, 10))
+    peak = np.array([3.21, 7.654, 5.5])
+
+    def inside(x):
+        return -np.linalg.norm(x - peak, axis=1)
+
+    def kinked(x):
+        return np.minimum(x[:, 0] + 2 * x[:, 1], 12 - x[:, 0]) - 0.1 * (x[:, 2] - 4) ** 2
+
+    start = np.array([[1.0, 1, 1], [9, 9, 9]])
+    assert refine(box, inside, start).position_m == pytest.approx(peak, abs=1e-6)
+    worst = refine(box, kinked, start)
+    assert worst.demand == pytest.approx(12.0, abs=1e-6)
+    assert worst.position_m[2] == pytest.approx(4.0, abs=1e-3)
+
+
+def test_refine_stops_where_nothing_is_enough() -> None:
+    box = Prism.box((0, 1), (0, 1), (0, 1))
+
+    def demand(x):
+        return np.where(x[:, 0] > 0.999, np.inf, x[:, 0])
+
+    worst = refine(box, demand, np.array([[0.5, 0.5, 0.5]]))
+    assert np.isposinf(worst.demand)
+    assert worst.position_m[0] > 0.999
+
+
+def test_starts_are_apart() -> None:
+    box = Prism.box((0, 1), (0, 1), (0, 1))
+    rng = np.random.default_rng(0)
+    positions = rng.random((500, 3))
+    starts = spread_starts(box, positions, positions[:, 0], 5)
+    gaps = np.abs(starts[:, None] - starts).max(axis=2)[~np.eye(len(starts), dtype=bool)]
+    assert len(starts) == 5
+    assert gaps.min() > 0.1
+    assert spread_starts(box, positions, np.full(500, -np.inf), 5).shape == (0, 3)
+
+
+def test_the_papers_workspace(fast_robot, steel) -> None:
+    found = map_workspace(fast_robot, paper_workspace(10.35), steel)
+    assert found.is_feasible
+    assert found.sagging is not None
+    assert found.massless is not None
+    assert 1e3 * found.sagging.diameter_m == pytest.approx(51.230, abs=5e-4)
+    assert found.sagging.max_tension_N / 1e3 == pytest.approx(371.03, abs=0.01)
+    assert 1e3 * found.massless.diameter_m == pytest.approx(29.304, abs=5e-4)
+    assert found.massless.max_tension_N / 1e3 == pytest.approx(121.40, abs=0.005)
+    assert found.sampled is not None
+    assert found.sampled.diameter_m < found.sagging.diameter_m
+    # (243, 10.35, -40) and its five mirror images lie 7 m beside the middle of an inset edge.
+    centre = np.array([250.0, 433.01 / 3])
+    assert np.linalg.norm(found.sagging.position_m[:2] - centre) == pytest.approx(
+        np.linalg.norm(np.array([243.2, 10.35]) - centre), abs=0.1
+    )
+    assert found.sagging.position_m[2] == -40
+
+
+def test_the_worst_does_not_depend_on_the_samples(fast_robot, steel) -> None:
+    found = [
+        map_workspace(fast_robot, paper_workspace(10.35, samples=samples, seed=seed), steel)
+        for samples, seed in ((500, 0), (2000, 1), (5000, 2))
+    ]
+    sampled = [one.sampled.diameter_m for one in found]
+    refined = [one.sagging.diameter_m for one in found]
+    assert np.ptp(sampled) > 1e-4
+    assert refined == pytest.approx(np.full(3, refined[0]), rel=1e-7)
+
+
+def test_without_an_inset_it_says_where_no_cable_exists(fast_robot, steel) -> None:
+    found = map_workspace(fast_robot, paper_workspace(0.0), steel)
+    assert not found.is_feasible
+    assert found.sagging is None
+    assert found.census.fraction("no_finite_cable") == pytest.approx(0.041, abs=0.003)
+    assert found.infeasible_example_m is not None
+    example = size_poses(fast_robot, Poses.at(found.infeasible_example_m), steel)
+    assert not example.statics.is_solved
+
+
+def test_search_meets_the_infeasible_part_between_samples(fast_robot, steel) -> None:
+    """At 4.7 m every sample may be solved, yet a strip along the edges has no finite cable."""
+    found = map_workspace(fast_robot, paper_workspace(4.7, samples=2000), steel)
+    assert found.census.statuses["solved"] == 2000
+    assert not found.is_feasible
+    assert found.infeasible_example_m is not None
+
+
+def test_poses_with_hanging_cables_can_be_left_out(fast_robot, steel) -> None:
+    found = map_workspace(fast_robot, paper_workspace(0.0, hangs_below="exclude"), steel)
+    assert found.is_feasible
+    assert found.sagging is not None
+    assert found.census.excluded > found.census.statuses["no_finite_cable"] > 0
+    assert 1e3 * found.sagging.diameter_m == pytest.approx(40.4, abs=0.1)
+    worst = size_poses(fast_robot, Poses.at(found.sagging.position_m), steel)
+    assert not worst.statics.hangs_below
+
+
+def test_list_of_points(fast_robot, steel) -> None:
+    points = frozen_array([[250.0, 200, -50], [250, 40, -40]])
+    found = map_workspace(fast_robot, Workspace(PointList(points)), steel)
+    assert found.census.samples == 2
+    assert found.sagging is not None
+    assert 1e3 * found.sagging.diameter_m == pytest.approx(43.359, abs=5e-4)
+
+
+def test_positions_outside_the_hull_are_counted(fast_robot, steel) -> None:
+    box = Prism.box((-100, 600), (0, 400), (-100, -50))
+    found = map_workspace(fast_robot, Workspace(box, samples=1000), steel)
+    assert found.census.statuses["outside_hull"] > 300
+    assert not found.is_feasible
+
+
+def test_sweep_is_stored_with_units_and_read_back(fast_robot, steel, tmp_path) -> None:
+    file = tmp_path / "workspace.nc"
+    steps = []
+    workspace = paper_workspace(0.0, samples=CHUNK + 100)
+    found = map_workspace(
+        fast_robot, workspace, steel, file=file, attributes={"title": "a"}, progress=steps.append
+    )
+    with open_sweep(file) as sweep:
+        assert sweep.sizes == {"sample": CHUNK + 100, "axis": 3, "cable": 3}
+        assert sweep.attrs["title"] == "a"
+        assert all("units" in sweep[name].attrs for name in ("diameter", "length", "exit_tension"))
+        unsolved = sweep["verdict"].to_numpy() != 0
+        assert unsolved.sum() == found.census.samples - found.census.statuses["solved"]
+        assert np.isnan(sweep["diameter"].to_numpy()[unsolved]).all()
+        assert not np.isnan(sweep["diameter"].to_numpy()[~unsolved]).any()
+        again = size_poses(fast_robot, Poses.at(sweep["position"].to_numpy()[:50]), steel)
+        assert np.allclose(again.diameter_m, sweep["diameter"].to_numpy()[:50], equal_nan=True)
+    assert sum(steps) == CHUNK + 100
