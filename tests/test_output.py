@@ -55,7 +55,10 @@ def test_read_only_folder(tmp_path) -> None:
 
 def test_parent_that_is_a_file(tmp_path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot be written"), output_folder(tmp_path / "file" / "x"):
+    with (
+        pytest.raises(OutputError, match="cannot be written"),
+        output_folder(tmp_path / "file" / "x"),
+    ):
         pass
 
 

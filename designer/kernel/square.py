@@ -38,7 +38,7 @@ _CLOSURE, _BALANCE, _RESIDUAL, _OVERLOAD, _GOAL = range(16, 21)
 OUT_H, OUT_L, OUT_V, OUT_T, OUT_MASSLESS = range(5)
 OUT_C, OUT_CLOSURE, OUT_BALANCE, OUT_RESIDUAL, OUT_OVERLOAD = range(5)
 
-_ATTEMPTS = ((5, 1e-6, 0.0), (40, 1e-11, 0.0), (120, 1e-11, 30.0))
+_ATTEMPTS = ((5, 1e-6, 0.0), (12, 1e-6, 0.0), (60, 1e-11, 0.0), (120, 1e-11, 30.0))
 """Iterations, relative step at which Newton stops, and lightness of the start of each attempt; only
 the poses that fail go on to the next one. Newton converges quadratically, so as a rule a step of
 1e-6 leaves an error near 1e-12."""

@@ -153,9 +153,7 @@ def test_batch_equals_loop() -> None:
     X, D = rng.uniform(1, 300, (2, 50))
     length = np.hypot(X, D) * rng.uniform(0.999, 2, 50)
     batch = catenary.forces_from_length(length, X, D, 1e7, 3.0)
-    single = [
-        catenary.forces_from_length(*one, 1e7, 3.0) for one in zip(length, X, D, strict=True)
-    ]
+    single = [catenary.forces_from_length(*one, 1e7, 3.0) for one in zip(length, X, D, strict=True)]
     assert np.array(batch).T == pytest.approx(np.array(single), rel=1e-11)
 
 

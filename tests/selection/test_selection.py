@@ -29,7 +29,9 @@ def rope(name: str, diameters_mm: list[float], weaker: dict[float, float] | None
         for d in diameters_mm
     )
     modulus = Modulus(62.7e9, "nominal", "borrowed", "a like rope", 0.15)
-    return Grade(name, "maker", "rope", "7x19", "WSC", "galvanised", modulus, sizes, Reference("a", "b"), "B")
+    return Grade(
+        name, "maker", "rope", "7x19", "WSC", "galvanised", modulus, sizes, Reference("a", "b"), "B"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +76,7 @@ def test_verification_holds_at_the_worst_pose_found_by_other_means(fast_robot, w
 
 
 def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:
-    sizes = [16.0, 18.0, 20.0, 22.0, 24.0]
+    sizes = [12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0]
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
     assert sound.best is not None
     first = 1e3 * sound.best.size.diameter_m
@@ -84,7 +86,7 @@ def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:
 
 
 def test_a_strong_size_below_the_snap_is_found(fast_robot, workspace) -> None:
-    sizes = [16.0, 18.0, 20.0, 22.0, 24.0]
+    sizes = [12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0]
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
     assert sound.best is not None
     below = 1e3 * sound.best.size.diameter_m - 2
@@ -98,7 +100,9 @@ def test_the_lightest_of_several_grades_is_chosen(fast_robot, workspace) -> None
     found = select(fast_robot, workspace, ALL, [coarse, fine])
     assert found.chosen is not None
     assert found.chosen.grade.id == "fine"
-    assert found.chosen.total_mass_kg == min(c.total_mass_kg for c in found.candidates if c.verified)
+    assert found.chosen.total_mass_kg == min(
+        c.total_mass_kg for c in found.candidates if c.verified
+    )
 
 
 def test_grade_that_ends_too_thin_names_what_goes_on(fast_robot, workspace) -> None:
@@ -114,10 +118,10 @@ def test_grade_that_ends_too_thin_names_what_goes_on(fast_robot, workspace) -> N
 
 def test_no_section_is_enough_for_a_weak_rope(fast_robot) -> None:
     prism = Prism.over(TRIANGLE, 5.0, (-200.0, -40.0))
-    outcome = try_grade(fast_robot, Workspace(prism, samples=1000), rope("a", [20.0]), 8.0)
+    outcome = try_grade(fast_robot, Workspace(prism, samples=1000), rope("a", [20.0]), 16.0)
     assert outcome.outcome == "no_finite_cable"
     assert np.isnan(outcome.continuous_diameter_m)
-    family = rope("a", [20.0]).family(8.0)
+    family = rope("a", [20.0]).family(16.0)
     assert size_poses(fast_robot, Poses.at([250.0, 5.0, -40.0]), family).statics.verdict == 2
 
 

@@ -94,7 +94,9 @@ def test_massless_balances_and_is_the_limit_of_light_cables(robot, steel) -> Non
 
 
 def test_pose_outside_the_hull(fast_robot, steel) -> None:
-    statics = solve_sagging(fast_robot, Poses.at([[-50.0, 100, -50], [250, 200, 20]]), steel.cable(0.03))
+    statics = solve_sagging(
+        fast_robot, Poses.at([[-50.0, 100, -50], [250, 200, 20]]), steel.cable(0.03)
+    )
     assert list(statics.verdict) == [Verdict.OUTSIDE_HULL] * 2
 
 
@@ -109,7 +111,9 @@ def test_cable_straight_above_the_load(steel) -> None:
 
 
 def test_hangs_below_is_flagged(fast_robot, steel) -> None:
-    statics = solve_sagging(fast_robot, Poses.at([[250.0, 200, -50], [250, 20, -40]]), steel.cable(0.04))
+    statics = solve_sagging(
+        fast_robot, Poses.at([[250.0, 200, -50], [250, 20, -40]]), steel.cable(0.04)
+    )
     assert list(statics.hangs_below) == [False, True]
 
 

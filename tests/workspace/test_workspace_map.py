@@ -32,7 +32,9 @@ def test_low_discrepancy_samples_are_inside_repeatable_and_even() -> None:
     assert positions.shape == (5000, 3)
     assert workspace.region.contains(positions).all()
     assert np.array_equal(positions, all_positions(workspace))
-    assert not np.array_equal(positions, all_positions(paper_workspace(10.35, samples=5000, seed=4)))
+    assert not np.array_equal(
+        positions, all_positions(paper_workspace(10.35, samples=5000, seed=4))
+    )
     assert np.mean(positions[:, 2] < -120) == pytest.approx(0.5, abs=0.01)
 
 

@@ -1,0 +1,214 @@
+"""All poses: which are served, which is the worst, and what hanging cables change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.analysis import Analysis
+from designer.region import PointList, Region
+from designer.report import format as fmt
+from designer.report.findings import Findings, OtherPolicy
+from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.statics.verdict import Verdict
+from designer.study import Workspace
+from designer.workspace.result import Census, Extreme, WorkspaceMap
+
+
+@dataclass(frozen=True, slots=True)
+class WorkspaceSection:
+    """Sizing over the whole workspace.
+
+    Parameters
+    ----------
+    verdict : Statement
+        Whether every pose has a finite cable.
+    facts : tuple of Fact
+        The region and how it was searched.
+    extremes : Table
+        Worst pose with sag (refined), worst sample, worst pose without sag.
+    census : Table
+        Count of samples by verdict.
+    hanging : Statement
+        How many poses have a cable below the platform, and what leaving them out changes.
+    policies : Table or None
+        The worst pose with and without those poses; None where there are none.
+    pictures : tuple of Picture
+        Maps and charts.
+    """
+
+    verdict: Statement
+    facts: tuple[Fact, ...]
+    extremes: Table
+    census: Table
+    hanging: Statement
+    policies: Table | None
+    pictures: tuple[Picture, ...]
+
+
+def workspace_section(
+    analysis: Analysis, findings: Findings, pictures: tuple[Picture, ...]
+) -> WorkspaceSection | None:
+    """Return the section on the workspace; None if the study has none."""
+    study, found = analysis.study, analysis.workspace
+    if study.workspace is None or found is None:
+        return None
+    return WorkspaceSection(
+        verdict=_statement(found),
+        facts=_facts(study.workspace, found),
+        extremes=_extremes(found),
+        census=_census(found.census),
+        hanging=_hanging(study.workspace, found, findings.other_policy),
+        policies=_policies(study.workspace, found, findings.other_policy),
+        pictures=pictures,
+    )
+
+
+def describe_region(region: Region) -> str:
+    """Return a region in words."""
+    if isinstance(region, PointList):
+        return f"a list of {fmt.plural(len(region.points_m), 'point')}"
+    low, high = region.z_m
+    return (
+        f"upright prism over {len(region.polygon_m)} corners, "
+        f"z from {fmt.metres(low)} to {fmt.metres(high)}"
+    )
+
+
+def _statement(found: WorkspaceMap) -> Statement:
+    if found.sagging is not None:
+        text = (
+            f"A cable of {fmt.millimetres(found.sagging.diameter_m)} of the configured family "
+            f"serves every pose. The worst is at {fmt.position(found.sagging.position_m)}."
+        )
+        return Statement("The workspace is served", text, "good")
+    text = "There is no diameter of the configured family that serves every pose."
+    if found.infeasible_example_m is not None:
+        where = fmt.position(found.infeasible_example_m)
+        text += f" An example of a pose that is not served is {where}."
+        text += (
+            " Toward such poses the needed diameter grows without bound, so the worst sample "
+            "below depends on where samples happen to lie and is no design value."
+        )
+    return Statement("The workspace is not served", text, "bad")
+
+
+def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
+    region = workspace.region
+    facts = [Fact("Region", describe_region(region))]
+    if not isinstance(region, PointList):
+        facts.append(Fact("Base area", f"{fmt.number(region.area_m2)}\u00a0m²"))
+        facts.append(Fact("Volume", f"{fmt.number(region.volume_m3)}\u00a0m³"))
+        spread = workspace.sampling.replace("_", " ")
+        seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
+        facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
+    if found.sagging is not None:
+        facts.append(
+            Fact(
+                "Limit ratio at the worst pose",
+                fmt.percent(found.limit_ratio),
+                "at 100 % no finite cable is left",
+            )
+        )
+    return tuple(facts)
+
+
+def _extremes(found: WorkspaceMap) -> Table:
+    named = (
+        ("Worst pose with sag, searched between samples", found.sagging, "good"),
+        ("Worst sample with sag", found.sampled, ""),
+        ("Worst pose without sag", found.massless, ""),
+    )
+    columns = (
+        Column("Case", is_number=False),
+        Column("Position", is_number=False),
+        Column("Diameter"),
+        Column("Largest tension"),
+    )
+    rows = [_extreme(name, extreme, tone == "good") for name, extreme, tone in named]
+    return Table.of("What the configured cable family needs.", columns, *rows)
+
+
+def _extreme(name: str, extreme: Extreme | None, is_answer: bool) -> Row:
+    if extreme is None:
+        return Row((name, fmt.MISSING, "none", "none"), "bad" if is_answer else "muted")
+    cells = (
+        name,
+        fmt.position(extreme.position_m),
+        fmt.millimetres(extreme.diameter_m),
+        fmt.newtons(extreme.max_tension_N),
+    )
+    return Row(cells, "good" if is_answer else "")
+
+
+def _census(census: Census) -> Table:
+    rows = [
+        Row(
+            (
+                verdict.label.replace("_", " "),
+                fmt.count(census.statuses[verdict.label]),
+                fmt.share(census.statuses[verdict.label], census.samples),
+                verdict.sentence,
+            ),
+            "muted" if census.statuses[verdict.label] == 0 else "",
+        )
+        for verdict in Verdict
+    ]
+    columns = (
+        Column("Verdict", is_number=False),
+        Column("Samples"),
+        Column("Share"),
+        Column("Meaning", is_number=False),
+    )
+    return Table.of("Verdicts of all samples.", columns, *rows)
+
+
+def _hanging(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None) -> Statement:
+    census = found.census
+    if census.hangs_below == 0:
+        text = "In no solved sample does a cable hang below the platform."
+        return Statement("Cables below the platform", text)
+    share = fmt.share(census.hangs_below, census.samples)
+    text = (
+        f"In {share} of the samples a cable hangs below the platform: it may touch the ground "
+        "or what stands on it."
+    )
+    if workspace.hangs_below == "include":
+        text += " These poses count in all results of this report."
+    else:
+        left_out = fmt.share(census.excluded, census.samples)
+        text += (
+            f" The study leaves such poses out, together with poses that have no finite cable: "
+            f"{left_out} of the samples do not count in the results of this report."
+        )
+    if other is not None:
+        text += " The table shows what the other choice would give."
+    return Statement("Cables below the platform", text, "doubt")
+
+
+def _policies(
+    workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None
+) -> Table | None:
+    if other is None:
+        return None
+    maps = {workspace.hangs_below: found, other.hangs_below: other.map}
+    titles = {"include": "These poses count", "exclude": "These poses are left out"}
+    rows = []
+    for policy, title in titles.items():
+        here = maps[policy]
+        name = f"{title}{' (as configured)' if policy == workspace.hangs_below else ''}"
+        left_out = fmt.share(here.census.excluded, here.census.samples)
+        row = _extreme(name, here.sagging, policy == workspace.hangs_below)
+        rows.append(Row((*row.cells, left_out), row.tone))
+    columns = (
+        Column("Choice", is_number=False),
+        Column("Worst position", is_number=False),
+        Column("Diameter"),
+        Column("Largest tension"),
+        Column("Left out"),
+    )
+    return Table.of(
+        "Worst pose of the configured family, with and without poses in which a cable hangs "
+        "below the platform.",
+        columns,
+        *rows,
+    )
