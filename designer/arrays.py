@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
+VerdictArray = NDArray[np.int8]
 
 
 def frozen_array(values: ArrayLike) -> FloatArray:

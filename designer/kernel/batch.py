@@ -5,57 +5,59 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray
-from designer.kernel import square
+from designer.arrays import FloatArray, VerdictArray
+from designer.kernel import layout
+from designer.kernel.square import solve_range
 from designer.robot import Poses, Robot
 
-_SHARE = 32 * square.LANES
+_SHARE = 32 * layout.LANES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class UnitSolution:
-    """State of cables of unit weight; forces are in metres of cable.
+class Solution:
+    """What the kernel found, pose by pose; NaN wherever the verdict is not solved.
 
     Parameters
     ----------
-    horizontal_pull_m, length_m, upward_pull_m, top_tension_m : array (n_cables, n_poses)
-        Horizontal force, unstrained length, vertical pull on the platform, tension at the upper
-        end.
-    massless_tension_N : array (n_cables, n_poses)
-        Tension of straight, weightless cables; negative where no pulling cable can balance.
-    inverse_weight_m_per_N : array (n_poses,)
-        1 / w, as given or, when sizing, the largest that the strength allows.
-    closure_m, balance_m, residual : array (n_poses,)
-        Worst closure error, what is left of the platform's balance, and the larger of the two
-        over their scales.
-    overload : array (n_poses,)
-        Largest top tension over strength.
+    verdict : array (n_poses,)
+        One `Verdict` a pose.
+    weight_N_per_m : array (n_poses,)
+        Weight per length, as given or, when sizing, the least that the strength allows [N/m].
+    length_m, force_x_N, force_z_N : array (n_poses, n_cables)
+        Unstrained lengths [m], and forces on the cables at the platform [N].
+    closure_residual_m, equilibrium_residual_N : array (n_poses,)
+        Worst closure error [m]; what is left of the platform's balance, moments divided by the
+        reach of its attachments [N].
+    load_factor : array (n_poses,)
+        Largest tension over strength; NaN only where no state was found.
+    massless_tension_N : array (n_poses,)
+        Largest tension of straight, weightless cables [N]; NaN outside their hull.
     """
 
-    horizontal_pull_m: FloatArray
+    verdict: VerdictArray
+    weight_N_per_m: FloatArray
     length_m: FloatArray
-    upward_pull_m: FloatArray
-    top_tension_m: FloatArray
+    force_x_N: FloatArray
+    force_z_N: FloatArray
+    closure_residual_m: FloatArray
+    equilibrium_residual_N: FloatArray
+    load_factor: FloatArray
     massless_tension_N: FloatArray
-    inverse_weight_m_per_N: FloatArray
-    closure_m: FloatArray
-    balance_m: FloatArray
-    residual: FloatArray
-    overload: FloatArray
 
 
-def solve_units(
+def solve_batch(
     robot: Robot,
     poses: Poses,
     kappa_per_m: FloatArray,
     relative_weights: FloatArray,
     strength_m: FloatArray,
     inverse_weight_m_per_N: float | None,
-) -> UnitSolution:
+) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
     Parameters
@@ -65,13 +67,15 @@ def solve_units(
     poses : Poses
         One leading axis.
     kappa_per_m, relative_weights, strength_m : array (n_cables,)
-        Weight over axial stiffness, weight relative to w, allowable tension over weight.
+        Weight over axial stiffness [1/m], weight relative to w, allowable tension over weight [m].
     inverse_weight_m_per_N : float or None
-        1 / w; None sizes each pose for the lightest cable that the strength allows.
+        1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
+        strength allows.
     """
     n, count = robot.n_cables, len(poses.position_m)
-    out_cables = np.empty((n, 5, count))
-    out_poses = np.empty((5, count))
+    out_cables = np.empty((count, n, 3))
+    out_poses = np.empty((count, 5))
+    out_verdict = np.empty(count, dtype=np.int8)
     arguments: tuple[Any, ...] = (
         robot.exit_points_m,
         robot.attachments_m,
@@ -85,23 +89,28 @@ def solve_units(
         -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N,
         out_cables,
         out_poses,
+        out_verdict,
     )
     shares = [(at, min(at + _SHARE, count)) for at in range(0, count, _SHARE)]
     if len(shares) == 1:
-        square.solve_range(0, count, *arguments)
+        solve_range(0, count, *arguments)
     else:
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            for future in [pool.submit(square.solve_range, *share, *arguments) for share in shares]:
-                future.result()
-    return UnitSolution(
-        horizontal_pull_m=out_cables[:, square.OUT_H],
-        length_m=out_cables[:, square.OUT_L],
-        upward_pull_m=out_cables[:, square.OUT_V],
-        top_tension_m=out_cables[:, square.OUT_T],
-        massless_tension_N=out_cables[:, square.OUT_MASSLESS],
-        inverse_weight_m_per_N=out_poses[square.OUT_C],
-        closure_m=out_poses[square.OUT_CLOSURE],
-        balance_m=out_poses[square.OUT_BALANCE],
-        residual=out_poses[square.OUT_RESIDUAL],
-        overload=out_poses[square.OUT_OVERLOAD],
+        for future in [_pool().submit(solve_range, *share, *arguments) for share in shares]:
+            future.result()
+    return Solution(
+        verdict=out_verdict,
+        weight_N_per_m=out_poses[:, layout.WEIGHT],
+        length_m=out_cables[..., layout.LENGTH],
+        force_x_N=out_cables[..., layout.FORCE_X],
+        force_z_N=out_cables[..., layout.FORCE_Z],
+        closure_residual_m=out_poses[:, layout.CLOSURE_ERROR],
+        equilibrium_residual_N=out_poses[:, layout.BALANCE_ERROR],
+        load_factor=out_poses[:, layout.LOAD_FACTOR],
+        massless_tension_N=out_poses[:, layout.MASSLESS_TENSION],
     )
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    """Threads are kept: starting them anew costs as much as some thousand poses."""
+    return ThreadPoolExecutor(os.cpu_count())

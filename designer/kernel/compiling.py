@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,15 +25,22 @@ def element(function: Function) -> Function:
 
 def kernel(function: Function) -> Function:
     """Compile a loop over poses; releases the interpreter lock and is cached on disk."""
-    compiled: Function = numba.njit(nogil=True, cache=True, error_model="numpy", fastmath=_FAST)(
-        function
-    )
-    return compiled
+    options = {"nogil": True, "cache": True, "error_model": "numpy", "fastmath": _FAST}
+    compiled: Any = numba.njit(**options)(function)
+    # Numba takes cached code for fresh as long as the function's own file is unchanged, although
+    # it contains what the function calls; here any change in this folder makes it stale.
+    compiled._cache._cache_file._source_stamp = _stamp()
+    result: Function = compiled
+    return result
+
+
+@cache
+def _stamp() -> str:
+    """Return a digest of all sources in this folder."""
+    sources = sorted(Path(__file__).parent.glob("*.py"))
+    return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
 def is_cached(function: Callable[..., Any]) -> bool:
     """Tell whether machine code of a kernel lies on disk, so that the first call is quick."""
-    cache = function._cache  # type: ignore[attr-defined]
-    stem = f"{Path(cache._py_func.__code__.co_filename).stem}.{function.__name__}-"
-    folder = Path(cache.cache_path)
-    return folder.is_dir() and any(folder.glob(f"{stem}*.nbc"))
+    return bool(function._cache._cache_file._load_index())  # type: ignore[attr-defined]

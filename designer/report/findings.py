@@ -8,6 +8,7 @@ cable below the platform count, or not? How wide is the strip that cannot be ser
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -67,6 +68,25 @@ class OtherPolicy:
     map: WorkspaceMap
 
 
+@dataclass(frozen=True, slots=True)
+class Unserved:
+    """Where the samples lie that no cable of the configured family can serve.
+
+    Parameters
+    ----------
+    depth_m : float
+        Largest distance of any of them from the sides of the region [m].
+    inradius_m : float
+        Largest distance of any sample from the sides [m].
+    lowest_z_m : float
+        Smallest z of any of them [m].
+    """
+
+    depth_m: float
+    inradius_m: float
+    lowest_z_m: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Findings:
     """Answers to the questions of this module; None where a question does not arise.
@@ -84,8 +104,8 @@ class Findings:
         Utilisation at the worst pose with the lowest and the highest modulus that is possible.
     other_policy : OtherPolicy or None
         None where no cable hangs below the platform.
-    unserved_depth_m : float or None
-        Largest distance of an unserved sample from the sides of the region [m].
+    unserved : Unserved or None
+        None where every sample is served, and for a list of points.
     """
 
     chosen_outcome: GradeOutcome | None = None
@@ -93,15 +113,13 @@ class Findings:
     massless_choice: MasslessChoice | None = None
     modulus_utilisation: tuple[float, float] | None = None
     other_policy: OtherPolicy | None = None
-    unserved_depth_m: float | None = None
+    unserved: Unserved | None = None
 
 
 def find(analysis: Analysis) -> Findings:
     """Answer the questions of this module."""
     chosen = analysis.selection.chosen if analysis.selection else None
-    findings = Findings(
-        other_policy=_other_policy(analysis), unserved_depth_m=_unserved_depth_m(analysis)
-    )
+    findings = Findings(other_policy=_other_policy(analysis), unserved=_unserved(analysis))
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
@@ -157,25 +175,32 @@ def _other_policy(analysis: Analysis) -> OtherPolicy | None:
     return OtherPolicy(other, map_workspace(study.robot, changed, study.material))
 
 
-def _unserved_depth_m(analysis: Analysis) -> float | None:
+def _unserved(analysis: Analysis) -> Unserved | None:
     study, workspace = analysis.study, analysis.workspace
     if study.workspace is None or workspace is None or analysis.sweep_file is None:
         return None
     region = study.workspace.region
     if workspace.is_feasible or not isinstance(region, Prism):
         return None
-    served = {Verdict.SOLVED}
+    fine = [Verdict.SOLVED]
     if study.workspace.hangs_below == "exclude":
-        served.add(Verdict.NO_FINITE_CABLE)
-    deepest = None
-    with open_sweep(analysis.sweep_file) as sweep:
+        fine.append(Verdict.NO_FINITE_CABLE)
+    return _locate(analysis.sweep_file, region, fine)
+
+
+def _locate(sweep_file: Path, region: Prism, fine: list[Verdict]) -> Unserved | None:
+    depth_m = inradius_m = 0.0
+    lowest_m = np.inf
+    with open_sweep(sweep_file) as sweep:
         for start in range(0, sweep.sizes["sample"], _CHUNK):
             part = sweep.isel(sample=slice(start, start + _CHUNK))
-            unserved = ~np.isin(part["verdict"].values, [int(v) for v in served])
-            if unserved.any():
-                depth = distance_to_sides_m(region, part["position"].values[unserved]).max()
-                deepest = max(float(depth), deepest or 0.0)
-    return deepest
+            position = part["position"].values
+            distance = distance_to_sides_m(region, position)
+            unserved = ~np.isin(part["verdict"].values, fine)
+            depth_m = max(depth_m, float(distance[unserved].max(initial=0.0)))
+            inradius_m = max(inradius_m, float(distance.max(initial=0.0)))
+            lowest_m = min(lowest_m, float(position[unserved, 2].min(initial=np.inf)))
+    return Unserved(depth_m, inradius_m, lowest_m) if np.isfinite(lowest_m) else None
 
 
 def distance_to_sides_m(region: Prism, positions_m: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ the report breaks inside a figure.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 MISSING = "–"
 """Stands for a number that does not exist."""
@@ -28,6 +28,12 @@ def number(value: float, digits: int = 4) -> str:
         return "0"
     leading = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
     return fixed(value, max(digits - 1 - leading, 0))
+
+
+def trimmed(value: float, digits: int = 4) -> str:
+    """Return a number with at most ``digits`` significant digits, without closing zeros."""
+    text = number(value, digits)
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def fixed(value: float, decimals: int) -> str:
@@ -57,8 +63,8 @@ def newtons(value: float) -> str:
 
 
 def pascals(value: float) -> str:
-    """Return a stress in MPa or GPa, such as ``180.0 MPa``."""
-    return _scaled(value, (("MPa", 1e6, 1e10), ("GPa", 1e9, math.inf)))
+    """Return a stress in MPa or GPa, such as ``180 MPa``."""
+    return _scaled(value, (("MPa", 1e6, 1e10), ("GPa", 1e9, math.inf)), trimmed)
 
 
 def kilograms(value: float) -> str:
@@ -68,7 +74,7 @@ def kilograms(value: float) -> str:
 
 def kilograms_per_metre(value: float) -> str:
     """Return a mass per length such as ``1.662 kg/m``."""
-    return _with_unit(number(value), "kg/m")
+    return _with_unit(trimmed(value), "kg/m")
 
 
 def kilograms_per_cubic_metre(value: float) -> str:
@@ -132,11 +138,15 @@ def listing(words: Iterable[str], last: str = "and") -> str:
     return f"{', '.join(head)} {last} {tail}" if head else tail
 
 
-def _scaled(value: float, units: tuple[tuple[str, float, float], ...]) -> str:
+def _scaled(
+    value: float,
+    units: tuple[tuple[str, float, float], ...],
+    shown: Callable[[float], str] = number,
+) -> str:
     if not math.isfinite(value):
         return number(value)
     unit, scale = next((name, scale) for name, scale, end in units if abs(value) < end)
-    return _with_unit(number(value / scale), unit)
+    return _with_unit(shown(value / scale), unit)
 
 
 def _with_unit(text: str, unit: str) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from designer.arrays import FloatArray
 from designer.cable import Material
 from designer.robot import Poses, Robot
@@ -21,8 +19,6 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 
     NaN where that limit was not solved.
     """
-    from designer.kernel.square import TOLERANCE
-
     solution = solve_flat(
         robot,
         poses,
@@ -30,5 +26,4 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
         strength_m=material.strength_length_m,
         inverse_weight_m_per_N=0.0,
     )
-    ratio = np.where(solution.residual <= TOLERANCE, solution.overload, np.nan)
-    return ratio.reshape(poses.shape)
+    return solution.load_factor.reshape(poses.shape)

@@ -10,7 +10,6 @@ from designer.arrays import FloatArray
 from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, solve_flat, statics_of
-from designer.statics.verdict import judge
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,8 +45,6 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`.
     """
-    from designer.kernel.square import TOLERANCE
-
     solution = solve_flat(
         robot,
         poses,
@@ -55,31 +52,14 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
         strength_m=material.strength_length_m,
         inverse_weight_m_per_N=None,
     )
-    verdict = judge(
-        solution.residual,
-        TOLERANCE,
-        solution.inverse_weight_m_per_N,
-        solution.overload,
-        solution.massless_tension_N,
-        sizing=True,
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        weight = 1.0 / solution.inverse_weight_m_per_N
-        area = np.where(
-            verdict == 0, weight / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3), np.nan
-        )
-    statics = statics_of(robot, poses, solution, verdict, material.youngs_modulus_Pa * area)
-    pushes = (solution.massless_tension_N < 0.0).any(axis=0)
-    massless = np.where(pushes, np.nan, solution.massless_tension_N.max(axis=0))
-    blank = np.where(verdict == 0, 1.0, np.nan)
+    area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
+    massless_area = solution.massless_tension_N / material.allowable_stress_Pa
     shape = poses.shape
     return Sizing(
-        statics=statics,
+        statics=statics_of(robot, poses, solution, material.youngs_modulus_Pa * area),
         diameter_m=np.sqrt(4.0 * area / np.pi).reshape(shape),
-        massless_tension_N=massless.reshape(shape),
-        massless_diameter_m=np.sqrt(
-            4.0 * massless / (np.pi * material.allowable_stress_Pa)
-        ).reshape(shape),
-        closure_residual_m=(solution.closure_m * blank).reshape(shape),
-        equilibrium_residual_N=(solution.balance_m * weight * blank).reshape(shape),
+        massless_tension_N=solution.massless_tension_N.reshape(shape),
+        massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),
+        closure_residual_m=solution.closure_residual_m.reshape(shape),
+        equilibrium_residual_N=solution.equilibrium_residual_N.reshape(shape),
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.cable import Cable
 from designer.physics import catenary
 from designer.robot import Poses, Robot
@@ -17,10 +17,10 @@ from designer.statics.geometry import (
     structure_matrix,
     weight_wrench_N,
 )
-from designer.statics.verdict import Verdict, hangs_below, judge
+from designer.statics.verdict import Verdict, hangs_below
 
 if TYPE_CHECKING:
-    from designer.kernel.batch import UnitSolution
+    from designer.kernel.batch import Solution
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +46,7 @@ class Statics:
 
     robot: Robot
     poses: Poses
-    verdict: IntArray
+    verdict: VerdictArray
     weight_N_per_m: FloatArray
     axial_stiffness_N: FloatArray
     length_m: FloatArray
@@ -158,18 +158,8 @@ def solve_sagging(robot: Robot, poses: Poses, cable: Cable) -> Statics:
         strength_m=cable.allowable_tension_N / weight,
         inverse_weight_m_per_N=1.0 / weight,
     )
-    from designer.kernel.square import TOLERANCE
-
-    verdict = judge(
-        solution.residual,
-        TOLERANCE,
-        solution.inverse_weight_m_per_N,
-        solution.overload,
-        solution.massless_tension_N,
-        sizing=False,
-    )
-    stiffness = np.full(solution.residual.shape, cable.axial_stiffness_N)
-    return statics_of(robot, poses, solution, verdict, stiffness)
+    stiffness = np.where(solution.verdict == Verdict.SOLVED, cable.axial_stiffness_N, np.nan)
+    return statics_of(robot, poses, solution, stiffness)
 
 
 def solve_flat(
@@ -178,9 +168,9 @@ def solve_flat(
     kappa_per_m: float,
     strength_m: float,
     inverse_weight_m_per_N: float | None,
-) -> UnitSolution:
+) -> Solution:
     """Flatten the leading axes of the poses and call the kernel with equal cables."""
-    from designer.kernel.batch import solve_units
+    from designer.kernel.batch import solve_batch
 
     count = int(np.prod(poses.shape, dtype=np.int64))
     rotation = poses.rotation
@@ -188,36 +178,25 @@ def solve_flat(
         rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
     flat = Poses(poses.position_m.reshape(count, 3), rotation)
     each = np.ones(robot.n_cables)
-    return solve_units(
+    return solve_batch(
         robot, flat, kappa_per_m * each, each, strength_m * each, inverse_weight_m_per_N
     )
 
 
 def statics_of(
-    robot: Robot,
-    poses: Poses,
-    solution: UnitSolution,
-    verdict: IntArray,
-    axial_stiffness_N: FloatArray,
+    robot: Robot, poses: Poses, solution: Solution, axial_stiffness_N: FloatArray
 ) -> Statics:
-    """Scale a solution of unit weight to newtons, and blank every pose that is not solved."""
-    solved = verdict == Verdict.SOLVED
-    with np.errstate(divide="ignore", invalid="ignore"):
-        weight = np.where(solved, 1.0 / solution.inverse_weight_m_per_N, np.nan)
-    blank = np.where(solved, 1.0, np.nan)
-
-    def shaped(values: FloatArray) -> FloatArray:
-        return values.T.reshape(*poses.shape, -1)
-
+    """Give a solution its leading axes back."""
+    shape = poses.shape
     return Statics(
         robot=robot,
         poses=poses,
-        verdict=verdict.reshape(poses.shape),
-        weight_N_per_m=shaped(weight[None]),
-        axial_stiffness_N=shaped((axial_stiffness_N * blank)[None]),
-        length_m=shaped(solution.length_m * blank),
-        force_x_N=shaped(solution.horizontal_pull_m * weight),
-        force_z_N=shaped(-solution.upward_pull_m * weight),
+        verdict=solution.verdict.reshape(shape),
+        weight_N_per_m=solution.weight_N_per_m.reshape(*shape, 1),
+        axial_stiffness_N=axial_stiffness_N.reshape(*shape, 1),
+        length_m=solution.length_m.reshape(*shape, -1),
+        force_x_N=solution.force_x_N.reshape(*shape, -1),
+        force_z_N=solution.force_z_N.reshape(*shape, -1),
     )
 
 

@@ -1,0 +1,197 @@
+"""One Newton step for a block of poses; see `designer.kernel.square` for the method."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.compiling import kernel
+from designer.kernel.layout import (
+    EX,
+    EY,
+    GOAL,
+    L_0,
+    L_P,
+    LANES,
+    MASSLESS,
+    RX,
+    RY,
+    RZ,
+    STEP,
+    T_P,
+    V_P,
+    X2,
+    C,
+    D,
+    L,
+    P,
+    T,
+    V,
+)  # fmt: skip
+from designer.kernel.unit_cable import unit_cable
+
+_LARGEST_FALL = 0.7
+_FOLLOWED = 0.1
+
+
+@kernel
+def place(
+    cables: FloatArray,
+    poses: FloatArray,
+    exit_points: FloatArray,
+    attachments: FloatArray,
+    load: FloatArray,
+    load_point: FloatArray,
+    positions: FloatArray,
+    rotations: FloatArray,
+    indices: IntArray,
+) -> None:
+    """Fill the geometry of one block: cable vectors, levers and the load to be balanced."""
+    n = exit_points.shape[0]
+    for j in range(LANES):
+        x = positions[indices[j]]
+        Q = rotations[indices[j] if rotations.shape[0] > 1 else 0]
+        for i in range(n):
+            b = attachments[i]
+            row = cables[i]
+            for axis in range(3):
+                r = Q[axis, 0] * b[0] + Q[axis, 1] * b[1] + Q[axis, 2] * b[2]
+                row[RX + axis, j] = r
+                row[EX + axis, j] = exit_points[i, axis] - x[axis] - r
+            row[X2, j] = row[EX, j] ** 2 + row[EY, j] ** 2
+            row[L, j] = np.sqrt(row[X2, j] + row[D, j] ** 2)
+        s = load_point
+        for axis in range(3):
+            poses[axis, j] = load[axis]
+        sx = Q[0, 0] * s[0] + Q[0, 1] * s[1] + Q[0, 2] * s[2]
+        sy = Q[1, 0] * s[0] + Q[1, 1] * s[1] + Q[1, 2] * s[2]
+        sz = Q[2, 0] * s[0] + Q[2, 1] * s[1] + Q[2, 2] * s[2]
+        poses[3, j] = load[3] + sy * load[2] - sz * load[1]
+        poses[4, j] = load[4] + sz * load[0] - sx * load[2]
+        poses[5, j] = load[5] + sx * load[1] - sy * load[0]
+
+
+@kernel
+def linearise_taut(cables: FloatArray, n: int) -> None:
+    """Straight cables with half of their weight at the platform: the first guess."""
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            length = np.sqrt(row[X2, j] + row[D, j] ** 2)
+            row[P, j] = 0.0
+            row[L, j] = length
+            row[V, j] = -0.5 * length
+            row[V_P, j] = row[D, j]
+            row[T, j] = 0.5 * abs(row[D, j])
+            row[T_P, j] = length
+            row[L_0, j] = 0.0
+            row[L_P, j] = 0.0
+
+
+@kernel
+def linearise(cables: FloatArray, kappa: FloatArray, n: int) -> None:
+    """Condense each cable's length: pull and top tension as linear functions of the step in p."""
+    for i in range(n):
+        row = cables[i]
+        k = kappa[i]
+        for j in range(LANES):
+            F, F_p, F_l, v, v_p, v_l, t, t_p, t_l = unit_cable(
+                row[P, j], row[L, j], row[X2, j], row[D, j], k
+            )
+            l0 = -F / F_l
+            lp = -F_p / F_l
+            row[V, j] = v + v_l * l0
+            row[V_P, j] = v_p + v_l * lp
+            row[T, j] = t + t_l * l0
+            row[T_P, j] = t_p + t_l * lp
+            row[L_0, j] = l0
+            row[L_P, j] = lp
+
+
+@kernel
+def assemble(
+    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, n: int
+) -> None:
+    """Write the linearised balance: columns dp, then minus the present wrench, then the load."""
+    for m in range(n):
+        for j in range(LANES):
+            A[m, n, j] = 0.0
+            A[m, n + 1, j] = poses[m, j]
+    for i in range(n):
+        row = cables[i]
+        w = weights[i]
+        for j in range(LANES):
+            p, v = row[P, j], row[V, j]
+            x, y, s = row[EX, j], row[EY, j], row[V_P, j]
+            A[0, i, j] = w * x
+            A[1, i, j] = w * y
+            A[2, i, j] = w * s
+            A[0, n, j] -= w * p * x
+            A[1, n, j] -= w * p * y
+            A[2, n, j] -= w * v
+        if n == 6:
+            for j in range(LANES):
+                p, v = row[P, j], row[V, j]
+                x, y, s = row[EX, j], row[EY, j], row[V_P, j]
+                rx, ry, rz = row[RX, j], row[RY, j], row[RZ, j]
+                A[3, i, j] = w * (ry * s - rz * y)
+                A[4, i, j] = w * (rz * x - rx * s)
+                A[5, i, j] = w * (rx * y - ry * x)
+                A[3, n, j] -= w * (ry * v - rz * p * y)
+                A[4, n, j] -= w * (rz * p * x - rx * v)
+                A[5, n, j] -= w * p * (rx * y - ry * x)
+
+
+@kernel
+def aim_at_strength(
+    poses: FloatArray, A: FloatArray, cables: FloatArray, strength: FloatArray, n: int
+) -> None:
+    """Set as goal the largest c that no linearised top tension forbids."""
+    poses[GOAL] = np.inf
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            slope = row[T_P, j] * A[i, n + 1, j]
+            room = strength[i] - row[T, j] - row[T_P, j] * A[i, n, j]
+            bound = room / slope if slope > 0.0 else np.inf
+            poses[GOAL, j] = min(poses[GOAL, j], bound)
+
+
+@kernel
+def approach(poses: FloatArray, gently: bool) -> None:
+    """Move c to its goal; gently, down by no more than a factor, and only once p has followed."""
+    for j in range(LANES):
+        old = poses[C, j]
+        limit = _LARGEST_FALL * old if poses[STEP, j] < _FOLLOWED else old
+        c = max(poses[GOAL, j], limit) if gently else poses[GOAL, j]
+        poses[C, j] = c
+        poses[STEP, j] = abs(c - old) / (abs(c) + 1e-300)
+
+
+@kernel
+def advance(cables: FloatArray, A: FloatArray, poses: FloatArray, n: int) -> None:
+    """Apply the Newton step, each p within a factor of five, and note the largest relative step."""
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            old = row[P, j]
+            new = min(max(old + A[i, n, j] + poses[C, j] * A[i, n + 1, j], 0.2 * old), 5.0 * old)
+            length = row[L, j]
+            move = row[L_0, j] + row[L_P, j] * (new - old)
+            row[L, j] = min(max(length + move, 0.5 * length), 2.0 * length)
+            row[P, j] = new
+            step = abs(new - old) / new + abs(row[L, j] - length) / length
+            poses[STEP, j] = max(poses[STEP, j], step)
+
+
+@kernel
+def first_guess(
+    cables: FloatArray, A: FloatArray, poses: FloatArray, weights: FloatArray, n: int
+) -> None:
+    """Set p from the straight-cable balance, kept positive: a slack cable hangs, never pushes."""
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            p = A[i, n, j] + poses[C, j] * A[i, n + 1, j]
+            row[P, j] = p if p > 0.01 else 0.01
+            row[MASSLESS, j] = weights[i] * A[i, n + 1, j] * row[L, j]

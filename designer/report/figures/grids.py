@@ -1,0 +1,144 @@
+"""Grids that follow the boundary of a region, so that its edge is drawn where it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.region import Prism
+
+_RINGS, _SPOKES, _LAYERS = 48, 180, 24
+_OPENING_RAD = np.radians(100.0)
+
+
+def centroid_m(polygon_m: FloatArray) -> FloatArray:
+    """Return the centre of area of a polygon (n_corners, 2), (2,) [m]."""
+    following = np.roll(polygon_m, -1, axis=0)
+    origin = polygon_m[0]  # far from the frame's origin the products would cancel
+    a, b = polygon_m - origin, following - origin
+    twice_area = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
+    weighted = ((a + b) * twice_area[:, None]).sum(axis=0)
+    return np.asarray(origin + weighted / (3.0 * twice_area.sum()))
+
+
+def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> FloatArray:
+    """Return a horizontal section of the region as rings about its centre.
+
+    Parameters
+    ----------
+    region : Prism
+        The region.
+    z_m : float
+        Height of the section [m].
+    rings, spokes : int
+        Points outward and around; the last spoke repeats the first.
+
+    Returns
+    -------
+    array (rings, spokes + 1, 3)
+        Positions [m]; row 0 is the centre, the last row the outline with all its corners.
+    """
+    outline = outline_m(region.polygon_m, spokes)
+    return _at_height(_rings(centroid_m(region.polygon_m), outline, rings), z_m)
+
+
+def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:
+    """Return points around a polygon, its corners among them, the first one again at the end.
+
+    Parameters
+    ----------
+    polygon_m : array (n_corners, 2)
+        Corners [m].
+    count : int
+        How many points to aim at.
+    """
+    following = np.roll(polygon_m, -1, axis=0)
+    length = np.linalg.norm(following - polygon_m, axis=1)
+    steps = np.maximum(np.round(count * length / length.sum()).astype(int), 1)
+    parts = [
+        a + np.linspace(0.0, 1.0, n, endpoint=False)[:, None] * (b - a)
+        for a, b, n in zip(polygon_m, following, steps, strict=True)
+    ]
+    return np.concatenate([*parts, polygon_m[:1]])
+
+
+def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
+    """Return the outside of the region with a piece cut out, so that one sees inside.
+
+    One of the two cuts runs from the axis of the region through a given position.
+
+    Parameters
+    ----------
+    region : Prism
+        The region.
+    toward_m : array (2 or 3,)
+        Position that one cut runs through [m].
+
+    Returns
+    -------
+    mapping of str to array (n, m, 3)
+        Grids of positions of ``top``, ``bottom``, ``wall``, ``cut`` and ``other_cut`` [m].
+    """
+    centre = centroid_m(region.polygon_m)
+    outline = _opened(region.polygon_m, centre, toward_m)
+    rings = _rings(centre, outline, _RINGS)
+    low, high = region.z_m
+    layers = np.linspace(low, high, _LAYERS)
+    return {
+        "top": _at_height(rings, high),
+        "bottom": _at_height(rings, low),
+        "wall": _raised(outline, layers),
+        "cut": _raised(rings[:, 0], layers),
+        "other_cut": _raised(rings[:, -1], layers),
+    }
+
+
+def opening_azimuth_rad(region: Prism, toward_m: FloatArray) -> float:
+    """Return the direction in which `cutaway_m` is open, seen from the centre [rad]."""
+    return _azimuth(np.asarray(toward_m)[None, :2] - centroid_m(region.polygon_m))[0] + (
+        0.5 * _OPENING_RAD
+    )
+
+
+def _opened(polygon_m: FloatArray, centre: FloatArray, toward_m: FloatArray) -> FloatArray:
+    """Points around the polygon from the end of the opening on, back to its start."""
+    start = _azimuth(np.asarray(toward_m, dtype=np.float64)[None, :2] - centre)[0]
+    ends = start + np.array([0.0, _OPENING_RAD])
+    points = np.concatenate([outline_m(polygon_m, _SPOKES)[:-1], _hit(polygon_m, centre, ends)])
+    turned = np.mod(_azimuth(points - centre) - start, 2.0 * np.pi)
+    turned[-2:] = [2.0 * np.pi, _OPENING_RAD]
+    kept = np.argsort(turned)
+    kept = kept[turned[kept] >= _OPENING_RAD]
+    return np.asarray(points[kept][::-1])
+
+
+def _hit(polygon_m: FloatArray, centre: FloatArray, azimuth_rad: FloatArray) -> FloatArray:
+    """Where rays from the centre leave the polygon (n, 2) [m]."""
+    edges = np.roll(polygon_m, -1, axis=0) - polygon_m
+    normal = np.stack([edges[:, 1], -edges[:, 0]], axis=1)  # outward, corners counter-clockwise
+    ray = np.stack([np.cos(azimuth_rad), np.sin(azimuth_rad)], axis=1)
+    room = np.einsum("ek,ek->e", normal, polygon_m - centre)
+    speed = ray @ normal.T
+    with np.errstate(divide="ignore"):
+        reach = np.where(speed > 0.0, room / speed, np.inf).min(axis=1)
+    return np.asarray(centre + reach[:, None] * ray)
+
+
+def _rings(centre: FloatArray, outline: FloatArray, count: int) -> FloatArray:
+    """Rings from the centre to the outline, closer together outside, where the values climb."""
+    share = 1.0 - (1.0 - np.linspace(0.0, 1.0, count)) ** 1.5
+    return np.asarray(centre + share[:, None, None] * (outline - centre))
+
+
+def _at_height(plan: FloatArray, z_m: float) -> FloatArray:
+    return np.concatenate([plan, np.full((*plan.shape[:-1], 1), z_m)], axis=-1)
+
+
+def _raised(line: FloatArray, layers: FloatArray) -> FloatArray:
+    return np.stack([_at_height(line, float(z)) for z in layers])
+
+
+def _azimuth(direction: FloatArray) -> FloatArray:
+    return np.arctan2(direction[:, 1], direction[:, 0])

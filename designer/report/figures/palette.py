@@ -1,0 +1,27 @@
+"""Colours and sizes that all figures share, told apart by every kind of colour vision.
+
+The accents are from M. Okabe and K. Ito, "Color Universal Design", 2008.
+"""
+
+from __future__ import annotations
+
+COLORMAP = "viridis"
+"""Sequential, perceptually even, also in grey; for diameter, tension and their ratio."""
+
+SAG = "#0072B2"
+"""With sag."""
+MASSLESS = "#7F7F7F"
+"""Straight weightless cables."""
+WARNING = "#D55E00"
+"""Where no cable holds the platform."""
+WARNING_PALE = "#F9E3D3"
+LEFT_OUT = "#DADADA"
+"""What the study leaves out."""
+INK = "#222222"
+"""Text, axes, outlines."""
+FAINT = "#B5B5B5"
+"""Guides and whatever is not the subject."""
+
+PAPER_WIDTH_MM = 170.0
+"""Column width of the printed report."""
+FONT_POINTS = 8.0

@@ -1,0 +1,59 @@
+"""What a map shows: its name, its unit, and how it is taken from a field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from designer.report.figures.maps import Field
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One of the quantities that can be mapped.
+
+    Parameters
+    ----------
+    key : str
+        Short name, used in the ids of a drawing.
+    title : str
+        Name on the axis.
+    unit : str
+        Unit on the axis; empty for a pure number.
+    scale : float
+        From SI to that unit.
+    """
+
+    key: str
+    title: str
+    unit: str
+    scale: float
+
+    @property
+    def label(self) -> str:
+        """Text of an axis or a colour bar."""
+        return f"{self.title} [{self.unit}]" if self.unit else self.title
+
+    def of(self, field: Field) -> FloatArray:
+        """Return the values in the unit of the axis; NaN where the pose does not count."""
+        values = {
+            "diameter": field.diameter_m,
+            "tension": field.tension_N,
+            "ratio": field.tension_N / field.massless_tension_N,
+        }[self.key]
+        return np.where(field.counts, values * self.scale, np.nan)
+
+    def text(self, value: float) -> str:
+        """Return a value with its unit, to three or four digits."""
+        digits = 2 if self.key == "ratio" else 1
+        return f"{value:.{digits}f} {self.unit}".strip()
+
+
+DIAMETER = Quantity("diameter", "needed diameter", "mm", 1e3)
+TENSION = Quantity("tension", "largest tension", "kN", 1e-3)
+RATIO = Quantity("ratio", "tension with sag over tension without", "", 1.0)

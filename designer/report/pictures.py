@@ -1,0 +1,32 @@
+"""The figures of a report, by the place where each is shown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.report.parts import Picture
+
+
+@dataclass(frozen=True, slots=True)
+class Pictures:
+    """All figures; None where a study gives nothing to draw.
+
+    Parameters
+    ----------
+    robot : Picture or None
+        The robot with its cables in their true shape, for the first page.
+    loop_chart : Picture or None
+        Diameter and tension over the turns of the loop.
+    pose_scene : Picture or None
+        The robot in the configured pose.
+    workspace : tuple of Picture
+        Maps and charts of the workspace, in the order in which they are shown.
+    candidates : Picture or None
+        The candidates as a chart.
+    """
+
+    robot: Picture | None = None
+    loop_chart: Picture | None = None
+    pose_scene: Picture | None = None
+    workspace: tuple[Picture, ...] = ()
+    candidates: Picture | None = None

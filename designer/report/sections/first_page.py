@@ -1,0 +1,205 @@
+"""The first page: the answer, what it rests on, and what to do where it is no."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.analysis import Analysis
+from designer.report import format as fmt
+from designer.report.findings import Findings
+from designer.report.parts import Fact, Picture, Statement
+from designer.report.sections.confidence import confidence
+from designer.report.sections.negative import actions, reasons
+from designer.report.sections.sag_cost import SagCost, sag_cost
+from designer.report.sections.selection import product_name
+from designer.selection.result import Candidate
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """The answer at a glance.
+
+    Parameters
+    ----------
+    heading : str
+        What the card is about, such as ``Chosen rope``.
+    size : str
+        The size, set large.
+    product : str
+        Name and maker, or what the size refers to.
+    facts : tuple of Fact
+        The figures that a reviewer looks for first.
+    """
+
+    heading: str
+    size: str
+    product: str
+    facts: tuple[Fact, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FirstPage:
+    """The first page.
+
+    Parameters
+    ----------
+    verdict : Statement
+        The answer in one or two sentences.
+    card : Card or None
+        The chosen rope, or the diameter that is needed; None where there is neither.
+    reasons : tuple of Statement
+        Why the answer is no, and where; empty if it is yes.
+    actions : tuple of str
+        What could be done about it.
+    sag : SagCost or None
+        What ignoring sag would have cost; None where there is nothing to compare.
+    confidence : tuple of Statement
+        How sure the answer is.
+    picture : Picture or None
+        The robot.
+    """
+
+    verdict: Statement
+    card: Card | None
+    reasons: tuple[Statement, ...]
+    actions: tuple[str, ...]
+    sag: SagCost | None
+    confidence: tuple[Statement, ...]
+    picture: Picture | None
+
+
+def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) -> FirstPage:
+    """Return the first page."""
+    return FirstPage(
+        verdict=_verdict(analysis),
+        card=_card(analysis),
+        reasons=reasons(analysis, findings),
+        actions=actions(analysis, findings),
+        sag=sag_cost(analysis, findings),
+        confidence=confidence(analysis, findings),
+        picture=picture,
+    )
+
+
+def _verdict(analysis: Analysis) -> Statement:
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if analysis.is_positive:
+        return Statement("Yes", _positive(analysis, chosen), "good")
+    if chosen is not None:
+        text = f"{_holds(chosen)} But {_open_point(analysis)}."
+        return Statement("In part", text, "doubt")
+    return Statement("No", _negative(analysis), "bad")
+
+
+def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
+    workspace, pose = analysis.workspace, analysis.pose
+    if chosen is not None:
+        return f"{_holds(chosen)} {_load(chosen)}"
+    if workspace is not None and workspace.sagging is not None:
+        worst = workspace.sagging
+        return (
+            f"A cable of {fmt.millimetres(worst.diameter_m)} of the configured family holds every "
+            f"pose of the workspace. Its largest tension is {fmt.newtons(worst.max_tension_N)}."
+        )
+    assert pose is not None
+    return (
+        f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} of the configured family "
+        "holds the configured pose. Its largest tension is "
+        f"{fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
+    )
+
+
+def _holds(chosen: Candidate) -> str:
+    name = f"{chosen.grade.product} ({chosen.grade.id})"
+    return f"The {chosen.size.id} size of {name} holds every pose of the workspace."
+
+
+def _load(chosen: Candidate) -> str:
+    found = chosen.verification
+    text = (
+        f"Its largest tension is {fmt.newtons(found.max_tension_N)}, "
+        f"{fmt.utilisation(found.utilisation)} of what the safety factor allows."
+    )
+    return f"{text} There is hardly any reserve beyond it." if found.utilisation > 0.97 else text
+
+
+def _open_point(analysis: Analysis) -> str:
+    pose, workspace = analysis.pose, analysis.workspace
+    if pose is not None and not pose.sizing.statics.is_solved:
+        return "no cable of the configured family can hold the configured pose"
+    assert workspace is not None
+    return "no cable of the configured family can serve the whole workspace"
+
+
+def _negative(analysis: Analysis) -> str:
+    workspace, selection = analysis.workspace, analysis.selection
+    if workspace is not None and not workspace.is_feasible:
+        if selection is not None:
+            return (
+                "The workspace cannot be served as it is: neither a cable of the configured "
+                "family nor a rope of the allowed grades holds every pose."
+            )
+        return "The workspace cannot be served: no cable of the configured family is enough."
+    if selection is not None:
+        need = ""
+        if workspace is not None and workspace.sagging is not None:
+            worst = workspace.sagging
+            diameter = fmt.millimetres(worst.diameter_m)
+            need = f" A cable of the configured family would need {diameter}."
+        return f"None of the ropes that the study allows holds every pose of the workspace.{need}"
+    return "The configured pose cannot be held by any cable of the configured family."
+
+
+def _card(analysis: Analysis) -> Card | None:
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if chosen is not None:
+        return _rope_card(analysis, chosen)
+    workspace, pose = analysis.workspace, analysis.pose
+    if workspace is not None:
+        worst = workspace.sagging
+        return None if worst is None else Card(
+            "Diameter that the workspace needs",
+            fmt.millimetres(worst.diameter_m),
+            "of the configured cable family",
+            (
+                Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
+                Fact("At the position", fmt.position(worst.position_m)),
+            ),
+        )
+    if pose is None or not pose.sizing.statics.is_solved:
+        return None
+    statics = pose.sizing.statics
+    return Card(
+        "Diameter that the pose needs",
+        fmt.millimetres(float(pose.sizing.diameter_m)),
+        "of the configured cable family",
+        (
+            Fact("Largest tension", fmt.newtons(float(statics.largest_tension_N))),
+            Fact("At the position", fmt.position(statics.poses.position_m)),
+        ),
+    )
+
+
+def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
+    assert analysis.study.selection is not None
+    size, found = chosen.size, chosen.verification
+    required = fmt.trimmed(analysis.study.selection.safety_factor)
+    actual = size.minimum_breaking_load_N / found.max_tension_N
+    longest = fmt.listing(fmt.fixed(float(x), 1) for x in found.longest_m)
+    return Card(
+        heading="Chosen rope",
+        size=size.id,
+        product=product_name(chosen.grade),
+        facts=(
+            Fact("Grade", chosen.grade.id),
+            Fact("Nominal diameter", fmt.millimetres(size.diameter_m)),
+            Fact("Minimum breaking load", fmt.newtons(size.minimum_breaking_load_N)),
+            Fact("Largest tension", fmt.newtons(found.max_tension_N)),
+            Fact("At the position", fmt.position(found.worst_position_m)),
+            Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
+            Fact("Utilisation", fmt.utilisation(found.utilisation)),
+            Fact("Mass", fmt.kilograms_per_metre(size.linear_density_kg_per_m)),
+            Fact("Longest length of each cable", f"{longest}\u00a0m", "unstrained, no spare"),
+            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+        ),
+    )

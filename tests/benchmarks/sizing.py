@@ -1,0 +1,191 @@
+"""Sizing and statics of random poses against SciPy pose by pose, in the same run.
+
+    python tests/benchmarks/sizing.py [--poses 1000000]
+
+The baselines are what a user would write: the paper's equations in NumPy, given to SLSQP and to
+`root` with a massless start. Ratios are what counts; absolute times depend on the machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize, root
+
+from designer.arrays import frozen_array
+from designer.cable import STANDARD_GRAVITY_M_PER_S2 as G
+from designer.cable import Material
+from designer.region import Prism
+from designer.robot import Platform, Poses, Robot
+from designer.sizing.newton import size_poses
+from designer.statics.geometry import cable_geometry, structure_matrix, weight_wrench_N
+from designer.statics.inverse import solve_massless, solve_sagging
+from designer.study import Workspace
+from designer.workspace.samples import CHUNK
+from designer.workspace.sweep import map_workspace
+
+STEEL = Material(7800.0, 200e9, 180e6)
+FAST = Robot(frozen_array([[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]), Platform(4000.0))
+REGION = Prism.over(FAST.exit_points_m, 10.35, (-200.0, -40.0))
+
+
+def six_cables() -> Robot:
+    def ring(radius: float, degrees: list[float]) -> np.ndarray:
+        a = np.radians(degrees)
+        return np.stack([radius * np.cos(a), radius * np.sin(a), 0 * a], axis=1)
+
+    exits = ring(150.0, [0, 0, 120, 120, 240, 240])
+    attachments = ring(5.0, [60, -60, 180, 60, 300, 180])
+    return Robot(frozen_array(exits), Platform(4000.0, frozen_array(attachments)))
+
+
+def poses_of_three(count: int) -> Poses:
+    rng = np.random.default_rng(0)
+    low, high = REGION.bounds_m
+    points = rng.uniform(low, high, (3 * count, 3))
+    return Poses.at(points[REGION.contains(points)][:count])
+
+
+def poses_of_six(count: int) -> Poses:
+    rng = np.random.default_rng(0)
+    position = np.column_stack([rng.uniform(-40, 40, (count, 2)), rng.uniform(-150, -40, count)])
+    return Poses.at(position, rng.normal(0, 0.01, (count, 3)))
+
+
+class Paper:
+    """The paper's equations for one pose, written down as printed, in scaled unknowns."""
+
+    def __init__(self, robot: Robot, pose: Poses) -> None:
+        geometry = cable_geometry(robot, pose)
+        self.X, self.Z = geometry.horizontal_distance_m, -geometry.drop_m
+        self.W = structure_matrix(robot, geometry)
+        self.e = weight_wrench_N(robot, pose)
+        self.tension = solve_massless(robot, pose).tension_N
+        self.force = self.tension.max()
+        self.chord = geometry.chord_m
+
+    def start(self) -> np.ndarray:
+        share = self.tension / self.force / self.chord
+        return np.stack([share * self.X, share * self.Z, np.ones_like(share)], axis=1).ravel()
+
+    def equations(self, u: np.ndarray, area: float) -> np.ndarray:
+        Fx, Fz, l = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
+        l = l * self.chord
+        w, EA = G * STEEL.density_kg_per_m3 * area, STEEL.youngs_modulus_Pa * area
+        top = Fz - w * l
+        x = Fx * l / EA + Fx / w * (np.arcsinh(Fz / Fx) - np.arcsinh(top / Fx))
+        z = Fz * l / EA - l**2 * w / (2 * EA) + (np.hypot(Fx, Fz) - np.hypot(Fx, top)) / w
+        balance = self.W @ np.stack([Fx, Fz], axis=1).ravel() - self.e
+        return np.concatenate([(x - self.X) / self.chord, (z - self.Z) / self.chord, balance / self.force])
+
+    def margin(self, u: np.ndarray, area: float) -> np.ndarray:
+        Fx, Fz, l = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
+        w = G * STEEL.density_kg_per_m3 * area
+        return 1.0 - np.hypot(Fx, Fz - w * l * self.chord) / (STEEL.allowable_stress_Pa * area)
+
+
+def slsqp_diameter_m(robot: Robot, pose: Poses) -> float:
+    paper = Paper(robot, pose)
+    unit = paper.force / STEEL.allowable_stress_Pa
+    answer = minimize(
+        lambda u: u[-1],
+        np.append(paper.start(), 1.0),
+        jac=lambda u: np.eye(u.size)[-1],
+        method="SLSQP",
+        constraints=[
+            {"type": "eq", "fun": lambda u: paper.equations(u[:-1], u[-1] * unit)},
+            {"type": "ineq", "fun": lambda u: paper.margin(u[:-1], u[-1] * unit)},
+        ],
+        options={"ftol": 1e-12, "maxiter": 300},
+    )
+    return math.sqrt(4 * answer.x[-1] * unit / math.pi)
+
+
+def root_lengths_m(robot: Robot, pose: Poses, area: float) -> np.ndarray:
+    paper = Paper(robot, pose)
+    answer = root(paper.equations, paper.start(), args=(area,), tol=1e-12)
+    return answer.x.reshape(-1, 3)[:, 2] * paper.chord
+
+
+def seconds_per_pose(work: Callable[[], object], count: int, repeats: int = 3) -> float:
+    best = math.inf
+    for _ in range(repeats):
+        start = time.perf_counter()
+        work()
+        best = min(best, time.perf_counter() - start)
+    return best / count
+
+
+def one(poses: Poses, k: int) -> Poses:
+    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[k]
+    return Poses(poses.position_m[k], rotation)
+
+
+def in_chunks(solve: Callable[[Poses], object], poses: Poses) -> None:
+    for at in range(0, len(poses.position_m), CHUNK):
+        part = slice(at, at + CHUNK)
+        rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[part]
+        solve(Poses(poses.position_m[part], rotation))
+
+
+def compare(name: str, robot: Robot, poses: Poses, n_baseline: int) -> None:
+    cable = STEEL.cable(0.04)
+    size_poses(robot, one(poses, 0), STEEL)  # compiled or loaded before the clock starts
+    ours = seconds_per_pose(
+        lambda: in_chunks(lambda p: size_poses(robot, p, STEEL), poses), len(poses.position_m)
+    )
+    fixed = seconds_per_pose(
+        lambda: in_chunks(lambda p: solve_sagging(robot, p, cable), poses), len(poses.position_m)
+    )
+    some = range(n_baseline)
+    slsqp = seconds_per_pose(
+        lambda: [slsqp_diameter_m(robot, one(poses, k)) for k in some], n_baseline, 2
+    )
+    rooted = seconds_per_pose(
+        lambda: [root_lengths_m(robot, one(poses, k), math.pi * 0.01**2 * 4) for k in some],
+        n_baseline, 2,
+    )  # fmt: skip
+    agreement = [
+        abs(slsqp_diameter_m(robot, one(poses, k)) / float(size_poses(robot, one(poses, k), STEEL).diameter_m) - 1)
+        for k in some
+    ]
+    print(f"{name}: {len(poses.position_m)} poses, baseline on {n_baseline}")
+    print(f"  sizing   {1e6 * ours:8.3f} µs   SLSQP {1e6 * slsqp:8.0f} µs   ratio {slsqp / ours:10.0f}")
+    print(f"  statics  {1e6 * fixed:8.3f} µs   root  {1e6 * rooted:8.0f} µs   ratio {rooted / fixed:10.0f}")
+    print(f"  SLSQP and Newton differ by {np.median(agreement):.0e} (median), {max(agreement):.0e} (largest)")
+
+
+def peak_memory_MB(samples: int) -> float:
+    """Peak of a process of its own that maps the workspace."""
+    code = f"import sys; sys.path.insert(0, {os.path.dirname(__file__)!r}); import sizing; sizing.only_map({samples})"
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    return float(run.stdout)
+
+
+def only_map(samples: int) -> None:
+    map_workspace(FAST, Workspace(REGION, samples=samples), STEEL)
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--poses", type=int, default=1_000_000)
+    parser.add_argument("--baseline", type=int, default=60)
+    arguments = parser.parse_args()
+    print(f"{os.cpu_count()} threads")
+    compare("3 cables, 3 DOF", FAST, poses_of_three(arguments.poses), arguments.baseline)
+    compare("6 cables, 6 DOF", six_cables(), poses_of_six(arguments.poses), arguments.baseline)
+    few, many = peak_memory_MB(arguments.poses), peak_memory_MB(10 * arguments.poses)
+    print(f"peak memory of the map: {few:.0f} MB at {arguments.poses}, {many:.0f} MB at {10 * arguments.poses} poses")
+
+
+if __name__ == "__main__":
+    main()
