@@ -89,7 +89,7 @@ def report(
     wrong, and nothing is written.
     """
     from designer.output import output_folder
-    from designer.report.figures.scenes import require_opengl
+    from designer.report.figures.opengl import require_opengl
     from designer.terminal import ProgressBars, announce_compiling, print_faults_of, print_summary
 
     study = _study(config)

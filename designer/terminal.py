@@ -59,7 +59,7 @@ def announce_compiling() -> None:
     from designer.kernel.square import solve_range
 
     if not is_cached(solve_range):
-        _notes.print("Compiling the solver: once on this machine, about ten seconds …")
+        _notes.print("Compiling the solver: once on this machine, some seconds …")
 
 
 def print_faults_of(catalogue: Catalogue) -> None:

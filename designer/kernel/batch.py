@@ -77,9 +77,9 @@ def solve_batch(
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
     arguments: tuple[Any, ...] = (
-        robot.exit_points_m,
+        np.ascontiguousarray(robot.exit_points_m)[None],
         robot.attachments_m,
-        np.array([0.0, 0.0, robot.weight_N, 0.0, 0.0, 0.0]),
+        np.array([[0.0, 0.0, robot.weight_N, 0.0, 0.0, 0.0]]),
         robot.platform.centre_of_mass_m,
         np.ascontiguousarray(poses.position_m),
         np.ascontiguousarray(poses.rotation.reshape(-1, 3, 3)),

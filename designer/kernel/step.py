@@ -13,6 +13,7 @@ from designer.kernel.layout import (
     L_0,
     L_P,
     LANES,
+    LOAD,
     MASSLESS,
     RX,
     RY,
@@ -46,29 +47,35 @@ def place(
     rotations: FloatArray,
     indices: IntArray,
 ) -> None:
-    """Fill the geometry of one block: cable vectors, levers and the load to be balanced."""
-    n = exit_points.shape[0]
+    """Fill the geometry of one block: cable vectors, levers and the load to be balanced.
+
+    Exit points, load and rotations have a leading axis of poses, or of one for all.
+    """
+    n = exit_points.shape[1]
     for j in range(LANES):
-        x = positions[indices[j]]
-        Q = rotations[indices[j] if rotations.shape[0] > 1 else 0]
+        at = indices[j]
+        x = positions[at]
+        A = exit_points[at if exit_points.shape[0] > 1 else 0]
+        Q = rotations[at if rotations.shape[0] > 1 else 0]
+        f = load[at if load.shape[0] > 1 else 0]
         for i in range(n):
             b = attachments[i]
             row = cables[i]
             for axis in range(3):
                 r = Q[axis, 0] * b[0] + Q[axis, 1] * b[1] + Q[axis, 2] * b[2]
                 row[RX + axis, j] = r
-                row[EX + axis, j] = exit_points[i, axis] - x[axis] - r
+                row[EX + axis, j] = A[i, axis] - x[axis] - r
             row[X2, j] = row[EX, j] ** 2 + row[EY, j] ** 2
             row[L, j] = np.sqrt(row[X2, j] + row[D, j] ** 2)
         s = load_point
-        for axis in range(3):
-            poses[axis, j] = load[axis]
         sx = Q[0, 0] * s[0] + Q[0, 1] * s[1] + Q[0, 2] * s[2]
         sy = Q[1, 0] * s[0] + Q[1, 1] * s[1] + Q[1, 2] * s[2]
         sz = Q[2, 0] * s[0] + Q[2, 1] * s[1] + Q[2, 2] * s[2]
-        poses[3, j] = load[3] + sy * load[2] - sz * load[1]
-        poses[4, j] = load[4] + sz * load[0] - sx * load[2]
-        poses[5, j] = load[5] + sx * load[1] - sy * load[0]
+        for axis in range(3):
+            poses[LOAD + axis, j] = f[axis]
+        poses[LOAD + 3, j] = f[3] + sy * f[2] - sz * f[1]
+        poses[LOAD + 4, j] = f[4] + sz * f[0] - sx * f[2]
+        poses[LOAD + 5, j] = f[5] + sx * f[1] - sy * f[0]
 
 
 @kernel

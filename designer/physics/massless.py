@@ -29,4 +29,4 @@ def tension_N(
     """
     slope_length = length_m(horizontal_distance_m, drop_m)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.asarray(horizontal_force_N) * slope_length / horizontal_distance_m)
+        return np.asarray(horizontal_force_N) * slope_length / np.asarray(horizontal_distance_m)

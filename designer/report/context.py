@@ -46,8 +46,8 @@ class ReportContext:
         Name of the study.
     generator : str
         This program and its version.
-    created : str
-        Date and time of the analysis.
+    created, created_iso : str
+        Date and time of the analysis, to read and as ISO 8601.
     headings : tuple of Heading
         The sections that this report has, in order; ids are ``answer``, ``inputs``, ``pose``,
         ``workspace``, ``selection``, ``left-out``, ``assumptions``, ``nomenclature`` and
@@ -73,6 +73,7 @@ class ReportContext:
     title: str
     generator: str
     created: str
+    created_iso: str
     headings: tuple[Heading, ...]
     first_page: FirstPage
     inputs: InputsSection
@@ -103,6 +104,7 @@ def build_context(analysis: Analysis, pictures: Pictures) -> ReportContext:
         title=analysis.study.name,
         generator=f"cdpr-designer {analysis.provenance.version}",
         created=created(analysis),
+        created_iso=analysis.provenance.created.isoformat(timespec="seconds"),
         headings=_headings(analysis),
         first_page=first_page(analysis, findings, pictures.robot),
         inputs=inputs_section(analysis),

@@ -77,19 +77,20 @@ class Paper:
         return np.stack([share * self.X, share * self.Z, np.ones_like(share)], axis=1).ravel()
 
     def equations(self, u: np.ndarray, area: float) -> np.ndarray:
-        Fx, Fz, l = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
-        l = l * self.chord
+        Fx, Fz, length = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
+        length = length * self.chord
         w, EA = G * STEEL.density_kg_per_m3 * area, STEEL.youngs_modulus_Pa * area
-        top = Fz - w * l
-        x = Fx * l / EA + Fx / w * (np.arcsinh(Fz / Fx) - np.arcsinh(top / Fx))
-        z = Fz * l / EA - l**2 * w / (2 * EA) + (np.hypot(Fx, Fz) - np.hypot(Fx, top)) / w
+        top = Fz - w * length
+        x = Fx * length / EA + Fx / w * (np.arcsinh(Fz / Fx) - np.arcsinh(top / Fx))
+        z = Fz * length / EA - length**2 * w / (2 * EA) + (np.hypot(Fx, Fz) - np.hypot(Fx, top)) / w
         balance = self.W @ np.stack([Fx, Fz], axis=1).ravel() - self.e
-        return np.concatenate([(x - self.X) / self.chord, (z - self.Z) / self.chord, balance / self.force])
+        closure = np.concatenate([x - self.X, z - self.Z]) / np.tile(self.chord, 2)
+        return np.concatenate([closure, balance / self.force])
 
     def margin(self, u: np.ndarray, area: float) -> np.ndarray:
-        Fx, Fz, l = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
+        Fx, Fz, length = u.reshape(-1, 3).T * [[self.force], [self.force], [1.0]]
         w = G * STEEL.density_kg_per_m3 * area
-        return 1.0 - np.hypot(Fx, Fz - w * l * self.chord) / (STEEL.allowable_stress_Pa * area)
+        return 1.0 - np.hypot(Fx, Fz - w * length * self.chord) / (STEEL.allowable_stress_Pa * area)
 
 
 def slsqp_diameter_m(robot: Robot, pose: Poses) -> float:
@@ -153,24 +154,26 @@ def compare(name: str, robot: Robot, poses: Poses, n_baseline: int) -> None:
         lambda: [root_lengths_m(robot, one(poses, k), math.pi * 0.01**2 * 4) for k in some],
         n_baseline, 2,
     )  # fmt: skip
-    agreement = [
-        abs(slsqp_diameter_m(robot, one(poses, k)) / float(size_poses(robot, one(poses, k), STEEL).diameter_m) - 1)
-        for k in some
-    ]
+    newton = size_poses(robot, poses, STEEL).diameter_m
+    agreement = [abs(slsqp_diameter_m(robot, one(poses, k)) / newton[k] - 1) for k in some]
     print(f"{name}: {len(poses.position_m)} poses, baseline on {n_baseline}")
-    print(f"  sizing   {1e6 * ours:8.3f} µs   SLSQP {1e6 * slsqp:8.0f} µs   ratio {slsqp / ours:10.0f}")
-    print(f"  statics  {1e6 * fixed:8.3f} µs   root  {1e6 * rooted:8.0f} µs   ratio {rooted / fixed:10.0f}")
-    print(f"  SLSQP and Newton differ by {np.median(agreement):.0e} (median), {max(agreement):.0e} (largest)")
+    for task, fast, peer, slow in (
+        ("sizing", ours, "SLSQP", slsqp),
+        ("statics", fixed, "root", rooted),
+    ):
+        times = f"{1e6 * fast:8.3f} µs   {peer:5} {1e6 * slow:8.0f} µs"
+        print(f"  {task:8} {times}   ratio {slow / fast:10.0f}")
+    print(f"  difference {np.median(agreement):.0e} (median), {max(agreement):.0e} (largest)")
 
 
 def peak_memory_MB(samples: int) -> float:
     """Peak of a process of its own that maps the workspace."""
-    code = f"import sys; sys.path.insert(0, {os.path.dirname(__file__)!r}); import sizing; sizing.only_map({samples})"
-    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    command = [sys.executable, __file__, "--map-only", str(samples)]
+    run = subprocess.run(command, check=True, capture_output=True, text=True)
     return float(run.stdout)
 
 
-def only_map(samples: int) -> None:
+def map_only(samples: int) -> None:
     map_workspace(FAST, Workspace(REGION, samples=samples), STEEL)
     print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
@@ -179,12 +182,16 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--poses", type=int, default=1_000_000)
     parser.add_argument("--baseline", type=int, default=60)
+    parser.add_argument("--map-only", type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.map_only:
+        map_only(arguments.map_only)
+        return
     print(f"{os.cpu_count()} threads")
     compare("3 cables, 3 DOF", FAST, poses_of_three(arguments.poses), arguments.baseline)
     compare("6 cables, 6 DOF", six_cables(), poses_of_six(arguments.poses), arguments.baseline)
     few, many = peak_memory_MB(arguments.poses), peak_memory_MB(10 * arguments.poses)
-    print(f"peak memory of the map: {few:.0f} MB at {arguments.poses}, {many:.0f} MB at {10 * arguments.poses} poses")
+    print(f"peak memory of the map: {few:.0f} MB, with ten times the poses {many:.0f} MB")
 
 
 if __name__ == "__main__":

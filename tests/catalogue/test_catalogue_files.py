@@ -102,7 +102,7 @@ def test_without_declared_units_bare_numbers_are_si(tmp_path):
         ("diameter: mm", "diameter: m", 19, "sizes[0].diameter", "0.1 mm to 500 mm"),
     ],
 )
-def test_a_fault_is_named_with_line_and_field(tmp_path, old, new, line, field, words):  # noqa: PLR0917
+def test_a_fault_is_named_with_line_and_field(tmp_path, old, new, line, field, words):
     assert old in GRADE_TEXT
 
     faults = _faults(tmp_path / "acme.yaml", GRADE_TEXT.replace(old, new))

@@ -154,7 +154,7 @@ def test_batch_equals_loop() -> None:
     length = np.hypot(X, D) * rng.uniform(0.999, 2, 50)
     batch = catenary.forces_from_length(length, X, D, 1e7, 3.0)
     single = [catenary.forces_from_length(*one, 1e7, 3.0) for one in zip(length, X, D, strict=True)]
-    assert np.array(batch).T == pytest.approx(np.array(single), rel=1e-11)
+    assert np.array(single) == pytest.approx(np.array(batch).T, rel=1e-11)
 
 
 def test_massless_is_the_limit_of_no_weight() -> None:

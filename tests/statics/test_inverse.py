@@ -39,7 +39,7 @@ def test_solved_poses_close_by_the_papers_equations(robot, steel) -> None:
 
 def test_unsolved_poses_carry_no_number(robot, steel) -> None:
     poses = poses_below(robot, 200, 2)
-    high = Poses.at(poses.position_m + [0, 0, 300.0])
+    high = Poses.at(poses.position_m + np.array([0, 0, 300.0]))
     statics = solve_sagging(robot, high, steel.cable(0.03))
     failed = ~statics.is_solved
     assert failed.any()

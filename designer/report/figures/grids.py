@@ -95,6 +95,25 @@ def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
     }
 
 
+def reach_m(polygon_m: FloatArray, centre_m: FloatArray, azimuth_rad: float) -> float:
+    """Return how far it is from a point inside a convex polygon to its edge [m].
+
+    Parameters
+    ----------
+    polygon_m : array (n_corners, 2)
+        Corners, counter-clockwise [m].
+    centre_m : array (2,)
+        The point [m].
+    azimuth_rad : float
+        Direction, from the x axis [rad].
+    """
+    edges = np.roll(polygon_m, -1, axis=0) - polygon_m
+    outward = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
+    room = np.einsum("ek,ek->e", outward, polygon_m - centre_m)
+    speed = outward @ np.array([np.cos(azimuth_rad), np.sin(azimuth_rad)])
+    return float(np.min(room[speed > 0.0] / speed[speed > 0.0]))
+
+
 def opening_azimuth_rad(region: Prism, toward_m: FloatArray) -> float:
     """Return the direction in which `cutaway_m` is open, seen from the centre [rad]."""
     return _azimuth(np.asarray(toward_m)[None, :2] - centroid_m(region.polygon_m))[0] + (
@@ -105,25 +124,16 @@ def opening_azimuth_rad(region: Prism, toward_m: FloatArray) -> float:
 def _opened(polygon_m: FloatArray, centre: FloatArray, toward_m: FloatArray) -> FloatArray:
     """Points around the polygon from the end of the opening on, back to its start."""
     start = _azimuth(np.asarray(toward_m, dtype=np.float64)[None, :2] - centre)[0]
-    ends = start + np.array([0.0, _OPENING_RAD])
-    points = np.concatenate([outline_m(polygon_m, _SPOKES)[:-1], _hit(polygon_m, centre, ends)])
+    ends = [
+        centre + reach_m(polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
+        for a in (start, start + _OPENING_RAD)
+    ]
+    points = np.concatenate([outline_m(polygon_m, _SPOKES)[:-1], ends])
     turned = np.mod(_azimuth(points - centre) - start, 2.0 * np.pi)
     turned[-2:] = [2.0 * np.pi, _OPENING_RAD]
     kept = np.argsort(turned)
     kept = kept[turned[kept] >= _OPENING_RAD]
     return np.asarray(points[kept][::-1])
-
-
-def _hit(polygon_m: FloatArray, centre: FloatArray, azimuth_rad: FloatArray) -> FloatArray:
-    """Where rays from the centre leave the polygon (n, 2) [m]."""
-    edges = np.roll(polygon_m, -1, axis=0) - polygon_m
-    normal = np.stack([edges[:, 1], -edges[:, 0]], axis=1)  # outward, corners counter-clockwise
-    ray = np.stack([np.cos(azimuth_rad), np.sin(azimuth_rad)], axis=1)
-    room = np.einsum("ek,ek->e", normal, polygon_m - centre)
-    speed = ray @ normal.T
-    with np.errstate(divide="ignore"):
-        reach = np.where(speed > 0.0, room / speed, np.inf).min(axis=1)
-    return np.asarray(centre + reach[:, None] * ray)
 
 
 def _rings(centre: FloatArray, outline: FloatArray, count: int) -> FloatArray:

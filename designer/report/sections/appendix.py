@@ -108,7 +108,7 @@ def provenance_section(analysis: Analysis) -> ProvenanceSection:
 
 
 def _facts(analysis: Analysis) -> tuple[Fact, ...]:
-    from designer.kernel.square import TOLERANCE
+    from designer.kernel.answer import TOLERANCE
 
     provenance, study = analysis.provenance, analysis.study
     facts = [

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from designer.analysis import Analysis
-from designer.region import Prism
 from designer.report import format as fmt
 from designer.report.findings import Findings, Unserved
 from designer.report.parts import Statement
@@ -55,7 +54,7 @@ def _workspace_reason(analysis: Analysis, findings: Findings) -> Iterator[Statem
     if workspace.infeasible_example_m is not None:
         parts.append(f"One such position is {fmt.position(workspace.infeasible_example_m)}.")
     if findings.unserved is not None:
-        parts.append(_whereabouts(findings.unserved))
+        parts.append(_whereabouts(analysis, findings.unserved))
     yield Statement("The workspace", " ".join(parts), "bad")
 
 
@@ -69,11 +68,17 @@ def _shares(analysis: Analysis, workspace: WorkspaceMap) -> Iterator[str]:
             yield f"In {fmt.share(amount, census.samples)} of its volume {why}."
 
 
-def _whereabouts(unserved: Unserved) -> str:
-    return (
-        f"All samples that are not served lie above z = {fmt.metres(unserved.lowest_z_m)} and "
-        f"within {fmt.metres(unserved.depth_m)} of the sides."
-    )
+def _whereabouts(analysis: Analysis, unserved: Unserved) -> str:
+    text = "All samples that are not served lie"
+    if _is_layer(analysis, unserved):
+        text += f" above z = {fmt.metres(unserved.lowest_z_m)} and"
+    return f"{text} within {fmt.metres(unserved.depth_m)} of the sides."
+
+
+def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
+    assert analysis.study.workspace is not None
+    low, high = analysis.study.workspace.region.bounds_m[:, 2]
+    return bool(unserved.lowest_z_m > low + _LAYER * (high - low))
 
 
 def _selection_reason(analysis: Analysis) -> Iterator[Statement]:
@@ -144,8 +149,7 @@ def _real_figures(findings: Findings) -> Iterator[str]:
 
 
 def _change_region(analysis: Analysis, unserved: Unserved | None) -> Iterator[str]:
-    region = analysis.study.workspace.region if analysis.study.workspace else None
-    if unserved is None or not isinstance(region, Prism):
+    if unserved is None:
         yield "Make the region smaller where poses are not served."
         return
     if unserved.depth_m < _STRIP * unserved.inradius_m:
@@ -154,8 +158,7 @@ def _change_region(analysis: Analysis, unserved: Unserved | None) -> Iterator[st
             f"{fmt.metres(unserved.depth_m)}: toward the poses that are not served the needed "
             "diameter grows without bound."
         )
-    low, high = region.z_m
-    if unserved.lowest_z_m > low + _LAYER * (high - low):
+    if _is_layer(analysis, unserved):
         yield f"Keep the top of the region below z = {fmt.metres(unserved.lowest_z_m)}."
 
 

@@ -85,6 +85,7 @@ def _statement(selection: SelectionResult) -> Statement:
 def _sources(grade: Grade) -> tuple[Fact, ...]:
     modulus = grade.modulus
     area = {"nominal": "nominal circle", "metallic": "metallic area"}[modulus.reference_area]
+    doubt = f"±\u00a0{fmt.trimmed(100 * modulus.uncertainty)}\u00a0%"
     return (
         Fact("Grade", grade.id),
         Fact("Product", grade.product),
@@ -95,7 +96,7 @@ def _sources(grade: Grade) -> tuple[Fact, ...]:
         Fact("Trust", f"{grade.trust}: {TRUST_MEANING[grade.trust]}"),
         Fact(
             "Modulus",
-            f"{fmt.pascals(modulus.value_Pa)} on the {area}, ± {fmt.trimmed(100 * modulus.uncertainty)}\u00a0%",
+            f"{fmt.pascals(modulus.value_Pa)} {doubt} on the {area}",
             f"{modulus.basis}: {modulus.source}",
         ),
         *(Fact("Note", note) for note in grade.notes),

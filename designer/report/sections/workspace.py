@@ -10,7 +10,7 @@ from designer.report import format as fmt
 from designer.report.findings import Findings, OtherPolicy
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.statics.verdict import Verdict
-from designer.study import Workspace
+from designer.study import HangsBelow, Workspace
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 
@@ -191,7 +191,10 @@ def _policies(
     if other is None:
         return None
     maps = {workspace.hangs_below: found, other.hangs_below: other.map}
-    titles = {"include": "These poses count", "exclude": "These poses are left out"}
+    titles: dict[HangsBelow, str] = {
+        "include": "These poses count",
+        "exclude": "These poses are left out",
+    }
     rows = []
     for policy, title in titles.items():
         here = maps[policy]

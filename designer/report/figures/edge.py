@@ -1,0 +1,116 @@
+"""The way from the middle of the region outward, to where no cable is thick enough any more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.region import PointList, Prism
+from designer.report.figures import grids
+from designer.report.figures.field import Field, field_at
+from designer.study import Study
+
+_STEPS = 400
+_BISECTIONS = 40
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EdgeProfile:
+    """Sizing along a level line from the centre of the region to the hull of the exit points.
+
+    Parameters
+    ----------
+    distance_m : array (n,)
+        Distance to the hull's edge along the line, descending to zero [m].
+    field : Field
+        Sizing at these positions (n,).
+    focus_distance_m : float
+        Distance of the pose that the line was laid through [m].
+    region_distance_m : float or None
+        Where the line leaves the region [m]; None for a list of points.
+    limit_distance_m : float or None
+        Where the last pose that a cable can hold lies [m]; None if every pose up to the edge, or
+        none at all, can be held.
+    """
+
+    distance_m: FloatArray
+    field: Field
+    focus_distance_m: float
+    region_distance_m: float | None
+    limit_distance_m: float | None
+
+
+def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
+    """Size the level line from the centre of the region through a pose to the edge of the hull.
+
+    Parameters
+    ----------
+    study : Study
+        With a workspace.
+    focus_m : array (3,)
+        The line runs at its height, and through it unless it lies in the centre [m].
+
+    Returns
+    -------
+    EdgeProfile or None
+        None where the centre of the region lies outside the hull of the exit points.
+    """
+    assert study.workspace is not None
+    region = study.workspace.region
+    hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
+    centre = _centre(region)
+    if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
+        return None
+    azimuth = _azimuth(hull, centre, focus_m)
+    reach = grids.reach_m(hull, centre, azimuth)
+    ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+
+    def at(distance_m: FloatArray) -> Field:
+        start = np.array([*centre, focus_m[2]])
+        return field_at(study, start + (reach - distance_m)[:, None] * ray)
+
+    distance = reach * np.linspace(1.0, 0.0, _STEPS) ** 2
+    field = at(distance)
+    inside = None
+    if isinstance(region, Prism):
+        inside = reach - grids.reach_m(region.polygon_m, centre, azimuth)
+    return EdgeProfile(
+        distance_m=distance,
+        field=field,
+        focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
+        region_distance_m=inside,
+        limit_distance_m=_limit(at, distance, field),
+    )
+
+
+def _limit(at: object, distance: FloatArray, field: Field) -> float | None:
+    """Bisect between the first pose that cannot be held and the one before it."""
+    assert callable(at)
+    failed = np.flatnonzero(~field.is_solved)
+    if len(failed) == 0 or failed[0] == 0:
+        return None
+    holds, fails = distance[failed[0] - 1], distance[failed[0]]
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (holds + fails)
+        if at(np.array([middle])).is_solved[0]:
+            holds = middle
+        else:
+            fails = middle
+    return float(holds)
+
+
+def _centre(region: Prism | PointList) -> FloatArray:
+    if isinstance(region, Prism):
+        return grids.centroid_m(region.polygon_m)
+    return np.asarray(region.points_m[:, :2].mean(axis=0))
+
+
+def _azimuth(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> float:
+    """Direction to the focus, or to the nearest edge where the focus is in the centre."""
+    offset = focus_m[:2] - centre
+    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
+        return float(np.arctan2(offset[1], offset[0]))
+    around = np.linspace(-np.pi, np.pi, 361)
+    return float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])

@@ -1,0 +1,96 @@
+"""Sizing at many positions, and the shape of cables: what maps and scenes are coloured with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.physics import catenary
+from designer.robot import Poses
+from designer.sizing.newton import size_poses
+from designer.statics.inverse import Statics
+from designer.study import Study
+from designer.workspace.demand import is_left_out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Field:
+    """Sizing at positions over any axes; NaN where there is no value.
+
+    Parameters
+    ----------
+    position_m : array (..., 3)
+        Positions of the platform [m].
+    diameter_m, tension_N : array (...)
+        Needed diameter [m] and largest tension [N] with sag.
+    massless_diameter_m, massless_tension_N : array (...)
+        The same with straight weightless cables.
+    uplift : array (...)
+        Largest vertical pull of any cable down on the platform, over the platform's weight; above
+        zero that cable hangs below the platform.
+    is_solved, is_left_out : array (...) of bool
+        Whether a cable holds the platform there, and whether the study leaves the position out.
+    """
+
+    position_m: FloatArray
+    diameter_m: FloatArray
+    tension_N: FloatArray
+    massless_diameter_m: FloatArray
+    massless_tension_N: FloatArray
+    uplift: FloatArray
+    is_solved: BoolArray
+    is_left_out: BoolArray
+
+    @property
+    def counts(self) -> BoolArray:
+        """Positions (...) that have a value and are not left out."""
+        return np.asarray(self.is_solved & ~self.is_left_out)
+
+    @property
+    def is_infeasible(self) -> BoolArray:
+        """Positions (...) that the study asks for and no cable of the family can hold."""
+        return np.asarray(~self.is_solved & ~self.is_left_out)
+
+
+def field_at(study: Study, position_m: FloatArray) -> Field:
+    """Size the positions (..., 3) of a study's workspace."""
+    sizing = size_poses(study.robot, Poses.at(position_m), study.material)
+    hangs_below = study.workspace.hangs_below if study.workspace else "include"
+    return Field(
+        position_m=position_m,
+        diameter_m=sizing.diameter_m,
+        tension_N=sizing.statics.largest_tension_N,
+        massless_diameter_m=sizing.massless_diameter_m,
+        massless_tension_N=sizing.massless_tension_N,
+        uplift=sizing.statics.force_z_N.max(axis=-1) / study.robot.weight_N,
+        is_solved=sizing.statics.is_solved,
+        is_left_out=is_left_out(sizing.statics, hangs_below),
+    )
+
+
+def cable_curves_m(statics: Statics, count: int = 81) -> FloatArray:
+    """Return the true shape of every cable of one solved pose (n_cables, count, 3) [m].
+
+    Evenly spaced along the unstrained length, from the exit point to the platform.
+    """
+    share = np.linspace(0.0, 1.0, count)
+    with np.errstate(invalid="ignore"):
+        x, z = catenary.position_m(
+            share * statics.length_m[:, None],
+            statics.length_m[:, None],
+            statics.force_x_N[:, None],
+            statics.force_z_N[:, None],
+            statics.axial_stiffness_N,
+            statics.weight_N_per_m,
+        )
+    plan = statics.geometry().outward[:, None, :] * x[..., None]
+    shape = np.concatenate([plan, z[..., None]], axis=-1)
+    return np.asarray(statics.robot.exit_points_m[:, None, :] + shape)
+
+
+def chords_m(statics: Statics) -> FloatArray:
+    """Return the straight lines from exit points to attachment points (n_cables, 2, 3) [m]."""
+    ends = statics.poses.attachment_points_m(statics.robot)
+    return np.stack([statics.robot.exit_points_m, ends], axis=1)

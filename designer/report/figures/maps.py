@@ -1,0 +1,206 @@
+"""The values that the figures of a workspace show, computed once and shared by all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from designer.analysis import Analysis
+from designer.arrays import BoolArray, FloatArray
+from designer.region import PointList, Region
+from designer.report.figures import grids
+from designer.report.figures.edge import EdgeProfile, edge_profile
+from designer.report.figures.field import Field, field_at
+from designer.robot import Poses
+from designer.sizing.newton import size_poses
+from designer.statics.inverse import Statics
+from designer.statics.verdict import Verdict
+from designer.study import Study, Workspace
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.store import open_sweep
+
+_CURVE_POINTS = 300
+_MOST_POINTS = 3000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Focus:
+    """The pose that the figures of a workspace turn to.
+
+    Parameters
+    ----------
+    position_m : array (3,)
+        Where it is [m].
+    label : str
+        What it is, such as ``worst pose``.
+    statics : Statics or None
+        Equilibrium there with the cable that it needs; None where there is none.
+    """
+
+    position_m: FloatArray
+    label: str
+    statics: Statics | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Served:
+    """What share of the workspace a cable of a given diameter serves.
+
+    Parameters
+    ----------
+    diameter_m, share : array (n,)
+        Diameters, ascending [m], and the share of all poses that need no more.
+    massless_diameter_m, massless_share : array (n,)
+        The same if sag is ignored.
+    unserved : float
+        Share of the poses that no diameter serves.
+    needed_m : float
+        The continuous optimum, refined beyond the samples [m]; NaN if there is none.
+    massless_needed_m : float
+        The same if sag is ignored [m]; NaN if there is none.
+    samples : int
+        Number of poses that the shares are taken from.
+    """
+
+    diameter_m: FloatArray
+    share: FloatArray
+    massless_diameter_m: FloatArray
+    massless_share: FloatArray
+    unserved: float
+    needed_m: float
+    massless_needed_m: float
+    samples: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorkspaceMaps:
+    """All that the figures of a workspace show.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    focus : Focus
+        The worst pose, or what stands for it.
+    section : Field
+        The region at its greatest height (rings, spokes + 1), see `grids.disc_m`; for a list of
+        points the points themselves (n_points,), thinned out where there are very many.
+    shell : mapping of str to Field
+        Outside of the region and two cuts, see `grids.cutaway_m`; empty for a list of points.
+    edge : EdgeProfile or None
+        Along the line from the centre through the focus to the hull of the exit points; None
+        where the centre lies outside that hull.
+    served : Served
+        Share of the workspace over diameter.
+    """
+
+    study: Study
+    focus: Focus
+    section: Field
+    shell: Mapping[str, Field]
+    edge: EdgeProfile | None
+    served: Served
+
+    @property
+    def region(self) -> Region:
+        """The region of the study's workspace."""
+        return _workspace(self.study).region
+
+    @property
+    def has_area(self) -> bool:
+        """Whether the region is more than a list of points."""
+        return bool(self.shell)
+
+
+def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
+    """Compute what the figures of a workspace show.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Of a study with a workspace, its sweep file in place.
+
+    Raises
+    ------
+    ValueError
+        If the analysis has no workspace.
+    """
+    study, found = analysis.study, analysis.workspace
+    if found is None or analysis.sweep_file is None:
+        raise ValueError("the analysis has no workspace")
+    region = _workspace(study).region
+    focus = _focus(study, found)
+    if isinstance(region, PointList):
+        every = -(-len(region.points_m) // _MOST_POINTS)
+        section, shell = field_at(study, region.points_m[::every]), {}
+    else:
+        section = field_at(study, grids.disc_m(region, region.z_m[1]))
+        pieces = grids.cutaway_m(region, focus.position_m)
+        shell = {name: field_at(study, positions) for name, positions in pieces.items()}
+    return WorkspaceMaps(
+        study=study,
+        focus=focus,
+        section=section,
+        shell=shell,
+        edge=edge_profile(study, focus.position_m),
+        served=served(analysis.sweep_file, _workspace(study), found),
+    )
+
+
+def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Served:
+    """Return the share of the workspace over diameter, from every sample of a sweep."""
+    with open_sweep(sweep_file) as sweep:
+        verdict = sweep["verdict"].to_numpy()
+        hanging = sweep["hangs_below"].to_numpy() == 1
+        diameter = sweep["diameter"].to_numpy()
+        massless = sweep["massless_diameter"].to_numpy()
+    counted = _counted(verdict, hanging, workspace)
+    total = max(int(counted.sum()), 1)
+    sagging_curve = _cumulative(diameter[counted], total)
+    massless_curve = _cumulative(massless[counted], total)
+    return Served(
+        *sagging_curve,
+        *massless_curve,
+        unserved=float(np.isnan(diameter[counted]).sum() / total),
+        needed_m=found.sagging.diameter_m if found.sagging else float("nan"),
+        massless_needed_m=found.massless.diameter_m if found.massless else float("nan"),
+        samples=int(counted.sum()),
+    )
+
+
+def _counted(verdict: FloatArray, hanging: BoolArray, workspace: Workspace) -> BoolArray:
+    if workspace.hangs_below == "include":
+        return np.ones(verdict.shape, dtype=np.bool_)
+    return np.asarray(~(hanging | (verdict == int(Verdict.NO_FINITE_CABLE))))
+
+
+def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatArray]:
+    """Return at most a few hundred points of the cumulative curve, its ends among them."""
+    ordered = np.sort(diameter_m[np.isfinite(diameter_m)])
+    if len(ordered) == 0:
+        return np.empty(0), np.empty(0)
+    at = np.unique(np.linspace(0, len(ordered) - 1, _CURVE_POINTS).round().astype(int))
+    return ordered[at], (at + 1.0) / total
+
+
+def _focus(study: Study, found: WorkspaceMap) -> Focus:
+    if found.sagging is not None:
+        position, label = found.sagging.position_m, "worst pose"
+    elif found.sampled is not None:
+        position, label = found.sampled.position_m, "worst sample that can be held"
+    else:
+        region = _workspace(study).region
+        low, high = region.bounds_m
+        middle = 0.5 * (low + high)
+        position = middle if found.infeasible_example_m is None else found.infeasible_example_m
+        label = "cannot be held"
+    statics = size_poses(study.robot, Poses.at(position), study.material).statics
+    return Focus(position, label, statics if bool(statics.is_solved) else None)
+
+
+def _workspace(study: Study) -> Workspace:
+    assert study.workspace is not None
+    return study.workspace

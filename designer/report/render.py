@@ -1,0 +1,127 @@
+"""From the context to HTML and PDF, and into the folder: whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from designer.report.context import ReportContext, build_context
+from designer.report.outline import add_outline
+from designer.report.pictures import Pictures
+from designer.resources import data_folder
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from designer.analysis import Analysis
+
+_TEMPLATE = "report.html.j2"
+
+
+def environment(user_folder: Path | None = None) -> Environment:
+    """Return the template environment: escaping on, and every undefined name an error.
+
+    Parameters
+    ----------
+    user_folder : Path, optional
+        Templates that come before the shipped ones of the same name; there, the shipped ones are
+        also known under ``default/``, so that ``report.html.j2`` can extend
+        ``default/report.html.j2``.
+    """
+    from jinja2 import (
+        ChoiceLoader,
+        Environment,
+        FileSystemLoader,
+        PrefixLoader,
+        StrictUndefined,
+    )
+
+    shipped = FileSystemLoader(data_folder("reports"))
+    own = [FileSystemLoader(user_folder)] if user_folder is not None else []
+    return Environment(
+        loader=ChoiceLoader([*own, shipped, PrefixLoader({"default": shipped})]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def render_html(
+    context: ReportContext, *, paged: bool = False, user_folder: Path | None = None
+) -> str:
+    """Return the report as one self-contained HTML page.
+
+    Parameters
+    ----------
+    context : ReportContext
+        What to show.
+    paged : bool
+        For paper: without scenes to turn.
+    user_folder : Path, optional
+        Templates that replace or extend the shipped ones, see `environment`.
+
+    Raises
+    ------
+    jinja2.TemplateError
+        If a template of the user is faulty.
+    """
+    template = environment(user_folder).get_template(_TEMPLATE)
+    return template.render(report=context, paged=paged)
+
+
+def render_pdf(html: str) -> bytes:
+    """Return the page as a PDF on A4, with an outline made from its headings.
+
+    Title, author and date are those of the page: its ``<title>``, its generator, and the date
+    that it names, so that the same page gives the same file.
+
+    Raises
+    ------
+    ValueError
+        If the page loads anything that is not inside it.
+    """
+    import plutoprint
+
+    asked: list[str] = []
+
+    class NothingFromOutside(plutoprint.ResourceFetcher):  # type: ignore[misc]
+        def fetch_url(self, url: str) -> plutoprint.ResourceData:
+            asked.append(url)
+            return plutoprint.ResourceData(b"", "text/plain")
+
+    book = plutoprint.Book(plutoprint.PAGE_SIZE_A4)
+    book.custom_resource_fetcher = NothingFromOutside()
+    # Links within the page need an address to start from.
+    book.load_html(html, base_url="report:/")
+    stream = io.BytesIO()
+    book.write_to_pdf_stream(stream)
+    if asked:
+        raise ValueError(f"the page loads {asked[0]}; put it into the page as a data URI")
+    return add_outline(stream.getvalue(), html)
+
+
+def write_report(analysis: Analysis, folder: Path) -> None:
+    """Write ``report.html`` and ``report.pdf`` into an existing folder.
+
+    Both are made before either is written, and each takes its name only when it is whole.
+    """
+    context = build_context(analysis, Pictures())
+    files = {
+        "report.html": render_html(context).encode(),
+        "report.pdf": render_pdf(render_html(context, paged=True)),
+    }
+    for name, content in files.items():
+        write_whole(folder / name, content)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file under another name in its folder, then rename it."""
+    unfinished = path.with_name(f".{path.name}.part")
+    try:
+        unfinished.write_bytes(content)
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)

@@ -1,0 +1,229 @@
+"""The commands as a user meets them: answers, exit status, faults, nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from designer.cli import main
+
+STUDY = """
+name: small crane
+robot:
+  anchors: [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+  platform: {mass: 4000 kg}
+cable: {density: 7800 kg/m^3, youngs_modulus: 200 GPa, allowable_stress: 180 MPa}
+pose: [250, 200, -50]
+"""
+WORKSPACE = """
+workspace:
+  region: {prism: anchors, inset: 30 m, z: [-200, -60]}
+  samples: 300
+selection: {grades: [unirope-6x36-iwrc-1960], safety_factor: 2}
+"""
+
+
+@dataclass
+class Outcome:
+    status: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def designer(capsys, monkeypatch, tmp_path) -> Callable[..., Outcome]:
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Outcome:
+        monkeypatch.setattr(sys, "argv", ["designer", *arguments])
+        try:
+            main()
+            status = 0
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        captured = capsys.readouterr()
+        return Outcome(status, captured.out, captured.err)
+
+    return run
+
+
+def test_help_and_version_import_nothing_heavy() -> None:
+    code = (
+        "import sys\n"
+        "from designer.cli import main\n"
+        "sys.argv = ['designer', sys.argv[1]]\n"
+        "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
+        "heavy = {'vtkmodules', 'pyvista', 'cvxpy', 'numba', 'scipy', 'matplotlib', 'PySide6'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    for option in ("--help", "--version"):
+        run = subprocess.run(
+            [sys.executable, "-c", code, option], capture_output=True, text=True, check=True
+        )
+        assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_size_gives_the_papers_pose(designer) -> None:
+    Path("study.yaml").write_text(STUDY)
+    told = designer("size", "study.yaml")
+    assert told.status == 0
+    for figure in ("32.59917", "24.71948", "150236.49", "123082"):
+        assert figure in told.out
+
+
+def test_size_as_json(designer) -> None:
+    Path("study.yaml").write_text(STUDY)
+    told = designer("size", "study.yaml", "--json")
+    assert told.status == 0
+    pose = json.loads(told.out)["pose"]
+    assert pose["sagging"]["status"] == "solved"
+    assert pose["sagging"]["diameter_m"] == pytest.approx(0.03259917, abs=1e-8)
+    assert pose["optimum"]["diameter_m"] == pytest.approx(0.03259917, abs=1e-8)
+    assert pose["loop"]["iterates"][1]["max_tension_N"] == pytest.approx(123082, abs=1)
+    assert len(pose["sagging"]["lengths_m"]) == 3
+
+
+def test_size_of_an_unsolvable_pose_is_a_negative_answer(designer) -> None:
+    Path("study.yaml").write_text(STUDY.replace("[250, 200, -50]", "[-10, 0, -50]"))
+    told = designer("size", "study.yaml")
+    assert told.status == 1
+    assert "No positive cable tensions" in told.out
+    assert designer("size", "study.yaml", "--json").status == 1
+
+
+@pytest.mark.parametrize(
+    ("wrong", "expected"),
+    [
+        (STUDY.replace("4000 kg", "-4 kg"), "study.yaml:5: robot.platform.mass: "),
+        (STUDY.replace("mass:", "mas:"), "'mass'"),
+        (STUDY.replace("200 GPa", "200 kg"), "youngs_modulus"),
+        (STUDY.replace("pose", "poses"), "'pose'"),
+        ("", "empty"),
+        ("a: [1, 2", "study.yaml:"),
+    ],
+)
+def test_a_wrong_file_gets_one_line_and_status_2(designer, wrong, expected) -> None:
+    Path("study.yaml").write_text(wrong)
+    for command in ("size", "report"):
+        told = designer(command, "study.yaml")
+        assert told.status == 2
+        assert expected in told.err
+        assert "Traceback" not in told.err
+        assert told.err.startswith("study.yaml")
+        assert sorted(path.name for path in Path().iterdir()) == ["study.yaml"]
+
+
+def test_all_faults_are_told_at_once(designer) -> None:
+    Path("study.yaml").write_text(STUDY.replace("4000 kg", "-4 kg").replace("180 MPa", "180 m"))
+    told = designer("size", "study.yaml")
+    assert len(told.err.splitlines()) == 2
+
+
+def test_missing_file(designer) -> None:
+    told = designer("size", "nothing.yaml")
+    assert told.status == 2
+    assert "nothing.yaml: there is no such file" in told.err
+
+
+def test_unknown_grade_names_line_and_neighbours(designer) -> None:
+    text = STUDY + WORKSPACE.replace("unirope-6x36-iwrc-1960", "unirope-6x36-iwrc-1996")
+    Path("study.yaml").write_text(text)
+    told = designer("report", "study.yaml")
+    assert told.status == 2
+    assert "study.yaml:12: selection.grades[0]:" in told.err
+    assert "unirope-6x36-iwrc-1960" in told.err
+    assert not Path("study-report").exists()
+
+
+def test_size_without_a_pose(designer) -> None:
+    Path("study.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", ""))
+    told = designer("size", "study.yaml")
+    assert told.status == 2
+    assert "pose" in told.err
+
+
+def test_report_with_nothing_to_solve(designer) -> None:
+    Path("study.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", ""))
+    told = designer("report", "study.yaml")
+    assert told.status == 2
+    assert "nothing to solve" in told.err
+
+
+def test_report_into_a_file(designer) -> None:
+    Path("study.yaml").write_text(STUDY)
+    Path("out").write_text("mine")
+    told = designer("report", "study.yaml", "-o", "out")
+    assert told.status == 2
+    assert "out: is a file" in told.err
+    assert Path("out").read_text() == "mine"
+
+
+def test_init_writes_a_study_that_reads(designer) -> None:
+    assert designer("init", "crane.yaml", "--example", "yard").status == 0
+    assert designer("size", "crane.yaml").status == 0
+    again = designer("init", "crane.yaml")
+    assert again.status == 2
+    assert "exists already" in again.err
+    unknown = designer("init", "other.yaml", "--example", "yart")
+    assert unknown.status == 2
+    assert "yard" in unknown.err
+
+
+def test_catalog_list_show_check(designer) -> None:
+    listed = designer("catalog", "list")
+    assert listed.status == 0
+    assert "unirope" in listed.out
+    shown = designer("catalog", "show", "unirope-7x19-galvanised")
+    assert shown.status == 0
+    assert "31.14" in shown.out
+    unknown = designer("catalog", "show", "unirope-7x19-galvanized")
+    assert unknown.status == 2
+    assert "unirope-7x19-galvanised" in unknown.err
+    Path("rope.yaml").write_text("id: x\n")
+    checked = designer("catalog", "check", "rope.yaml")
+    assert checked.status == 2
+    assert checked.err.startswith("rope.yaml:")
+
+
+def test_report_end_to_end(designer) -> None:
+    from designer.errors import MissingLibraryError
+    from designer.report.figures.opengl import require_opengl
+
+    try:
+        require_opengl()
+    except MissingLibraryError as missing:
+        pytest.skip(str(missing))
+    Path("study.yaml").write_text(STUDY + WORKSPACE)
+    told = designer("report", "study.yaml")
+    assert told.status == 0, told.err
+    folder = Path("study-report")
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"report.html", "report.pdf", "result.json", "workspace.nc"}
+    result = json.loads((folder / "result.json").read_text())
+    assert result["workspace"]["feasible"] is True
+    assert result["selection"]["chosen"]["grade"] == "unirope-6x36-iwrc-1960"
+    assert (folder / "report.pdf").read_bytes().startswith(b"%PDF")
+    assert "small crane" in told.out
+
+
+def test_report_without_a_product_is_a_negative_answer(designer) -> None:
+    from designer.errors import MissingLibraryError
+    from designer.report.figures.opengl import require_opengl
+
+    try:
+        require_opengl()
+    except MissingLibraryError as missing:
+        pytest.skip(str(missing))
+    text = STUDY + WORKSPACE.replace("unirope-6x36-iwrc-1960", "unirope-7x19-galvanised")
+    Path("study.yaml").write_text(text)
+    told = designer("report", "study.yaml", "-o", "deep/out")
+    assert told.status == 1, told.err
+    result = json.loads(Path("deep/out/result.json").read_text())
+    assert result["selection"]["chosen"] is None
+    assert "too thin" in result["selection"]["reason"]
