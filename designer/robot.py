@@ -41,10 +41,16 @@ class Robot:
         Points where the cables leave the base, world frame, z upward [m].
     platform : Platform
         The load.
+    pulley_radius_m : float
+        Radius of the swivelling pulleys at the exit points [m]; see `designer.physics.pulley`.
+    tilt_rad : array (2,)
+        The base is turned by the rotation vector (rx, ry, 0) against the vertical [rad].
     """
 
     exit_points_m: FloatArray
     platform: Platform
+    pulley_radius_m: float = 0.0
+    tilt_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(2)))
 
     @property
     def n_cables(self) -> int:
@@ -60,6 +66,16 @@ class Robot:
     def degrees_of_freedom(self) -> int:
         """3 for a point mass, 6 otherwise."""
         return 3 if self.is_point_mass else 6
+
+    @property
+    def is_square(self) -> bool:
+        """Whether there are as many cables as degrees of freedom."""
+        return self.n_cables == self.degrees_of_freedom
+
+    @property
+    def upright(self) -> FloatArray:
+        """Rotation (3, 3) from the base frame to a frame whose z axis is the true vertical."""
+        return np.asarray(Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix())
 
     @property
     def attachments_m(self) -> FloatArray:

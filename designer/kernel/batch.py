@@ -53,10 +53,12 @@ class Solution:
 def solve_batch(
     robot: Robot,
     poses: Poses,
+    exit_points_m: FloatArray,
     kappa_per_m: FloatArray,
     relative_weights: FloatArray,
     strength_m: FloatArray,
     inverse_weight_m_per_N: float | None,
+    force_N: FloatArray | None = None,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
@@ -65,22 +67,27 @@ def solve_batch(
     robot : Robot
         Must have as many cables as degrees of freedom.
     poses : Poses
-        One leading axis.
+        One leading axis, in a frame whose z axis is the vertical.
+    exit_points_m : array (n_cables, 3) or (n_poses, n_cables, 3)
+        Where the cables begin, in that frame [m].
     kappa_per_m, relative_weights, strength_m : array (n_cables,)
         Weight over axial stiffness [1/m], weight relative to w, allowable tension over weight [m].
     inverse_weight_m_per_N : float or None
         1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
         strength allows.
+    force_N : array (n_poses, 3), optional
+        Force on the platform beside its weight, in that frame [N].
     """
     n, count = robot.n_cables, len(poses.position_m)
     out_cables = np.empty((count, n, 3))
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
     arguments: tuple[Any, ...] = (
-        np.ascontiguousarray(robot.exit_points_m)[None],
+        np.ascontiguousarray(exit_points_m.reshape(-1, n, 3)),
         robot.attachments_m,
-        np.array([[0.0, 0.0, robot.weight_N, 0.0, 0.0, 0.0]]),
-        robot.platform.centre_of_mass_m,
+        _load(robot, force_N),
+        np.ascontiguousarray(robot.platform.centre_of_mass_m),
+        robot.weight_N,
         np.ascontiguousarray(poses.position_m),
         np.ascontiguousarray(poses.rotation.reshape(-1, 3, 3)),
         np.ascontiguousarray(kappa_per_m),
@@ -108,6 +115,12 @@ def solve_batch(
         load_factor=out_poses[:, layout.LOAD_FACTOR],
         massless_tension_N=out_poses[:, layout.MASSLESS_TENSION],
     )
+
+
+def _load(robot: Robot, force_N: FloatArray | None) -> FloatArray:
+    """Return what the cables have to pull with (1 or n_poses, 3) [N]: upward, and against force."""
+    upward = np.array([[0.0, 0.0, robot.weight_N]])
+    return upward if force_N is None else upward - force_N
 
 
 @cache

@@ -43,13 +43,15 @@ def place(
     attachments: FloatArray,
     load: FloatArray,
     load_point: FloatArray,
+    weight: float,
     positions: FloatArray,
     rotations: FloatArray,
     indices: IntArray,
 ) -> None:
     """Fill the geometry of one block: cable vectors, levers and the load to be balanced.
 
-    Exit points, load and rotations have a leading axis of poses, or of one for all.
+    Exit points, load (force at the body origin) and rotations have a leading axis of poses, or of
+    one for all; the weight, which is part of the load, acts at `load_point` of the body.
     """
     n = exit_points.shape[1]
     for j in range(LANES):
@@ -70,12 +72,11 @@ def place(
         s = load_point
         sx = Q[0, 0] * s[0] + Q[0, 1] * s[1] + Q[0, 2] * s[2]
         sy = Q[1, 0] * s[0] + Q[1, 1] * s[1] + Q[1, 2] * s[2]
-        sz = Q[2, 0] * s[0] + Q[2, 1] * s[1] + Q[2, 2] * s[2]
         for axis in range(3):
             poses[LOAD + axis, j] = f[axis]
-        poses[LOAD + 3, j] = f[3] + sy * f[2] - sz * f[1]
-        poses[LOAD + 4, j] = f[4] + sz * f[0] - sx * f[2]
-        poses[LOAD + 5, j] = f[5] + sx * f[1] - sy * f[0]
+        poses[LOAD + 3, j] = sy * weight
+        poses[LOAD + 4, j] = -sx * weight
+        poses[LOAD + 5, j] = 0.0
 
 
 @kernel

@@ -29,4 +29,5 @@ def tension_N(
     """
     slope_length = length_m(horizontal_distance_m, drop_m)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(horizontal_force_N) * slope_length / np.asarray(horizontal_distance_m)
+        density = np.asarray(horizontal_force_N) / np.asarray(horizontal_distance_m)
+    return np.asarray(density * slope_length)

@@ -19,15 +19,16 @@ _POSITION_DIGITS = 2
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Return a number with ``digits`` significant digits, and all digits before the point."""
+    """Return a number rounded to ``digits`` significant digits."""
     if math.isnan(value):
         return MISSING
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
     if value == 0.0:
         return "0"
-    leading = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    return fixed(value, max(digits - 1 - leading, 0))
+    rounded = float(f"{value:.{digits - 1}e}")
+    leading = math.floor(math.log10(abs(rounded)))
+    return fixed(rounded, max(digits - 1 - leading, 0))
 
 
 def trimmed(value: float, digits: int = 4) -> str:
@@ -42,6 +43,14 @@ def fixed(value: float, decimals: int) -> str:
     return text.replace(",", _THIN).replace("-", "−")
 
 
+def decimals(values: Iterable[float], digits: int = 3) -> int:
+    """Return how many decimals a column needs so that its smallest number keeps its digits."""
+    sizes = [abs(value) for value in values if math.isfinite(value) and value != 0.0]
+    if not sizes:
+        return 0
+    return min(max(digits - 1 - math.floor(math.log10(min(sizes))), 0), 3)
+
+
 def count(value: int) -> str:
     """Return a whole number, such as ``20 000``."""
     return fixed(value, 0)
@@ -50,6 +59,16 @@ def count(value: int) -> str:
 def metres(value: float) -> str:
     """Return a length such as ``324.22 m``."""
     return _with_unit(fixed(value, 2) if math.isfinite(value) else number(value), "m")
+
+
+def square_metres(value: float) -> str:
+    """Return an area such as ``93 280 m²``."""
+    return _with_unit(number(value), "m²")
+
+
+def cubic_metres(value: float) -> str:
+    """Return a volume such as ``14 930 000 m³``."""
+    return _with_unit(number(value), "m³")
 
 
 def millimetres(value_m: float) -> str:
@@ -95,7 +114,8 @@ def share(part: int, whole: int) -> str:
 
 def signed_percent(fraction: float) -> str:
     """Return a change such as ``+12.3 %``."""
-    return ("+" if fraction > 0 else "") + percent(fraction)
+    text = fixed(100.0 * fraction, 1)
+    return _with_unit(text if text.startswith("−") else f"+{text}", "%")
 
 
 def utilisation(fraction: float) -> str:
@@ -114,7 +134,7 @@ def factor(value: float) -> str:
 
 def position(xyz_m: Iterable[float]) -> str:
     """Return a position such as ``(256.52, 10.35, −40.00) m``."""
-    inside = ", ".join(fixed(float(x), _POSITION_DIGITS) for x in xyz_m)
+    inside = f",{_BEFORE_UNIT}".join(fixed(float(x), _POSITION_DIGITS) for x in xyz_m)
     return _with_unit(f"({inside})", "m")
 
 

@@ -40,12 +40,10 @@ def summarise(html: str) -> PageSummary:
     reader.feed(html)
     reader.close()
     return PageSummary(
-        reader.title.strip(),
-        reader.meta.get("generator", ""),
-        reader.meta.get("dcterms.created", ""),
-        tuple(
-            PageHeading(level, name, " ".join(text.split())) for level, name, text in reader.headings
-        ),
+        title=reader.title.strip(),
+        generator=reader.meta.get("generator", ""),
+        created=reader.meta.get("dcterms.created", ""),
+        headings=tuple(PageHeading(k, name, " ".join(t.split())) for k, name, t in reader.headings),
     )
 
 
@@ -68,9 +66,7 @@ def add_outline(pdf: bytes, html: str) -> bytes:
     return stream.getvalue()
 
 
-def _add_items(
-    writer: PdfWriter, reader: PdfReader, headings: tuple[PageHeading, ...]
-) -> None:
+def _add_items(writer: PdfWriter, reader: PdfReader, headings: tuple[PageHeading, ...]) -> None:
     from pypdf.generic import Fit
 
     places = reader.named_destinations
@@ -83,8 +79,8 @@ def _add_items(
         above = [parents[level] for level in sorted(parents) if level < heading.level]
         parents = {k: item for k, item in parents.items() if k < heading.level}
         parents[heading.level] = writer.add_outline_item(
-            heading.text,
-            number,
+            title=heading.text,
+            page_number=number,
             parent=above[-1] if above else None,
             fit=Fit.xyz(top=float(place.top or 0.0)),
         )
@@ -94,8 +90,9 @@ def _metadata(page: PageSummary) -> dict[str, str]:
     values = {"/Title": page.title, "/Author": page.generator, "/Creator": page.generator}
     if page.created:
         moment = datetime.fromisoformat(page.created)
-        date = moment.strftime("D:%Y%m%d%H%M%S%z")
-        values["/CreationDate"] = values["/ModDate"] = f"{date[:-2]}'{date[-2:]}'"
+        offset = moment.strftime("%z")
+        zone = f"{offset[:3]}'{offset[3:5]}'" if offset else ""
+        values["/CreationDate"] = values["/ModDate"] = moment.strftime("D:%Y%m%d%H%M%S") + zone
     return values
 
 

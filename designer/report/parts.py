@@ -11,11 +11,12 @@ Tone = Literal["", "good", "bad", "doubt", "muted"]
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """A named value, with a remark where it needs one."""
+    """A named value, with a remark where it needs one; ``link`` is where the remark leads to."""
 
     label: str
     value: str
     note: str = ""
+    link: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.report.context import ReportContext, build_context
+from designer.report.files import write_whole
 from designer.report.outline import add_outline
 from designer.report.pictures import Pictures
 from designer.resources import data_folder
@@ -87,7 +87,7 @@ def render_pdf(html: str) -> bytes:
 
     asked: list[str] = []
 
-    class NothingFromOutside(plutoprint.ResourceFetcher):  # type: ignore[misc]
+    class NothingFromOutside(plutoprint.ResourceFetcher):
         def fetch_url(self, url: str) -> plutoprint.ResourceData:
             asked.append(url)
             return plutoprint.ResourceData(b"", "text/plain")
@@ -115,13 +115,3 @@ def write_report(analysis: Analysis, folder: Path) -> None:
     }
     for name, content in files.items():
         write_whole(folder / name, content)
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file under another name in its folder, then rename it."""
-    unfinished = path.with_name(f".{path.name}.part")
-    try:
-        unfinished.write_bytes(content)
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)

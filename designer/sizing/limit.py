@@ -5,7 +5,7 @@ from __future__ import annotations
 from designer.arrays import FloatArray
 from designer.cable import Material
 from designer.robot import Poses, Robot
-from designer.statics.inverse import solve_flat
+from designer.statics.task import Task, solve_task
 
 
 def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
@@ -19,11 +19,6 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 
     NaN where that limit was not solved.
     """
-    solution = solve_flat(
-        robot,
-        poses,
-        kappa_per_m=material.elastic_compliance_per_m,
-        strength_m=material.strength_length_m,
-        inverse_weight_m_per_N=0.0,
-    )
+    task = Task(material.elastic_compliance_per_m, material.strength_length_m, 0.0)
+    solution, _ = solve_task(robot, poses, task)
     return solution.load_factor.reshape(poses.shape)

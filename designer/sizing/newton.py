@@ -9,7 +9,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.robot import Poses, Robot
-from designer.statics.inverse import Statics, solve_flat, statics_of
+from designer.statics.inverse import Statics, statics_of
+from designer.statics.task import Task, solve_task
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,18 +46,13 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`.
     """
-    solution = solve_flat(
-        robot,
-        poses,
-        kappa_per_m=material.elastic_compliance_per_m,
-        strength_m=material.strength_length_m,
-        inverse_weight_m_per_N=None,
-    )
+    task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)
+    solution, run = solve_task(robot, poses, task)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
     shape = poses.shape
     return Sizing(
-        statics=statics_of(robot, poses, solution, material.youngs_modulus_Pa * area),
+        statics=statics_of(robot, poses, solution, run, material.youngs_modulus_Pa * area),
         diameter_m=np.sqrt(4.0 * area / np.pi).reshape(shape),
         massless_tension_N=solution.massless_tension_N.reshape(shape),
         massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),

@@ -14,7 +14,7 @@ from designer.arrays import FloatArray
 from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.physics import catenary
 from designer.robot import Poses, Robot
-from designer.statics.geometry import cable_geometry, structure_matrix, weight_wrench_N
+from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless
 
 
@@ -60,8 +60,11 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
     Raises
     ------
     ValueError
-        If straight cables cannot hold the pose, so that there is no start.
+        If straight cables cannot hold the pose, so that there is no start, or if the robot has
+        pulleys, which the paper's equations do not know.
     """
+    if robot.pulley_radius_m != 0.0:
+        raise ValueError("the reference has no pulleys")
     from scipy.optimize import minimize
 
     problem = _Problem.of(robot, pose, material)
@@ -120,7 +123,7 @@ class _Problem:
             geometry.horizontal_distance_m,
             geometry.drop_m,
             structure_matrix(robot, geometry),
-            weight_wrench_N(robot, pose),
+            load_wrench_N(robot, pose),
             massless.tension_N,
             geometry.chord_m,
         )

@@ -35,13 +35,40 @@ class CableGeometry:
         return np.asarray(np.hypot(self.horizontal_distance_m, self.drop_m))
 
 
-def cable_geometry(robot: Robot, poses: Poses) -> CableGeometry:
-    """Return the chords of all cables, Riehl et al., ICRA 2010, eq. (1)."""
-    ends = poses.attachment_points_m(robot)
-    chord = ends - robot.exit_points_m
+def upright_poses(robot: Robot, poses: Poses) -> Poses:
+    """Return the poses in the frame whose z axis is the true vertical."""
+    if not robot.tilt_rad.any():
+        return poses
+    turn = robot.upright
+    return Poses(np.asarray(poses.position_m @ turn.T), np.asarray(turn @ poses.rotation))
+
+
+def upright_exit_points_m(robot: Robot) -> FloatArray:
+    """Return the exit points in that frame (n_cables, 3) [m]."""
+    if not robot.tilt_rad.any():
+        return robot.exit_points_m
+    return np.asarray(robot.exit_points_m @ robot.upright.T)
+
+
+def cable_geometry(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray | None = None
+) -> CableGeometry:
+    """Return the chords of all cables, Riehl et al., ICRA 2010, eq. (1), in the upright frame.
+
+    Parameters
+    ----------
+    robot, poses
+        The robot and its poses (...), in the base frame.
+    exit_points_m : array (..., n_cables, 3), optional
+        Where the cables leave their pulleys, upright frame [m]; the exit points if left out.
+    """
+    upright = upright_poses(robot, poses)
+    start = upright_exit_points_m(robot) if exit_points_m is None else exit_points_m
+    ends = upright.attachment_points_m(robot)
+    chord = ends - start
     distance = np.hypot(chord[..., 0], chord[..., 1])
     outward = chord[..., :2] / np.where(distance > 0.0, distance, 1.0)[..., None]
-    lever = ends - poses.position_m[..., None, :]
+    lever = ends - upright.position_m[..., None, :]
     return CableGeometry(distance, -chord[..., 2], outward, lever)
 
 
@@ -67,11 +94,27 @@ def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
     return np.asarray(np.swapaxes(flat, -1, -2))
 
 
-def weight_wrench_N(robot: Robot, poses: Poses) -> FloatArray:
-    """Return the platform's weight as a wrench about the body origin (..., dof) [N, N·m]."""
-    force = np.array([0.0, 0.0, -robot.weight_N])
+def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None) -> FloatArray:
+    """Return weight and other force on the platform as a wrench (..., dof) [N, N·m].
+
+    Parameters
+    ----------
+    robot, poses
+        The robot and its poses (...).
+    force_N : array (..., 3), optional
+        Force on the platform at the origin of the body frame, base frame [N].
+
+    Returns
+    -------
+    array (..., degrees of freedom)
+        About the origin of the body frame, upright frame.
+    """
+    weight = np.array([0.0, 0.0, -robot.weight_N])
+    other = np.zeros(3) if force_N is None else force_N @ robot.upright.T
+    force = np.broadcast_to(weight + other, poses.position_m.shape)
     if robot.is_point_mass:
-        return np.broadcast_to(force, poses.position_m.shape)
-    arm = np.einsum("...ij,j->...i", poses.rotation, robot.platform.centre_of_mass_m)
-    wrench = np.concatenate([np.broadcast_to(force, arm.shape), np.cross(arm, force)], axis=-1)
-    return np.broadcast_to(wrench, (*poses.shape, 6))
+        return force
+    rotation = upright_poses(robot, poses).rotation
+    arm = np.einsum("...ij,j->...i", rotation, robot.platform.centre_of_mass_m)
+    moment = np.broadcast_to(np.cross(arm, weight), force.shape)
+    return np.concatenate([force, moment], axis=-1)

@@ -14,9 +14,10 @@ from designer.robot import Poses, Robot
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
+    load_wrench_N,
     structure_matrix,
-    weight_wrench_N,
 )
+from designer.statics.task import PulleyRun, Task, solve_task, straight_run
 from designer.statics.verdict import Verdict, hangs_below
 
 if TYPE_CHECKING:
@@ -38,10 +39,14 @@ class Statics:
     weight_N_per_m, axial_stiffness_N : array (..., 1)
         Weight per unstrained length [N/m] and EA [N] of the cables in each pose.
     length_m : array (..., n_cables)
-        Unstrained lengths [m].
+        Unstrained lengths from the exit points, around pulleys where there are any [m].
     force_x_N, force_z_N : array (..., n_cables)
         Force on each cable at the platform: horizontal, away from the exit point, and vertical,
         upward [N]. Riehl et al., ICRA 2010, section II.B.
+    run : PulleyRun
+        Where the cables leave their pulleys, and how much lies on them.
+    force_N : array (..., 3) or None
+        Force on the platform beside its weight, base frame [N].
     """
 
     robot: Robot
@@ -52,6 +57,13 @@ class Statics:
     length_m: FloatArray
     force_x_N: FloatArray
     force_z_N: FloatArray
+    run: PulleyRun
+    force_N: FloatArray | None = None
+
+    @property
+    def free_length_m(self) -> FloatArray:
+        """Unstrained lengths between pulley and platform (..., n_cables) [m]."""
+        return self.length_m - self.run.wrap_m
 
     @property
     def is_solved(self) -> BoolArray:
@@ -82,7 +94,7 @@ class Statics:
         """Distance between the end of each cable by eqs. (7)-(8) and its attachment point [m]."""
         geometry = self.geometry()
         x, z = catenary.end_position_m(
-            self.length_m,
+            self.free_length_m,
             self.force_x_N,
             self.force_z_N,
             self.axial_stiffness_N,
@@ -95,15 +107,15 @@ class Statics:
         matrix = structure_matrix(self.robot, self.geometry())
         forces = np.stack([self.force_x_N, self.force_z_N], axis=-1)
         held = np.einsum("...ij,...j->...i", matrix, forces.reshape(*self.verdict.shape, -1))
-        return np.asarray(held - weight_wrench_N(self.robot, self.poses))
+        return np.asarray(held - load_wrench_N(self.robot, self.poses, self.force_N))
 
     def geometry(self) -> CableGeometry:
-        """Return the chords of the cables."""
-        return cable_geometry(self.robot, self.poses)
+        """Return the chords of the cables, upright frame."""
+        return cable_geometry(self.robot, self.poses, self.run.exit_points_m)
 
     def _end_tensions_N(self) -> tuple[FloatArray, FloatArray]:
         return catenary.end_tensions_N(
-            self.length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
+            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
         )
 
 
@@ -132,71 +144,72 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
 
     The unknowns are force densities, so that a vertical cable needs no special case.
     """
-    geometry = cable_geometry(robot, poses)
+    run = straight_run(robot, poses)
+    geometry = cable_geometry(robot, poses, run.exit_points_m)
     matrix = structure_matrix(robot, geometry)
     per_density = (
         matrix[..., 0::2] * geometry.horizontal_distance_m[..., None, :]
         - matrix[..., 1::2] * geometry.drop_m[..., None, :]
     )
-    wrench = weight_wrench_N(robot, poses)
     with np.errstate(invalid="ignore", divide="ignore"):
-        density = _solve_or_nan(per_density, wrench)
-    return MasslessStatics(geometry.chord_m, density * geometry.chord_m)
+        density = _solve_or_nan(per_density, load_wrench_N(robot, poses))
+    return MasslessStatics(geometry.chord_m + run.wrap_m, density * geometry.chord_m)
 
 
-def solve_sagging(robot: Robot, poses: Poses, cable: Cable) -> Statics:
+def solve_sagging(
+    robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
+) -> Statics:
     """Return the equilibrium of poses (...) with this cable, with sag and elasticity.
 
     Solves eqs. (7)-(9) of Riehl et al., ICRA 2010, by the compiled Newton of
     `designer.kernel.square`. A pose that fails is told by its verdict, never by an exception.
+
+    Parameters
+    ----------
+    robot, poses, cable
+        The robot, with as many cables as degrees of freedom, its poses and its cables.
+    force_N : array (..., 3), optional
+        Force on the platform beside its weight, base frame [N].
     """
     weight = cable.weight_N_per_m
-    solution = solve_flat(
-        robot,
-        poses,
+    task = Task(
         kappa_per_m=weight / cable.axial_stiffness_N,
         strength_m=cable.allowable_tension_N / weight,
         inverse_weight_m_per_N=1.0 / weight,
+        force_N=force_N,
     )
+    solution, run = solve_task(robot, poses, task)
     stiffness = np.where(solution.verdict == Verdict.SOLVED, cable.axial_stiffness_N, np.nan)
-    return statics_of(robot, poses, solution, stiffness)
-
-
-def solve_flat(
-    robot: Robot,
-    poses: Poses,
-    kappa_per_m: float,
-    strength_m: float,
-    inverse_weight_m_per_N: float | None,
-) -> Solution:
-    """Flatten the leading axes of the poses and call the kernel with equal cables."""
-    from designer.kernel.batch import solve_batch
-
-    count = int(np.prod(poses.shape, dtype=np.int64))
-    rotation = poses.rotation
-    if rotation.ndim > 2:
-        rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
-    flat = Poses(poses.position_m.reshape(count, 3), rotation)
-    each = np.ones(robot.n_cables)
-    return solve_batch(
-        robot, flat, kappa_per_m * each, each, strength_m * each, inverse_weight_m_per_N
-    )
+    return statics_of(robot, poses, solution, run, stiffness, force_N)
 
 
 def statics_of(
-    robot: Robot, poses: Poses, solution: Solution, axial_stiffness_N: FloatArray
+    robot: Robot,
+    poses: Poses,
+    solution: Solution,
+    run: PulleyRun,
+    axial_stiffness_N: FloatArray,
+    force_N: FloatArray | None = None,
 ) -> Statics:
-    """Give a solution its leading axes back."""
+    """Give a solution its leading axes back, and its lengths what lies on the pulleys."""
     shape = poses.shape
+    weight = solution.weight_N_per_m.reshape(*shape, 1)
+    stiffness = axial_stiffness_N.reshape(*shape, 1)
+    free = solution.length_m.reshape(*shape, -1)
+    force_x = solution.force_x_N.reshape(*shape, -1)
+    force_z = solution.force_z_N.reshape(*shape, -1)
+    run = run.unstrained(catenary.end_tensions_N(free, force_x, force_z, weight)[0] / stiffness)
     return Statics(
         robot=robot,
         poses=poses,
         verdict=solution.verdict.reshape(shape),
-        weight_N_per_m=solution.weight_N_per_m.reshape(*shape, 1),
-        axial_stiffness_N=axial_stiffness_N.reshape(*shape, 1),
-        length_m=solution.length_m.reshape(*shape, -1),
-        force_x_N=solution.force_x_N.reshape(*shape, -1),
-        force_z_N=solution.force_z_N.reshape(*shape, -1),
+        weight_N_per_m=weight,
+        axial_stiffness_N=stiffness,
+        length_m=free + run.wrap_m,
+        force_x_N=force_x,
+        force_z_N=force_z,
+        run=run,
+        force_N=force_N,
     )
 
 

@@ -26,7 +26,7 @@ from designer.cable import Material
 from designer.region import Prism
 from designer.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
-from designer.statics.geometry import cable_geometry, structure_matrix, weight_wrench_N
+from designer.statics.geometry import cable_geometry, structure_matrix, load_wrench_N
 from designer.statics.inverse import solve_massless, solve_sagging
 from designer.study import Workspace
 from designer.workspace.samples import CHUNK
@@ -67,7 +67,7 @@ class Paper:
         geometry = cable_geometry(robot, pose)
         self.X, self.Z = geometry.horizontal_distance_m, -geometry.drop_m
         self.W = structure_matrix(robot, geometry)
-        self.e = weight_wrench_N(robot, pose)
+        self.e = load_wrench_N(robot, pose)
         self.tension = solve_massless(robot, pose).tension_N
         self.force = self.tension.max()
         self.chord = geometry.chord_m

@@ -7,17 +7,22 @@ state; glyphs are drawn as outlines, so that a chart looks the same where a font
 from __future__ import annotations
 
 import io
+import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patheffects import AbstractPathEffect
 
 _STYLE = {
     "font.family": "DejaVu Sans",
@@ -56,11 +61,48 @@ def drawing() -> Iterator[None]:
         yield
 
 
-def sheet(height_mm: float, width_mm: float = palette.PAPER_WIDTH_MM) -> Figure:
-    """Return an empty figure of this size on paper."""
+def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
+    """Return an empty figure of this height and of the column's width.
+
+    Parameters
+    ----------
+    height_mm : float
+        Height on paper [mm].
+    keeps_aspect : bool
+        Whether its axes have equal scales, so that they cannot fill the space they get.
+    """
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained")
+    layout = "compressed" if keeps_aspect else "constrained"
+    size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
+    return Figure(figsize=size, layout=layout)
+
+
+def number(value: float) -> str:
+    """Return a number as short as it can be, with a true minus sign."""
+    return f"{value:g}".replace("-", "\N{MINUS SIGN}")
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """Return a number to so many significant digits, without an exponent."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+    return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}").replace(
+        "-", "\N{MINUS SIGN}"
+    )
+
+
+def decimals(ticks: ArrayLike) -> int:
+    """Return how many decimals it takes to write every tick."""
+    return max(len(f"{tick:.6f}".rstrip("0").split(".")[1]) for tick in np.asarray(ticks))
+
+
+def halo() -> list[AbstractPathEffect]:
+    """Return a white rim for text and marks that stand on colours."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2.2, foreground="white")]
 
 
 def grid_lines(axes: Axes, axis: str = "y") -> None:

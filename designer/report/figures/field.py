@@ -6,13 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.physics import catenary
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
+from designer.statics.verdict import Verdict
 from designer.study import Study
 from designer.workspace.demand import is_left_out
+
+_REASONS = {
+    Verdict.OUTSIDE_HULL: "no positive tensions",
+    Verdict.NO_FINITE_CABLE: "no finite cable",
+    Verdict.NOT_CONVERGED: "not converged",
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,8 +37,10 @@ class Field:
     uplift : array (...)
         Largest vertical pull of any cable down on the platform, over the platform's weight; above
         zero that cable hangs below the platform.
-    is_solved, is_left_out : array (...) of bool
-        Whether a cable holds the platform there, and whether the study leaves the position out.
+    verdict : array (...) of int
+        One `Verdict` a position.
+    is_left_out : array (...) of bool
+        Whether the study leaves the position out.
     """
 
     position_m: FloatArray
@@ -40,8 +49,13 @@ class Field:
     massless_diameter_m: FloatArray
     massless_tension_N: FloatArray
     uplift: FloatArray
-    is_solved: BoolArray
+    verdict: IntArray
     is_left_out: BoolArray
+
+    @property
+    def is_solved(self) -> BoolArray:
+        """Positions (...) where a cable of the family holds the platform."""
+        return np.asarray(self.verdict == Verdict.SOLVED)
 
     @property
     def counts(self) -> BoolArray:
@@ -52,6 +66,14 @@ class Field:
     def is_infeasible(self) -> BoolArray:
         """Positions (...) that the study asks for and no cable of the family can hold."""
         return np.asarray(~self.is_solved & ~self.is_left_out)
+
+    @property
+    def why_infeasible(self) -> str:
+        """What keeps the platform from being held, in a few words; empty if nothing does."""
+        reasons = {int(verdict) for verdict in self.verdict[self.is_infeasible]}
+        if len(reasons) > 1:
+            return "no cable holds the platform"
+        return "".join(_REASONS[Verdict(reason)] for reason in reasons)
 
 
 def field_at(study: Study, position_m: FloatArray) -> Field:
@@ -65,7 +87,7 @@ def field_at(study: Study, position_m: FloatArray) -> Field:
         massless_diameter_m=sizing.massless_diameter_m,
         massless_tension_N=sizing.massless_tension_N,
         uplift=sizing.statics.force_z_N.max(axis=-1) / study.robot.weight_N,
-        is_solved=sizing.statics.is_solved,
+        verdict=sizing.statics.verdict,
         is_left_out=is_left_out(sizing.statics, hangs_below),
     )
 

@@ -38,11 +38,14 @@ class Focus:
         What it is, such as ``worst pose``.
     statics : Statics or None
         Equilibrium there with the cable that it needs; None where there is none.
+    field : Field
+        Sizing there, no axes.
     """
 
     position_m: FloatArray
     label: str
     statics: Statics | None
+    field: Field
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -198,7 +201,9 @@ def _focus(study: Study, found: WorkspaceMap) -> Focus:
         position = middle if found.infeasible_example_m is None else found.infeasible_example_m
         label = "cannot be held"
     statics = size_poses(study.robot, Poses.at(position), study.material).statics
-    return Focus(position, label, statics if bool(statics.is_solved) else None)
+    return Focus(
+        position, label, statics if statics.is_solved else None, field_at(study, position)
+    )
 
 
 def _workspace(study: Study) -> Workspace:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.report.figures import canvas
 
 if TYPE_CHECKING:
     from designer.report.figures.maps import Field
@@ -49,9 +50,9 @@ class Quantity:
         return np.where(field.counts, values * self.scale, np.nan)
 
     def text(self, value: float) -> str:
-        """Return a value with its unit, to three or four digits."""
-        digits = 2 if self.key == "ratio" else 1
-        return f"{value:.{digits}f} {self.unit}".strip()
+        """Return a value with its unit, to a few digits."""
+        digits = 4 if self.unit else 3
+        return f"{canvas.significant(value, digits)} {self.unit}".strip()
 
 
 DIAMETER = Quantity("diameter", "needed diameter", "mm", 1e3)

@@ -52,15 +52,12 @@ class ProvenanceSection:
     Parameters
     ----------
     facts : tuple of Fact
-        Program, config, time, settings.
-    libraries : Table
-        What computed and drew them.
+        Program, libraries, config, time, settings.
     catalogues : Table
         Where grades came from.
     """
 
     facts: tuple[Fact, ...]
-    libraries: Table
     catalogues: Table
 
 
@@ -92,17 +89,13 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
 
 def provenance_section(analysis: Analysis) -> ProvenanceSection:
     """Return where the numbers come from."""
-    libraries = (Row(pair) for pair in analysis.provenance.libraries)
     sources = (
         Row((source.name, source.source, fmt.count(source.n_grades)))
         for source in analysis.catalogue.sources
     )
-    name, version, where = (
-        Column(title, is_number=False) for title in ("Name", "Version", "Where from")
-    )
+    name, where = (Column(title, is_number=False) for title in ("Name", "Where from"))
     return ProvenanceSection(
         facts=_facts(analysis),
-        libraries=Table.of("Libraries.", (name, version), *libraries),
         catalogues=Table.of("Sources of grades.", (name, where, Column("Grades")), *sources),
     )
 
@@ -111,8 +104,10 @@ def _facts(analysis: Analysis) -> tuple[Fact, ...]:
     from designer.kernel.answer import TOLERANCE
 
     provenance, study = analysis.provenance, analysis.study
+    libraries = ", ".join(f"{name} {version}" for name, version in provenance.libraries)
     facts = [
         Fact("Program", f"cdpr-designer {provenance.version}"),
+        Fact("Libraries", libraries),
         Fact("Configuration", study.source.path.name),
         Fact("SHA-256 of the configuration", study.source.sha256),
         Fact("Computed", created(analysis)),

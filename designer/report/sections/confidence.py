@@ -77,9 +77,7 @@ def _modulus(chosen: Candidate, findings: Findings) -> Statement:
     text = f"The modulus is {modulus.basis}, known to ± {fmt.trimmed(100 * modulus.uncertainty)} %."
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
-        text += (
-            f" Over that range the utilisation at the worst pose is {_range(low, high)}."
-        )
+        text += f" Over that range the utilisation at the worst pose is {_range(low, high)}."
         if high > 1.0 >= chosen.verification.utilisation:
             return Statement("Modulus", f"{text} So it may exceed what is allowed.", "bad")
     return Statement("Modulus", text)

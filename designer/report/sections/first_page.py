@@ -157,14 +157,18 @@ def _card(analysis: Analysis) -> Card | None:
     workspace, pose = analysis.workspace, analysis.pose
     if workspace is not None:
         worst = workspace.sagging
-        return None if worst is None else Card(
-            "Diameter that the workspace needs",
-            fmt.millimetres(worst.diameter_m),
-            "of the configured cable family",
-            (
-                Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
-                Fact("At the position", fmt.position(worst.position_m)),
-            ),
+        return (
+            None
+            if worst is None
+            else Card(
+                "Diameter that the workspace needs",
+                fmt.millimetres(worst.diameter_m),
+                "of the configured cable family",
+                (
+                    Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
+                    Fact("At the position", fmt.position(worst.position_m)),
+                ),
+            )
         )
     if pose is None or not pose.sizing.statics.is_solved:
         return None

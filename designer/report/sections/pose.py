@@ -143,15 +143,17 @@ def _methods(pose: PoseAnalysis) -> Table | None:
 
 def _cables(pose: PoseAnalysis) -> Table:
     statics = pose.sizing.statics
+    largest = float(statics.largest_tension_N)
+    unit, scale = ("kN", 1e3) if largest >= 1e3 else ("N", 1.0)
     columns = (
         Column("Cable"),
-        Column("Chord", "m"),
+        Column("Straight distance", "m"),
         Column("Unstrained length", "m"),
-        Column("F_x", "kN"),
-        Column("F_z", "kN"),
-        Column("Tension at platform", "kN"),
-        Column("Tension at exit", "kN"),
-        Column("Weightless", "kN"),
+        Column("Horizontal force", unit),
+        Column("Vertical force", unit),
+        Column("Tension at platform", unit),
+        Column("Tension at exit", unit),
+        Column("Tension without sag", unit),
     )
     metres = zip(statics.geometry().chord_m, statics.length_m, strict=True)
     forces = zip(
@@ -162,16 +164,15 @@ def _cables(pose: PoseAnalysis) -> Table:
         pose.massless.tension_N,
         strict=True,
     )
-    largest = float(statics.largest_tension_N)
     rows = []
     for index, (lengths, loads) in enumerate(zip(metres, forces, strict=True)):
         cells = [fmt.fixed(float(x), 3) for x in lengths]
-        cells += [fmt.fixed(float(x) / 1e3, 3) for x in loads]
+        cells += [fmt.fixed(float(x) / scale, 3) for x in loads]
         is_worst = max(loads[2:4]) >= largest * (1.0 - 1e-9)
         rows.append(Row((str(index + 1), *cells), "good" if is_worst else ""))
     caption = (
-        "Every cable at the optimum; the most loaded is marked. F_x and F_z act on the cable at "
-        "the platform, F_x away from the exit point and F_z upward."
+        "Every cable at the optimum; the most loaded is marked. The forces act on the cable at "
+        "the platform: the horizontal one away from the exit point, the vertical one upward."
     )
     return Table.of(caption, columns, *rows)
 

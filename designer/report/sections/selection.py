@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from designer.analysis import Analysis
-from designer.catalogue.grade import TRUST_MEANING, Grade
+from designer.catalogue.grade import TRUST_MEANING, Grade, Reference
 from designer.report import format as fmt
 from designer.report.findings import Findings
 from designer.report.parts import Column, Fact, Group, Picture, Row, Statement, Table
@@ -92,7 +92,7 @@ def _sources(grade: Grade) -> tuple[Fact, ...]:
         Fact("Maker", grade.manufacturer),
         Fact("Construction", f"{grade.construction}, core {grade.core}, {grade.finish}"),
         Fact("Standard", grade.standard or "not given"),
-        Fact("Table read from", str(grade.source)),
+        _reference(grade.source),
         Fact("Trust", f"{grade.trust}: {TRUST_MEANING[grade.trust]}"),
         Fact(
             "Modulus",
@@ -115,14 +115,39 @@ _HEAD = (
 )
 
 
+def _reference(source: Reference) -> Fact:
+    """Return where a table was read, with a link if its address is one of the web."""
+    parts = (source.publisher, source.document, source.date)
+    text = ", ".join(part for part in parts if part)
+    url = source.url or ""
+    is_web = url.startswith(("https://", "http://"))
+    return Fact("Table read from", text, note=url, link=url if is_web else "")
+
+
 def _candidates(selection: SelectionResult) -> Table:
-    ordered = sorted(selection.outcomes, key=_rank)
-    return Table(
+    caption = (
         "Every grade that the study allows, lightest first, and the sizes tried. The mass of all "
-        "cables counts each at the longest length that it needs.",
-        _HEAD,
-        tuple(_grade_group(outcome, selection.chosen) for outcome in ordered),
+        "cables counts each at the longest length that it needs."
     )
+    return _table_of(caption, selection.outcomes, selection.chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class Decimals:
+    """Digits after the point in the columns of forces [kN] and of total masses [kg]."""
+
+    force: int
+    mass: int
+
+
+def _table_of(caption: str, outcomes: tuple[GradeOutcome, ...], chosen: Candidate | None) -> Table:
+    tried = [candidate for outcome in outcomes for candidate in outcome.candidates]
+    decimals = Decimals(
+        force=fmt.decimals(c.size.minimum_breaking_load_N / 1e3 for c in tried),
+        mass=fmt.decimals(c.total_mass_kg for c in tried),
+    )
+    ordered = sorted(outcomes, key=_rank)
+    return Table(caption, _HEAD, tuple(_grade_group(o, chosen, decimals) for o in ordered))
 
 
 def _rank(outcome: GradeOutcome) -> tuple[int, float]:
@@ -133,28 +158,28 @@ def _rank(outcome: GradeOutcome) -> tuple[int, float]:
     return 2, 0.0
 
 
-def _grade_group(outcome: GradeOutcome, chosen: Candidate | None) -> Group:
+def _grade_group(outcome: GradeOutcome, chosen: Candidate | None, decimals: Decimals) -> Group:
     grade = outcome.grade
     is_chosen = chosen is not None and outcome.best is chosen
     return Group(
-        rows=tuple(_candidate_row(c, is_chosen and c is chosen) for c in outcome.candidates),
+        rows=tuple(_row(c, decimals, is_chosen and c is chosen) for c in outcome.candidates),
         title=grade.id,
         remark=f"{grade.construction} {grade.core}, trust {grade.trust}: {outcome.sentence}",
         tone="good" if is_chosen else "" if outcome.outcome == "fits" else "muted",
     )
 
 
-def _candidate_row(candidate: Candidate, is_chosen: bool) -> Row:
+def _row(candidate: Candidate, decimals: Decimals, is_chosen: bool) -> Row:
     size, found = candidate.size, candidate.verification
     can_hold = math.isfinite(found.max_tension_N)
     cells = (
         size.id,
         fmt.fixed(1e3 * size.diameter_m, 1),
-        fmt.number(size.minimum_breaking_load_N / 1e3),
-        fmt.number(found.max_tension_N / 1e3) if can_hold else fmt.MISSING,
+        fmt.fixed(size.minimum_breaking_load_N / 1e3, decimals.force),
+        fmt.fixed(found.max_tension_N / 1e3, decimals.force) if can_hold else fmt.MISSING,
         fmt.utilisation(found.utilisation),
-        fmt.trimmed(size.linear_density_kg_per_m),
-        fmt.number(candidate.total_mass_kg) if can_hold else fmt.MISSING,
+        fmt.fixed(size.linear_density_kg_per_m, 3),
+        fmt.fixed(candidate.total_mass_kg, decimals.mass) if can_hold else fmt.MISSING,
         "chosen" if is_chosen else "yes" if candidate.verified else "no",
     )
     note = f"Doubtful figures: {size.doubt}" if size.doubt else ""
@@ -173,9 +198,5 @@ def _notes(selection: SelectionResult) -> tuple[Statement, ...]:
 def _alternatives(selection: SelectionResult) -> Table | None:
     if not selection.alternatives:
         return None
-    ordered = sorted(selection.alternatives, key=_rank)
-    return Table(
-        "Grades that the study does not allow, but that would hold the whole workspace.",
-        _HEAD,
-        tuple(_grade_group(outcome, None) for outcome in ordered),
-    )
+    caption = "Grades that the study does not allow, but that would hold the whole workspace."
+    return _table_of(caption, selection.alternatives, None)

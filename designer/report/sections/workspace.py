@@ -96,8 +96,8 @@ def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
     region = workspace.region
     facts = [Fact("Region", describe_region(region))]
     if not isinstance(region, PointList):
-        facts.append(Fact("Base area", f"{fmt.number(region.area_m2)}\u00a0m²"))
-        facts.append(Fact("Volume", f"{fmt.number(region.volume_m3)}\u00a0m³"))
+        facts.append(Fact("Base area", fmt.square_metres(region.area_m2)))
+        facts.append(Fact("Volume", fmt.cubic_metres(region.volume_m3)))
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
         facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
@@ -185,9 +185,7 @@ def _hanging(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | Non
     return Statement("Cables below the platform", text, "doubt")
 
 
-def _policies(
-    workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None
-) -> Table | None:
+def _policies(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None) -> Table | None:
     if other is None:
         return None
     maps = {workspace.hangs_below: found, other.hangs_below: other.map}

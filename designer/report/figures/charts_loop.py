@@ -1,0 +1,85 @@
+"""Tension and diameter over the turns of the loop, as in Riehl et al., ICRA 2010, Figs. 6 and 7."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.analysis import PoseAnalysis
+from designer.arrays import FloatArray
+from designer.report.figures import canvas, palette
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MOST_MARKERS = 40
+_DIVERGES = 10.0
+
+
+def loop_chart(pose: PoseAnalysis) -> str:
+    """Return both iterates of the loop side by side, with the optimum as their limit, as SVG.
+
+    Parameters
+    ----------
+    pose : PoseAnalysis
+        Solved or not; where straight cables cannot hold the pose, the chart says so.
+    """
+    turns = pose.loop.iterates
+    tension = np.array([turn.max_tension_N for turn in turns]) / 1e3
+    diameter = np.array([turn.diameter_m for turn in turns]) * 1e3
+    title = "Largest tension and diameter over the turns of the loop"
+    with canvas.drawing():
+        figure = canvas.sheet(62.0 if turns else 14.0)
+        if turns:
+            left, right = figure.subplots(1, 2)
+            left.set_title("largest tension [kN]", loc="left")
+            right.set_title("diameter [mm]", loc="left")
+            _panel(left, tension, float(pose.sizing.statics.largest_tension_N) / 1e3, "kN")
+            _panel(right, diameter, float(pose.sizing.diameter_m) * 1e3, "mm")
+            if not pose.loop.has_converged:
+                _say_unsettled(left, len(turns) - 1)
+        else:
+            text = "Straight cables cannot hold this pose, so the loop has no start."
+            figure.text(0.01, 0.5, text, va="center", color=palette.WARNING)
+        return canvas.svg(figure, "loop", title)
+
+
+def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
+    """One iterate; the optimum is drawn where there is one, a run-away is cut."""
+    if np.isfinite(limit):
+        axes.axhline(limit, color=palette.SAG, linewidth=0.9, linestyle=(0, (5, 2)))
+        text = f"optimum {canvas.significant(limit)} {unit}"
+        axes.annotate(
+            text, (1.0, limit), (0, 4), xycoords=("axes fraction", "data"),
+            textcoords="offset points", ha="right", va="bottom", color=palette.SAG,
+        )
+    else:
+        values = values[values < _DIVERGES * values[0]]
+    marker = "o" if len(values) <= _MOST_MARKERS else ""
+    axes.plot(values, color=palette.SAG, marker=marker, markersize=3.2)
+    _mark_start(axes, values[0], unit)
+    low, high = np.nanmin([*values, limit]), np.nanmax([*values, limit])
+    room = max(0.16 * (high - low), 0.05 * high)  # does not magnify a sag that hardly matters
+    axes.set_ylim(low - room, high + room)
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.set_xlabel("turn")
+    canvas.grid_lines(axes)
+
+
+def _mark_start(axes: Axes, value: float, unit: str) -> None:
+    axes.plot(
+        0, value, marker="o", markersize=5.5, color="white", markeredgecolor=palette.MASSLESS,
+        markeredgewidth=1.3,
+    )
+    axes.annotate(
+        f"massless {canvas.significant(value)} {unit}", (0, value), (9, -3),
+        textcoords="offset points", va="top", color=palette.MASSLESS,
+    )
+
+
+def _say_unsettled(axes: Axes, turns: int) -> None:
+    axes.text(
+        0.04, 0.84, f"not settled after {turns} turns", transform=axes.transAxes, va="top",
+        color=palette.WARNING,
+    )

@@ -1,0 +1,87 @@
+"""Horizontal section through the workspace, as in Riehl et al., ICRA 2010, Fig. 9."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from designer.report.figures import canvas, palette
+from designer.report.figures.colours import Steps, steps_for
+from designer.report.figures.maps import WorkspaceMaps
+from designer.report.figures.plan_map import draw_plan, keys
+from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, Quantity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def slice_chart(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
+    """Return a large map of the section of a workspace at its greatest height, as SVG.
+
+    Parameters
+    ----------
+    maps : WorkspaceMaps
+        What to draw; a list of points is drawn as points, seen from above.
+    quantity : Quantity
+        What the colours mean.
+    """
+    with canvas.drawing():
+        figure = canvas.sheet(112.0, keeps_aspect=True)
+        axes = figure.subplots()
+        _panel(figure, axes, maps, quantity, "right")
+        _legend(figure, maps)
+        return canvas.svg(figure, f"slice-{quantity.key}", f"{_place(maps)}: {quantity.title}")
+
+
+def slice_panels(
+    maps: WorkspaceMaps, quantities: Sequence[Quantity] = (TENSION, RATIO)
+) -> str:
+    """Return small maps of the same section side by side, one for each quantity, as SVG."""
+    with canvas.drawing():
+        figure = canvas.sheet(108.0 if len(quantities) == 2 else 84.0, keeps_aspect=True)
+        row = figure.subplots(1, len(quantities), squeeze=False)[0]
+        for axes, quantity in zip(row, quantities, strict=True):
+            _panel(figure, axes, maps, quantity, "bottom")
+        for axes in row[1:]:
+            axes.set_ylabel("")
+            axes.tick_params(labelleft=False)
+        _legend(figure, maps)
+        titles = ", ".join(quantity.title for quantity in quantities)
+        return canvas.svg(figure, "slice-panels", f"{_place(maps)}: {titles}")
+
+
+def _panel(
+    figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: Quantity, bar: str
+) -> None:
+    steps = steps_for(quantity.of(maps.section))
+    draw_plan(axes, maps, quantity, steps)
+    axes.set_title(_place(maps), loc="left", color=palette.INK)
+    if steps is None:
+        axes.set_title(f"{_place(maps)}; no pose can be held", loc="left")
+        return
+    _colour_bar(figure, axes, steps, quantity, bar)
+
+
+def _colour_bar(
+    figure: Figure, axes: Axes, steps: Steps, quantity: Quantity, place: str
+) -> None:
+    shape = {"right": {"shrink": 0.9, "aspect": 26}, "bottom": {"shrink": 0.92, "aspect": 30}}
+    bar = figure.colorbar(
+        steps.mappable, ax=axes, location=place, ticks=steps.ticks, extendfrac=0.04,
+        label=quantity.label, **shape[place],
+    )
+    bar.outline.set_linewidth(0.4)
+    bar.ax.tick_params(length=2)
+
+
+def _legend(figure: Figure, maps: WorkspaceMaps) -> None:
+    entries = keys(maps.section)
+    if entries:
+        figure.legend(handles=entries, loc="outside lower center", ncols=3, frameon=False)
+
+
+def _place(maps: WorkspaceMaps) -> str:
+    if maps.has_area:
+        return f"top of the region, z = {canvas.number(maps.section.position_m[0, 0, 2])} m"
+    return "all poses, seen from above"

@@ -1,0 +1,90 @@
+"""Round steps of a colour scale, and the scale itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.report.figures import palette
+
+if TYPE_CHECKING:
+    from matplotlib.colors import BoundaryNorm, Colormap
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Steps:
+    """Round boundaries of the steps of a colour scale.
+
+    Parameters
+    ----------
+    levels : array (n,)
+        Boundaries, ascending.
+    extend : str
+        ``max`` if there are values above the last boundary, else ``neither``.
+    """
+
+    levels: FloatArray
+    extend: Literal["max", "neither"]
+
+    @property
+    def colormap(self) -> Colormap:
+        """One colour a step."""
+        import matplotlib
+
+        steps = len(self.levels) - (1 if self.extend == "neither" else 0)
+        return matplotlib.colormaps[palette.COLORMAP].resampled(max(steps, 2))
+
+    @property
+    def norm(self) -> BoundaryNorm:
+        """From values to steps."""
+        from matplotlib.colors import BoundaryNorm
+
+        return BoundaryNorm(self.levels, self.colormap.N, extend=self.extend)
+
+    @property
+    def ticks(self) -> FloatArray:
+        """Boundaries to label: all, or the rounder half where there are many."""
+        if len(self.levels) <= 9:
+            return self.levels
+        number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
+        return self.levels[number % 2 == 0]
+
+    @property
+    def mappable(self) -> Any:
+        """What a colour bar is made from."""
+        from matplotlib.cm import ScalarMappable
+
+        return ScalarMappable(self.norm, self.colormap)
+
+
+def steps_for(values: FloatArray, most: int = 14) -> Steps | None:
+    """Return round steps over the values; None if no value is finite.
+
+    Near a pose that no cable can hold the values grow without bound. They would squeeze all
+    others into one colour, so the scale ends where nearly all of them lie, and says that it does.
+
+    Parameters
+    ----------
+    values : array
+        Any shape; NaN where there is no value.
+    most : int
+        How many steps at most.
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0:
+        return None
+    low, high = float(finite.min()), float(finite.max())
+    tenth, ninetieth = np.quantile(finite, [0.1, 0.9])
+    cap = float(ninetieth + 1.5 * (ninetieth - tenth))
+    capped = cap < high and ninetieth > tenth
+    top = cap if capped else high
+    if top - low < 1e-3 * abs(top):
+        low, top = 0.9 * low, 1.1 * top
+    levels = MaxNLocator(nbins=most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, top)
+    levels = np.asarray(levels, dtype=np.float64)
+    return Steps(levels, "max" if high > levels[-1] * (1.0 + 1e-9) else "neither")

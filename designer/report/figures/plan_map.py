@@ -1,0 +1,211 @@
+"""A region seen from above, coloured by what its poses need."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.report.figures import canvas, palette
+from designer.report.figures.colours import Steps
+from designer.report.figures.field import Field
+from designer.report.figures.maps import WorkspaceMaps
+from designer.report.figures.quantity import Quantity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def draw_plan(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None) -> None:
+    """Draw the section of a workspace into axes of equal scale.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where to draw; x and y in metres.
+    maps : WorkspaceMaps
+        What to draw.
+    quantity : Quantity
+        What the colours mean.
+    steps : Steps or None
+        Colour scale; None where no pose has a value.
+    """
+    field = maps.section
+    if maps.has_area:
+        _fill(axes, field, quantity, steps)
+    else:
+        _scatter(axes, field, quantity, steps)
+    corners = maps.study.robot.exit_points_m[:, :2]
+    if _frame(axes, field.position_m[..., :2], corners):
+        _exit_points(axes, corners)
+    _focus(axes, maps, quantity)
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+
+
+def keys(field: Field) -> list[Any]:
+    """Return legend entries for what the plan shows besides colours."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    entries: list[Any] = []
+    if field.position_m.ndim == 3 and _has_border(field) and not field.is_left_out.any():
+        style = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
+        label = "beyond: a cable hangs below the platform"
+        entries.append(Line2D([], [], label=label, **style))
+    if field.is_infeasible.any():
+        entries.append(
+            Patch(
+                facecolor=palette.WARNING_PALE,
+                edgecolor=palette.WARNING,
+                hatch="//////",
+                linewidth=0.5,
+                label=field.why_infeasible,
+            )
+        )
+    if field.is_left_out.any():
+        label = "left out: a cable hangs below the platform"
+        entries.append(Patch(facecolor=palette.LEFT_OUT, label=label))
+    return entries
+
+
+def _fill(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) -> None:
+    x, y = field.position_m[..., 0], field.position_m[..., 1]
+    axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
+    _region_of(axes, x, y, field.is_infeasible)
+    values = np.ma.masked_invalid(quantity.of(field))
+    if steps is not None and values.count() > 0:
+        surface = axes.contourf(
+            x, y, values, levels=steps.levels, cmap=steps.colormap, norm=steps.norm,
+            extend=steps.extend,
+        )
+        surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
+        surface.set_linewidth(0.3)
+        _contour_lines(axes, x, y, values, steps)
+    if _has_border(field):
+        uplift = np.ma.masked_invalid(field.uplift)
+        axes.contour(
+            x, y, uplift, levels=[0.0], colors=palette.INK, linewidths=0.9, linestyles="--"
+        )
+    axes.plot(x[-1], y[-1], color=palette.INK, linewidth=0.8)
+
+
+def _region_of(axes: Axes, x: FloatArray, y: FloatArray, inside: BoolArray) -> None:
+    """Hatch where no cable of the family holds the platform."""
+    if not inside.any():
+        return
+    levels = [0.5, 1.5]
+    axes.contourf(
+        x, y, inside.astype(np.float64), levels=levels, colors=[palette.WARNING_PALE]
+    )
+    hatched = axes.contourf(
+        x, y, inside.astype(np.float64), levels=levels, colors="none", hatches=["//////"]
+    )
+    hatched.set_edgecolor(palette.WARNING)
+    hatched.set_linewidth(0.0)
+
+
+def _contour_lines(
+    axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, steps: Steps
+) -> None:
+    decimals = canvas.decimals(steps.ticks)
+    lines = axes.contour(x, y, values, levels=steps.ticks, colors="white", linewidths=0.5)
+    labels = axes.clabel(
+        lines, fmt=f"%.{decimals}f", fontsize=palette.FONT_POINTS - 1.5, colors=palette.INK,
+        inline=False,
+    )
+    size = max(np.ptp(x), np.ptp(y))
+    placed = list(np.stack([x[-1], y[-1]], axis=1))  # keeps labels off the outline, too
+    for label in labels:
+        at = np.array(label.get_position())
+        if np.hypot(*(np.array(placed) - at).T).min() < 0.045 * size:
+            label.remove()
+            continue
+        placed.append(at)
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.7, "alpha": 0.85})
+
+
+def _scatter(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) -> None:
+    values = quantity.of(field)
+    order = np.argsort(np.nan_to_num(values, nan=-1.0))
+    x, y = field.position_m[order, 0], field.position_m[order, 1]
+    shown = np.isfinite(values[order])
+    if steps is not None:
+        axes.scatter(
+            x[shown], y[shown], c=values[order][shown], cmap=steps.colormap, norm=steps.norm,
+            s=14, linewidths=0.3, edgecolors=palette.INK,
+        )
+    bad, left = field.is_infeasible[order], field.is_left_out[order]
+    axes.scatter(x[bad], y[bad], marker="x", s=16, linewidths=1.0, color=palette.WARNING)
+    axes.scatter(x[left], y[left], marker="o", s=10, color=palette.LEFT_OUT)
+
+
+def _frame(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
+    """Set the limits, around the exit points as well unless the region would be a speck."""
+    flat = points.reshape(-1, 2)
+    everything = np.concatenate([flat, corners])
+    wide = np.ptp(everything, axis=0).max()
+    shows_corners = bool(np.ptp(flat, axis=0).max() > 0.2 * wide or len(flat) == 1)
+    shown = everything if shows_corners else flat
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    margin = 0.09 * max((high - low).max(), 1e-3)
+    axes.set_aspect("equal")
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
+    return shows_corners
+
+
+def _exit_points(axes: Axes, corners: FloatArray) -> None:
+    axes.plot(
+        *corners.T, linestyle="none", marker="^", markersize=5, color=palette.INK, clip_on=False
+    )
+    middle = corners.mean(axis=0)
+    for number, corner in enumerate(corners, start=1):
+        axes.annotate(
+            f"A{number}", corner, _outward(corner - middle, 9.0), textcoords="offset points",
+            ha="center", va="center",
+        )
+
+
+def _focus(axes: Axes, maps: WorkspaceMaps, quantity: Quantity) -> None:
+    position = maps.focus.position_m
+    if maps.has_area and not np.isclose(position[2], maps.section.position_m[0, 0, 2]):
+        return
+    value = float(quantity.of(maps.focus.field))
+    label = f"{maps.focus.label}, {quantity.text(value)}" if np.isfinite(value) else maps.focus.label
+    outward = _outward(position[:2] - _middle(maps.section), 1.0)
+    axes.plot(
+        *position[:2], marker="o", markersize=6, color="white" if maps.has_area else "none",
+        markeredgecolor=palette.INK, markeredgewidth=1.1, clip_on=False, zorder=5,
+    )
+    text = axes.annotate(
+        label, position[:2], outward * 9.0, textcoords="offset points", zorder=6,
+        ha=_side(outward[0], "left", "right"), va=_side(outward[1], "bottom", "top"),
+        fontweight="bold",
+    )
+    text.set_path_effects(canvas.halo())
+
+
+def _side(component: float, positive: str, negative: str) -> str:
+    """Alignment of a text that stands off in a direction."""
+    if abs(component) < 0.35:
+        return "center"
+    return positive if component > 0.0 else negative
+
+
+def _middle(field: Field) -> FloatArray:
+    """Centre of the region, or of the points."""
+    positions = field.position_m[..., :2]
+    return positions[0, 0] if positions.ndim == 3 else positions.mean(axis=0)
+
+
+def _outward(direction: FloatArray, points: float) -> FloatArray:
+    length = float(np.hypot(*direction))
+    return direction / length * points if length > 0.0 else np.array([0.0, points])
+
+
+def _has_border(field: Field) -> bool:
+    """Whether cables begin to hang below the platform somewhere within the section."""
+    finite = field.uplift[np.isfinite(field.uplift)]
+    return bool(len(finite) > 0 and finite.min() < 0.0 < finite.max())

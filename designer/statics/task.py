@@ -1,0 +1,138 @@
+"""A task for the kernel: poses made upright, and cables led over their pulleys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.physics import pulley
+from designer.robot import Poses, Robot
+from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_poses
+
+if TYPE_CHECKING:
+    from designer.kernel.batch import Solution
+
+_MOST_TURNS = 20
+_STILL_RAD = 1e-13
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PulleyRun:
+    """How the cables run over their pulleys.
+
+    Parameters
+    ----------
+    exit_points_m : array (n_cables, 3) or (..., n_cables, 3)
+        Where the cables leave the pulleys, upright frame [m]; the exit points without pulleys.
+    wrap_m : array (..., n_cables) or zero
+        Length that lies on the pulleys [m].
+    """
+
+    exit_points_m: FloatArray
+    wrap_m: FloatArray
+
+    def unstrained(self, strain: FloatArray) -> PulleyRun:
+        """Return the run with the wrapped length taken back to no tension."""
+        if not self.wrap_m.any():
+            return self
+        return replace(self, wrap_m=self.wrap_m / (1.0 + strain))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Task:
+    """What the kernel is asked for; see `designer.kernel.batch.solve_batch`.
+
+    Parameters
+    ----------
+    kappa_per_m, strength_m : float
+        Weight over axial stiffness [1/m], allowable tension over weight [m], of every cable.
+    inverse_weight_m_per_N : float or None
+        1 / w; None asks for the lightest cable.
+    force_N : array (..., 3) or None
+        Force on the platform beside its weight, base frame [N].
+    """
+
+    kappa_per_m: float
+    strength_m: float
+    inverse_weight_m_per_N: float | None
+    force_N: FloatArray | None = None
+
+
+def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
+    """Return how straight cables run over the pulleys in poses (...)."""
+    geometry = cable_geometry(robot, poses)
+    if robot.pulley_radius_m == 0.0:
+        return PulleyRun(upright_exit_points_m(robot), np.zeros(1))
+    slope = pulley.straight_slope_rad(
+        geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
+    )
+    return _run(robot, geometry.outward, slope)
+
+
+def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, PulleyRun]:
+    """Solve poses (...), flattened to one axis; with pulleys, until their tangent points rest.
+
+    The tangent point follows the slope of the sagging cable at its upper end, which moves by about
+    radius over length of what the tangent point moved: a handful of turns reach rounding.
+    """
+    count = int(np.prod(poses.shape, dtype=np.int64))
+    rotation = poses.rotation
+    if rotation.ndim > 2:
+        rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
+    flat = Poses(poses.position_m.reshape(count, 3), rotation)
+    force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
+    task = replace(task, force_N=None if force is None else force.reshape(count, 3))
+    if robot.pulley_radius_m == 0.0:
+        run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
+        return _solve(robot, flat, task, run), run
+    solution, run = _solve_over_pulleys(robot, flat, task)
+    shape = (*poses.shape, robot.n_cables)
+    points = run.exit_points_m.reshape(*shape, 3)
+    return solution, PulleyRun(points, run.wrap_m.reshape(shape))
+
+
+def _solve_over_pulleys(robot: Robot, flat: Poses, task: Task) -> tuple[Solution, PulleyRun]:
+    geometry = cable_geometry(robot, flat)
+    straight = pulley.straight_slope_rad(
+        geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
+    )
+    slope = straight
+    for _ in range(_MOST_TURNS):
+        run = _run(robot, geometry.outward, slope)
+        solution = _solve(robot, flat, task, run)
+        downward = solution.weight_N_per_m[:, None] * solution.length_m - solution.force_z_N
+        found = np.arctan2(downward, solution.force_x_N)
+        new = np.where(np.isfinite(found), found, straight)
+        if np.nanmax(np.abs(new - slope), initial=0.0) <= _STILL_RAD:
+            break
+        slope = new
+    return solution, run
+
+
+def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:
+    radius = robot.pulley_radius_m
+    exits = upright_exit_points_m(robot)
+    return PulleyRun(
+        pulley.tangent_point_m(exits, outward, slope_rad, radius),
+        pulley.wrap_length_m(slope_rad, radius),
+    )
+
+
+def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun) -> Solution:
+    from designer.kernel.batch import solve_batch
+
+    each = np.ones(robot.n_cables)
+    force = None if task.force_N is None else task.force_N @ robot.upright.T
+    return solve_batch(
+        robot,
+        upright_poses(robot, flat),
+        run.exit_points_m,
+        task.kappa_per_m * each,
+        each,
+        task.strength_m * each,
+        task.inverse_weight_m_per_N,
+        force,
+    )
