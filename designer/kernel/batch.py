@@ -83,16 +83,16 @@ def solve_batch(
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
     arguments: tuple[Any, ...] = (
-        np.ascontiguousarray(exit_points_m.reshape(-1, n, 3)),
-        robot.attachments_m,
-        _load(robot, force_N),
-        np.ascontiguousarray(robot.platform.centre_of_mass_m),
+        _plain(exit_points_m.reshape(-1, n, 3)),
+        _plain(robot.attachments_m),
+        _plain(_load(robot, force_N)),
+        _plain(robot.platform.centre_of_mass_m),
         robot.weight_N,
-        np.ascontiguousarray(poses.position_m),
-        np.ascontiguousarray(poses.rotation.reshape(-1, 3, 3)),
-        np.ascontiguousarray(kappa_per_m),
-        np.ascontiguousarray(relative_weights),
-        np.ascontiguousarray(strength_m),
+        _plain(poses.position_m),
+        _plain(poses.rotation.reshape(-1, 3, 3)),
+        _plain(kappa_per_m),
+        _plain(relative_weights),
+        _plain(strength_m),
         -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N,
         out_cables,
         out_poses,
@@ -115,6 +115,13 @@ def solve_batch(
         load_factor=out_poses[:, layout.LOAD_FACTOR],
         massless_tension_N=out_poses[:, layout.MASSLESS_TENSION],
     )
+
+
+def _plain(values: FloatArray) -> FloatArray:
+    """Return the array as the one kind that the kernel is compiled for: contiguous, read-only."""
+    plain = np.ascontiguousarray(values).view()
+    plain.setflags(write=False)
+    return plain
 
 
 def _load(robot: Robot, force_N: FloatArray | None) -> FloatArray:

@@ -43,7 +43,8 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         _mark_focus(axes, profile, maps.focus)
         canvas.grid_lines(axes)
         axes.set_title(
-            f"needed diameter [mm] at z = {canvas.number(maps.focus.position_m[2])} m", loc="left"
+            f"needed diameter [mm] at z = {canvas.significant(maps.focus.position_m[2], 3)} m",
+            loc="left",
         )
         axes.set_xlabel("distance to the edge of the exit points' hull, along the line [m]")
         return canvas.svg(figure, "edge", _TITLE)
@@ -90,45 +91,49 @@ def _curves(axes: Axes, profile: EdgeProfile) -> None:
 def _zones(axes: Axes, profile: EdgeProfile) -> None:
     """Shade what the study leaves out, hatch what no cable can hold."""
     x, field = profile.distance_m, profile.field
+    band = {"transform": axes.get_xaxis_transform(), "linewidth": 0}
     if field.is_left_out.any():
         axes.fill_between(
-            x, 0, 1, where=field.is_left_out, transform=axes.get_xaxis_transform(),
-            facecolor=palette.LEFT_OUT, alpha=0.6, linewidth=0,
+            x, 0, 1, where=field.is_left_out, facecolor=palette.LEFT_OUT, alpha=0.6, **band
         )
-        _upright(axes, _nearest_to_start(axes, profile), "left out: a cable hangs below")
+        start = min(float(x[field.is_left_out].max()), axes.get_xlim()[0])
+        axes.annotate(
+            "left out: a cable hangs below the platform", (start, 0.97), (4, 0),
+            xycoords=("data", "axes fraction"), textcoords="offset points", va="top",
+        )
     end = profile.limit_distance_m
-    if not field.is_solved.any():
-        end = float(x[0])
-    if end is not None:
-        axes.axvspan(
-            end, 0.0, facecolor=palette.WARNING_PALE, edgecolor=palette.WARNING, hatch="//////",
-            linewidth=0,
-        )
+    failed = ~field.is_solved if end is None else ~field.is_solved & (x > end)
+    hatch = {"facecolor": palette.WARNING_PALE, "edgecolor": palette.WARNING, "hatch": "//////"}
+    axes.fill_between(x, 0, 1, where=failed, **hatch, **band)
+    if end is not None and _is_visible(axes, end):
+        axes.axvspan(end, 0.0, linewidth=0, **hatch)
         axes.axvline(end, color=palette.WARNING, linewidth=0.9)
-        distance = canvas.significant(end, 2 if end < 100 else 3)
+        distance = canvas.significant(end, 2 if end < 100.0 else 3)
         text = f"no cable holds within {distance} m of the edge"
-        _upright(axes, end, text, palette.WARNING)
+        inside = end > 0.05 * axes.get_xlim()[0]
+        _upright(axes, end, text, palette.WARNING, 3.0 if inside else -3.0)
 
 
 def _region_end(axes: Axes, profile: EdgeProfile) -> None:
     end = profile.region_distance_m
-    if end is None or not 0.0 <= end < axes.get_xlim()[0]:
+    if end is None or not _is_visible(axes, end):
         return
     axes.axvline(end, color=palette.INK, linewidth=0.8, linestyle=(0, (5, 2)))
-    _upright(axes, end, f"region ends, {canvas.significant(end, 3)} m")
+    _upright(axes, end, f"region ends, {canvas.significant(end, 4)} m", palette.INK, -3.0)
 
 
-def _nearest_to_start(axes: Axes, profile: EdgeProfile) -> float:
-    shown = profile.distance_m[profile.field.is_left_out]
-    return float(min(shown.max(), axes.get_xlim()[0]))
+def _is_visible(axes: Axes, distance_m: float) -> bool:
+    """Whether it stands clear of both ends of the horizontal axis."""
+    start = axes.get_xlim()[0]
+    return bool(0.005 * start < distance_m < start)
 
 
-def _upright(axes: Axes, at: float, text: str, colour: str = palette.INK) -> None:
-    """A text along a vertical line, on its left where the curve is lower."""
+def _upright(axes: Axes, at: float, text: str, colour: str, offset: float) -> None:
+    """Write along a vertical line, on the side that the offset tells."""
     label = axes.annotate(
-        text, (at, 0.97), (-3, 0), xycoords=("data", "axes fraction"), rotation=90,
-        textcoords="offset points", ha="right", va="top", color=colour,
-        fontsize=palette.FONT_POINTS - 0.5,
+        text, (at, 0.97), (offset, 0), xycoords=("data", "axes fraction"), rotation=90,
+        textcoords="offset points", ha="left" if offset > 0.0 else "right", va="top",
+        color=colour, fontsize=palette.FONT_POINTS - 0.5,
     )
     label.set_path_effects(canvas.halo())
 
@@ -137,12 +142,15 @@ def _mark_focus(axes: Axes, profile: EdgeProfile, focus: Focus) -> None:
     value = 1e3 * float(focus.field.diameter_m)
     if not np.isfinite(value) or value > axes.get_ylim()[1]:
         return
+    at = profile.focus_distance_m
     axes.plot(
-        profile.focus_distance_m, value, marker="o", markersize=6, color="white",
-        markeredgecolor=palette.INK, markeredgewidth=1.1, zorder=5,
+        at, value, marker="o", markersize=6, color="white", markeredgecolor=palette.INK,
+        markeredgewidth=1.1, zorder=5,
     )
+    is_left = at > 0.6 * axes.get_xlim()[0]
     label = axes.annotate(
-        f"{focus.label}, {canvas.significant(value)} mm", (profile.focus_distance_m, value),
-        (-16, 6), textcoords="offset points", ha="right", va="bottom", fontweight="bold",
+        f"{focus.label}, {canvas.significant(value)} mm", (at, value), (8 if is_left else -16, 6),
+        textcoords="offset points", ha="left" if is_left else "right", va="bottom",
+        fontweight="bold",
     )
     label.set_path_effects(canvas.halo())

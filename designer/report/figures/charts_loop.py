@@ -9,6 +9,7 @@ import numpy as np
 from designer.analysis import PoseAnalysis
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
+from designer.sizing.loop import Iterate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,8 +27,9 @@ def loop_chart(pose: PoseAnalysis) -> str:
         Solved or not; where straight cables cannot hold the pose, the chart says so.
     """
     turns = pose.loop.iterates
-    tension = np.array([turn.max_tension_N for turn in turns]) / 1e3
-    diameter = np.array([turn.diameter_m for turn in turns]) * 1e3
+    shown = _shown(pose)
+    tension = np.array([turn.max_tension_N for turn in shown]) / 1e3
+    diameter = np.array([turn.diameter_m for turn in shown]) * 1e3
     title = "Largest tension and diameter over the turns of the loop"
     with canvas.drawing():
         figure = canvas.sheet(62.0 if turns else 14.0)
@@ -45,8 +47,16 @@ def loop_chart(pose: PoseAnalysis) -> str:
         return canvas.svg(figure, "loop", title)
 
 
+def _shown(pose: PoseAnalysis) -> tuple[Iterate, ...]:
+    """All turns, or those before a loop without an optimum runs away."""
+    turns = pose.loop.iterates
+    if bool(pose.sizing.statics.is_solved):
+        return turns
+    return tuple(t for t in turns if t.max_tension_N < _DIVERGES * turns[0].max_tension_N)
+
+
 def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
-    """One iterate; the optimum is drawn where there is one, a run-away is cut."""
+    """One iterate, and the optimum where there is one."""
     if np.isfinite(limit):
         axes.axhline(limit, color=palette.SAG, linewidth=0.9, linestyle=(0, (5, 2)))
         text = f"optimum {canvas.significant(limit)} {unit}"
@@ -54,8 +64,6 @@ def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
             text, (1.0, limit), (0, 4), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="right", va="bottom", color=palette.SAG,
         )
-    else:
-        values = values[values < _DIVERGES * values[0]]
     marker = "o" if len(values) <= _MOST_MARKERS else ""
     axes.plot(values, color=palette.SAG, marker=marker, markersize=3.2)
     _mark_start(axes, values[0], unit)
@@ -80,6 +88,6 @@ def _mark_start(axes: Axes, value: float, unit: str) -> None:
 
 def _say_unsettled(axes: Axes, turns: int) -> None:
     axes.text(
-        0.04, 0.84, f"not settled after {turns} turns", transform=axes.transAxes, va="top",
+        0.04, 0.94, f"not settled after {turns} turns", transform=axes.transAxes, va="top",
         color=palette.WARNING,
     )

@@ -67,23 +67,25 @@ def _label_curves(axes: Axes, served: Served) -> None:
             at = int(np.searchsorted(share, 0.45 * share[-1]))
             axes.annotate(
                 label, (1e3 * diameter_m[at], 100.0 * share[at]),
-                (6 if aligned == "left" else -6, 0), textcoords="offset points", ha=aligned,
-                va="center", color=colour,
+                (6 if aligned == "left" else -6, -4 if aligned == "left" else 4),
+                textcoords="offset points", ha=aligned,
+                va="top" if aligned == "left" else "bottom", color=colour,
             )
 
 
 def _needed(axes: Axes, served: Served) -> None:
-    for needed_m, what, colour in (
-        (served.massless_needed_m, "massless", palette.MASSLESS),
-        (served.needed_m, "serves all", palette.SAG),
+    for needed_m, what, colour, side in (
+        (served.massless_needed_m, "massless", palette.MASSLESS, "right"),
+        (served.needed_m, "serves all", palette.SAG, "left"),
     ):
         if not np.isfinite(needed_m):
             continue
         value = 1e3 * needed_m
         axes.axvline(value, color=colour, linewidth=0.9, linestyle=(0, (5, 2)))
         axes.annotate(
-            f"{what}: {canvas.significant(value)} mm", (value, 3.0), (-3, 0), rotation=90,
-            textcoords="offset points", ha="right", va="bottom", color=colour,
+            f"{what}: {canvas.significant(value)} mm", (value, 3.0),
+            (-3 if side == "right" else 3, 0), rotation=90, textcoords="offset points", ha=side,
+            va="bottom", color=colour,
         )
 
 
@@ -96,8 +98,8 @@ def _unserved(axes: Axes, served: Served) -> None:
         linewidth=0,
     )
     text = axes.annotate(
-        f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %", (0.0, 0.5 * low + 50.0),
-        (6, 0), xycoords=("axes fraction", "data"), textcoords="offset points", va="center",
+        f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %", (0.0, low),
+        (6, -3), xycoords=("axes fraction", "data"), textcoords="offset points", va="top",
         color=palette.WARNING,
     )
     text.set_path_effects(canvas.halo())

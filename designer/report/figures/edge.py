@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,8 +32,8 @@ class EdgeProfile:
     region_distance_m : float or None
         Where the line leaves the region [m]; None for a list of points.
     limit_distance_m : float or None
-        Where the last pose that a cable can hold lies [m]; None if every pose up to the edge, or
-        none at all, can be held.
+        Where the outermost pose that a cable can hold lies [m]; None if the outermost pose of all
+        can be held, or none can.
     """
 
     distance_m: FloatArray
@@ -85,13 +86,12 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     )
 
 
-def _limit(at: object, distance: FloatArray, field: Field) -> float | None:
-    """Bisect between the first pose that cannot be held and the one before it."""
-    assert callable(at)
-    failed = np.flatnonzero(~field.is_solved)
-    if len(failed) == 0 or failed[0] == 0:
+def _limit(at: Callable[[FloatArray], Field], distance: FloatArray, field: Field) -> float | None:
+    """Bisect between the outermost pose that can be held and the next one."""
+    held = np.flatnonzero(field.is_solved)
+    if len(held) == 0 or held[-1] == len(distance) - 1:
         return None
-    holds, fails = distance[failed[0] - 1], distance[failed[0]]
+    holds, fails = distance[held[-1]], distance[held[-1] + 1]
     for _ in range(_BISECTIONS):
         middle = 0.5 * (holds + fails)
         if at(np.array([middle])).is_solved[0]:

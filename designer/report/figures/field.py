@@ -95,13 +95,15 @@ def field_at(study: Study, position_m: FloatArray) -> Field:
 def cable_curves_m(statics: Statics, count: int = 81) -> FloatArray:
     """Return the true shape of every cable of one solved pose (n_cables, count, 3) [m].
 
-    Evenly spaced along the unstrained length, from the exit point to the platform.
+    Evenly spaced along the unstrained length, from where the cable leaves the base to the
+    platform.
     """
     share = np.linspace(0.0, 1.0, count)
+    length = statics.free_length_m[:, None]
     with np.errstate(invalid="ignore"):
         x, z = catenary.position_m(
-            share * statics.length_m[:, None],
-            statics.length_m[:, None],
+            share * length,
+            length,
             statics.force_x_N[:, None],
             statics.force_z_N[:, None],
             statics.axial_stiffness_N,
@@ -109,10 +111,14 @@ def cable_curves_m(statics: Statics, count: int = 81) -> FloatArray:
         )
     plan = statics.geometry().outward[:, None, :] * x[..., None]
     shape = np.concatenate([plan, z[..., None]], axis=-1)
-    return np.asarray(statics.robot.exit_points_m[:, None, :] + shape)
+    upright = statics.run.exit_points_m[:, None, :] + shape
+    return np.asarray(upright @ statics.robot.upright)
 
 
 def chords_m(statics: Statics) -> FloatArray:
-    """Return the straight lines from exit points to attachment points (n_cables, 2, 3) [m]."""
+    """Return the straight lines from exit points to attachment points (n_cables, 2, 3) [m].
+
+    For any pose, solved or not; pulleys are left out.
+    """
     ends = statics.poses.attachment_points_m(statics.robot)
     return np.stack([statics.robot.exit_points_m, ends], axis=1)

@@ -44,6 +44,30 @@ def draw_plan(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps 
     axes.set_ylabel("y [m]")
 
 
+def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
+    """Return a name and a place for each exit point, one for those that are close together.
+
+    Parameters
+    ----------
+    points_m : array (n_cables, 2 or 3)
+        Exit points [m].
+    apart_m : float
+        Names this close would overlap [m].
+    """
+    groups: list[list[int]] = []
+    for index, point in enumerate(points_m):
+        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
+        group = next(near, None)
+        if group is None:
+            groups.append([index])
+        else:
+            group.append(index)
+    return [
+        (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
+        for group in groups
+    ]
+
+
 def keys(field: Field) -> list[Any]:
     """Return legend entries for what the plan shows besides colours."""
     from matplotlib.lines import Line2D
@@ -134,7 +158,7 @@ def _scatter(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) 
     if steps is not None:
         axes.scatter(
             x[shown], y[shown], c=values[order][shown], cmap=steps.colormap, norm=steps.norm,
-            s=14, linewidths=0.3, edgecolors=palette.INK,
+            s=26, linewidths=0.4, edgecolors=palette.INK,
         )
     bad, left = field.is_infeasible[order], field.is_left_out[order]
     axes.scatter(x[bad], y[bad], marker="x", s=16, linewidths=1.0, color=palette.WARNING)
@@ -161,10 +185,11 @@ def _exit_points(axes: Axes, corners: FloatArray) -> None:
         *corners.T, linestyle="none", marker="^", markersize=5, color=palette.INK, clip_on=False
     )
     middle = corners.mean(axis=0)
-    for number, corner in enumerate(corners, start=1):
+    for text, place in names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
+        outward = _outward(place - middle, 1.0)
         axes.annotate(
-            f"A{number}", corner, _outward(corner - middle, 9.0), textcoords="offset points",
-            ha="center", va="center",
+            text, place, outward * 6.0, textcoords="offset points",
+            ha=_side(outward[0], "left", "right"), va=_side(outward[1], "bottom", "top"),
         )
 
 

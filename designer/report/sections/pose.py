@@ -59,7 +59,7 @@ def pose_section(
         facts=_facts(pose),
         methods=_methods(pose),
         cables=_cables(pose) if solved else None,
-        turns=_turns(pose.loop) if pose.loop.iterates else None,
+        turns=turns_table(pose.loop) if pose.loop.iterates else None,
         loop_chart=loop_chart,
         scene=scene,
     )
@@ -177,7 +177,8 @@ def _cables(pose: PoseAnalysis) -> Table:
     return Table.of(caption, columns, *rows)
 
 
-def _turns(loop: LoopSizing) -> Table:
+def turns_table(loop: LoopSizing) -> Table:
+    """Return the turns of the loop; of a long one, the first and the last."""
     numbered = list(enumerate(loop.iterates))
     if len(numbered) > _MOST_TURNS:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]

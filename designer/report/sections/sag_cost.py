@@ -51,7 +51,7 @@ def sag_cost(analysis: Analysis, findings: Findings) -> SagCost | None:
         ),
         Row(
             (
-                "Largest tension",
+                "Tension",
                 fmt.newtons(massless_tension_N),
                 fmt.newtons(tension_N),
                 fmt.factor(tension_N / massless_tension_N),

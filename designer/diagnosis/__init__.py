@@ -1,0 +1,1 @@
+"""Measured data against the model: residual, missing effect, error before and after."""

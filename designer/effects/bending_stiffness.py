@@ -1,0 +1,27 @@
+"""A cable stiff enough in bending to straighten its ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from designer.effects.effect import Effect, Parameter, Values
+from designer.machine import Machine
+
+
+def _change(machine: Machine, values: Values) -> Machine:
+    return replace(machine, flexural_rigidity_N_m2=values["flexural_rigidity_N_m2"])
+
+
+def build(machine: Machine) -> list[Effect]:
+    """Return the effect."""
+    rigidity = Parameter("flexural_rigidity_N_m2", "N·m²", 0.0, 10.0, (0.0, 1e6), (0.0, 5e3))
+    return [
+        Effect(
+            id="bending_stiffness",
+            summary="the cable resists bending, so its ends sag less",
+            law="boundary layers of length √(EI/T) at both ends, clamped along the chord",
+            source="Irvine, Cable Structures, 1981, section 2.5",
+            parameters=(rigidity,),
+            on_machine=_change,
+        )
+    ]

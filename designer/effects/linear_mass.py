@@ -1,0 +1,32 @@
+"""A cable heavier or lighter than declared: water, grease, ice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from designer.effects.effect import Effect, Parameter, Values
+from designer.machine import Machine
+
+
+def _change(machine: Machine, values: Values) -> Machine:
+    cable = machine.cable
+    changed = replace(
+        cable, linear_density_kg_per_m=cable.linear_density_kg_per_m * values["scale"]
+    )
+    return replace(machine, cable=changed)
+
+
+def build(machine: Machine) -> list[Effect]:
+    """Return the effect."""
+    scale = Parameter("scale", "", 1.0, 0.05, (0.02, 50.0), (0.8, 2.5))
+    return [
+        Effect(
+            id="linear_mass",
+            summary="the cable is heavier or lighter than declared",
+            law="mass per length is scale times the declared one",
+            source="definition",
+            parameters=(scale,),
+            on_machine=_change,
+            reaches_design=True,
+        )
+    ]

@@ -1,0 +1,33 @@
+"""Cables that grow with temperature."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.machine import Machine
+from designer.measured.data import Measured
+
+
+def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
+    assert measured.temperature_C is not None
+    growth = 1.0 + values["coefficient_per_K"] * (measured.temperature_C - 20.0)
+    # The winch pays out length at 20 °C; what hangs is longer by the growth.
+    return replace(readings, length_m=readings.length_m / growth[:, None])
+
+
+def build(machine: Machine) -> list[Effect]:
+    """Return the effect."""
+    return [
+        Effect(
+            id="thermal_expansion",
+            summary="the cables grow with temperature",
+            law="unstrained length times 1 + α (T - 20 °C)",
+            source="definition; steel 12.5e-6 /K",
+            parameters=(
+                Parameter("coefficient_per_K", "1/K", 0.0, 1e-5, (-1e-3, 1e-3), (-2e-5, 1e-4)),
+            ),
+            on_readings=_change,
+            needs=frozenset({"temperature", "length"}),
+        )
+    ]

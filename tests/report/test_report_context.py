@@ -1,0 +1,203 @@
+"""The context: what it says, and that it is documented and shown in full."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import pkgutil
+from collections.abc import Iterator
+
+import pytest
+from conftest import CASES
+from markupsafe import escape
+
+from designer.analysis import Analysis
+from designer.report import sections
+from designer.report.context import ReportContext, build_context
+from designer.report.parts import Picture, Table
+from designer.report.pictures import Pictures
+from designer.report.render import render_html
+from designer.report.sections.pose import turns_table
+from designer.sizing.loop import Iterate, LoopSizing
+
+PICTURE = Picture("What it shows.", "For who cannot see it.", svg="<svg><path d=''/></svg>")
+SCENE = Picture(
+    "A scene.", "Also a scene.", bitmap="data:image/png;base64,AA==", scene="<p>3-D</p>"
+)
+PICTURES = Pictures(
+    robot=SCENE,
+    loop_chart=PICTURE,
+    pose_scene=SCENE,
+    workspace=(PICTURE, SCENE),
+    candidates=PICTURE,
+)
+
+
+def texts(part: object) -> Iterator[str]:
+    """Every text in the context, however deep."""
+    if isinstance(part, str):
+        yield part
+    elif isinstance(part, tuple):
+        for item in part:
+            yield from texts(item)
+    elif dataclasses.is_dataclass(part):
+        for field in dataclasses.fields(part):
+            if not (isinstance(part, Picture) and field.name in ("svg", "bitmap", "alternative")):
+                yield from texts(getattr(part, field.name))
+
+
+def tables(part: object) -> Iterator[Table]:
+    """Every table in the context."""
+    if isinstance(part, Table):
+        yield part
+    elif isinstance(part, tuple):
+        for item in part:
+            yield from tables(item)
+    elif dataclasses.is_dataclass(part):
+        for field in dataclasses.fields(part):
+            yield from tables(getattr(part, field.name))
+
+
+@pytest.fixture(scope="module")
+def contexts(
+    analyses: dict[str, Analysis], pose_only: Analysis, yard: Analysis
+) -> dict[str, ReportContext]:
+    all_of_them = {**analyses, "pose_only": pose_only, "yard": yard}
+    return {name: build_context(a, PICTURES) for name, a in all_of_them.items()}
+
+
+@pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
+def test_everything_in_the_context_is_shown(contexts: dict[str, ReportContext], case: str) -> None:
+    html = render_html(contexts[case])
+    missing = [text for text in texts(contexts[case]) if str(escape(text)) not in html]
+    assert missing == []
+
+
+@pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
+def test_every_row_fills_its_table(contexts: dict[str, ReportContext], case: str) -> None:
+    found = list(tables(contexts[case]))
+    assert len(found) >= 4
+    for table in found:
+        widths = {len(row.cells) for group in table.groups for row in group.rows}
+        assert widths <= {len(table.columns)}
+
+
+def test_no_raw_number_reaches_the_page(contexts: dict[str, ReportContext]) -> None:
+    words = {word.strip("(),.") for text in texts(contexts["positive"]) for word in text.split()}
+    assert words.isdisjoint({"nan", "inf", "None", "array", "np.float64"})
+
+
+def documented_classes() -> list[type]:
+    """ReportContext and the dataclasses that its fields hold."""
+    found: list[type] = []
+
+    def add(kind: object) -> None:
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind) and kind not in found:
+            found.append(kind)
+
+    add(ReportContext)
+    for info in pkgutil.iter_modules(sections.__path__):
+        module = importlib.import_module(f"{sections.__name__}.{info.name}")
+        for value in vars(module).values():
+            add(value)
+    return [
+        kind for kind in found if kind.__name__.endswith(("Section", "Page", "Context", "Card"))
+    ]
+
+
+@pytest.mark.parametrize("kind", documented_classes())
+def test_every_field_is_documented(kind: type) -> None:
+    names = {field.name for field in dataclasses.fields(kind)}
+    assert {name for name in names if name not in (kind.__doc__ or "")} == set()
+
+
+def test_first_page_names_the_rope_and_its_margin(contexts: dict[str, ReportContext]) -> None:
+    page = contexts["positive"].first_page
+    assert page.verdict.tone == "good"
+    assert page.card is not None
+    facts = {fact.label: fact.value for fact in page.card.facts}
+    assert page.card.size == "20.5 mm"
+    assert facts["Grade"] == "gost-6x19s-iwrc-1960"
+    assert facts["Safety factor there"] == "2.00"
+    assert facts["Utilisation"] == "99.8\u00a0%"
+    assert page.reasons == ()
+    assert page.actions == ()
+
+
+def test_sag_table_shows_the_papers_workspace_figures(contexts: dict[str, ReportContext]) -> None:
+    sag = contexts["positive"].first_page.sag
+    assert sag is not None
+    rows = [row.cells for row in sag.table.groups[0].rows]
+    assert rows[0] == ("Diameter", "29.3\u00a0mm", "51.2\u00a0mm", "1.75")
+    assert rows[1] == ("Tension", "121.4\u00a0kN", "371.0\u00a0kN", "3.06")
+    assert "19 mm" in sag.consequence
+    assert "1.80" in sag.consequence
+
+
+def test_pose_section_shows_the_papers_loop(contexts: dict[str, ReportContext]) -> None:
+    pose = contexts["positive"].pose
+    assert pose is not None
+    assert pose.turns is not None
+    first = [row.cells for row in pose.turns.groups[0].rows[:3]]
+    assert first == [
+        ("0", "86.386", "24.719"),
+        ("1", "123.082", "29.506"),
+        ("2", "138.686", "31.321"),
+    ]
+
+
+def test_a_loop_that_does_not_settle_is_cut_short() -> None:
+    turns_of_400 = tuple(Iterate(1e3 * k, 0.01) for k in range(401))
+    table = turns_table(LoopSizing(turns_of_400, has_converged=False))
+    turns = [row.cells[0] for row in table.groups[0].rows]
+    assert turns[:2] == ["0", "1"]
+    assert turns[-4:] == ["…", "398", "399", "400"]
+    assert len(turns) == 17
+
+
+def test_candidates_begin_with_the_chosen_one(contexts: dict[str, ReportContext]) -> None:
+    selection = contexts["positive"].selection
+    assert selection is not None
+    groups = selection.candidates.groups
+    assert [group.title for group in groups] == ["gost-6x19s-iwrc-1960", "unirope-7x19-galvanised"]
+    assert groups[0].rows[-1].cells[-1] == "chosen"
+    assert "ends at 3/8 in" in groups[1].remark
+
+
+def test_doubtful_figures_carry_their_doubt(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    assert analysis.selection is not None
+    outcome = analysis.selection.outcomes[0]
+    candidate = outcome.candidates[0]
+    doubtful = dataclasses.replace(candidate.size, doubt="looks misprinted")
+    changed = dataclasses.replace(candidate, size=doubtful)
+    selection = dataclasses.replace(
+        analysis.selection,
+        outcomes=(dataclasses.replace(outcome, candidates=(changed, *outcome.candidates[1:])),),
+    )
+    context = build_context(dataclasses.replace(analysis, selection=selection), Pictures())
+    assert context.selection is not None
+    rows = context.selection.candidates.groups[0].rows
+    assert [row.note for row in rows] == ["Doubtful figures: looks misprinted", ""]
+
+
+def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> None:
+    assert [h.number for h in contexts["pose_only"].headings] == [1, 2, 3, 4, 5, 6]
+    assert [h.id for h in contexts["positive"].headings] == [
+        "answer",
+        "inputs",
+        "pose",
+        "workspace",
+        "selection",
+        "left-out",
+        "assumptions",
+        "nomenclature",
+        "provenance",
+    ]
+
+
+def test_grades_that_are_not_allowed_are_named(contexts: dict[str, ReportContext]) -> None:
+    left_out = contexts["too_thin"].left_out
+    assert left_out is not None
+    assert "gost-6x19s-iwrc-1960" in left_out.not_allowed
+    assert "unirope-7x19-galvanised" not in left_out.not_allowed

@@ -1,0 +1,105 @@
+"""The small extra solves behind the report."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from designer.analysis import Analysis
+from designer.region import Prism
+from designer.report.findings import distance_to_sides_m, find
+from designer.robot import Poses
+from designer.selection.verify import verify
+from designer.statics.inverse import solve_sagging
+
+
+def test_massless_choice_is_thinner_and_falls_short(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    choice = find(analysis).massless_choice
+    assert choice is not None
+    assert analysis.selection is not None
+    assert analysis.selection.chosen is not None
+    assert analysis.workspace is not None
+    assert analysis.workspace.massless is not None
+    assert choice.size.minimum_breaking_load_N >= 2 * analysis.workspace.massless.max_tension_N
+    assert choice.size.diameter_m < analysis.selection.chosen.size.diameter_m
+    assert choice.safety_factor == pytest.approx(1.80, abs=0.01)
+
+
+def test_massless_choice_is_verified_like_any_size(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    findings = find(analysis)
+    choice, outcome = findings.massless_choice, findings.chosen_outcome
+    assert choice is not None
+    assert outcome is not None
+    assert analysis.study.workspace is not None
+    cable = outcome.grade.cable(choice.size, 2.0)
+    fresh = verify(analysis.study.robot, analysis.study.workspace, cable)
+    assert fresh.max_tension_N == pytest.approx(choice.verification.max_tension_N, rel=1e-9)
+
+
+def test_modulus_matters_little_where_sag_rules(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    low, high = find(analysis).modulus_utilisation or (np.nan, np.nan)
+    assert analysis.selection is not None
+    chosen = analysis.selection.chosen
+    assert chosen is not None
+    assert low != high
+    assert chosen.grade.modulus.uncertainty > 0.0
+    assert min(low, high) < chosen.verification.utilisation < max(low, high)
+    assert low == pytest.approx(high, rel=1e-2)
+
+
+def test_limit_ratio_of_the_rope_is_that_of_a_very_thick_one(
+    analyses: dict[str, Analysis],
+) -> None:
+    analysis = analyses["positive"]
+    findings = find(analysis)
+    assert analysis.selection is not None
+    chosen, outcome = analysis.selection.chosen, findings.chosen_outcome
+    assert chosen is not None
+    assert outcome is not None
+    thick = outcome.family.cable(100.0)
+    worst = Poses.at(chosen.verification.worst_position_m)
+    statics = solve_sagging(analysis.study.robot, worst, thick)
+    ratio = float(statics.largest_tension_N) / thick.allowable_tension_N
+    assert findings.chosen_limit_ratio == pytest.approx(ratio, rel=1e-3)
+
+
+def test_other_policy_is_the_opposite(analyses: dict[str, Analysis]) -> None:
+    included, excluded = analyses["positive"], analyses["exclude"]
+    other = find(included).other_policy
+    assert other is not None
+    assert other.hangs_below == "exclude"
+    assert excluded.workspace is not None
+    assert other.map.sagging is not None
+    assert excluded.workspace.sagging is not None
+    assert other.map.sagging.diameter_m == pytest.approx(
+        excluded.workspace.sagging.diameter_m, rel=1e-3
+    )
+
+
+def test_no_policy_where_nothing_hangs(yard: Analysis) -> None:
+    assert find(yard).other_policy is None
+
+
+def test_unserved_samples_lie_along_the_sides(analyses: dict[str, Analysis]) -> None:
+    unserved = find(analyses["no_finite_cable"]).unserved
+    assert unserved is not None
+    # Reference: no finite cable at 4.8 m from the edge of the hull or nearer, at z = -40 m.
+    assert 1.0 < unserved.depth_m < 4.81
+    assert 100.0 < unserved.inradius_m < 144.4
+    assert find(analyses["positive"]).unserved is None
+
+
+def test_distance_to_sides() -> None:
+    box = Prism.box((0.0, 10.0), (0.0, 4.0), (0.0, 1.0))
+    positions = np.array([[5.0, 1.0, 0.5], [9.5, 2.0, 0.0], [0.0, 3.0, 1.0]])
+    assert distance_to_sides_m(box, positions) == pytest.approx([1.0, 0.5, 0.0])
+
+
+def test_nothing_is_found_for_a_pose_alone(pose_only: Analysis) -> None:
+    findings = find(pose_only)
+    assert findings.chosen_outcome is None
+    assert findings.other_policy is None
+    assert findings.unserved is None

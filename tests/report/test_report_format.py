@@ -1,0 +1,99 @@
+"""Numbers as text."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from designer.report import format as fmt
+
+
+def plain(text: str) -> str:
+    """Undo the special spaces and the minus sign."""
+    return text.replace("\u202f", " ").replace("\u00a0", " ").replace("−", "-")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (fmt.millimetres(0.0512303), "51.2 mm"),
+        (fmt.millimetres(0.00318), "3.18 mm"),
+        (fmt.newtons(371035.75), "371.0 kN"),
+        (fmt.newtons(950.0), "950.0 N"),
+        (fmt.newtons(13.5e6), "13.50 MN"),
+        (fmt.pascals(180e6), "180 MPa"),
+        (fmt.pascals(200e9), "200 GPa"),
+        (fmt.pascals(451.62e6), "451.6 MPa"),
+        (fmt.kilograms(3217.4), "3 217 kg"),
+        (fmt.kilograms_per_metre(0.042), "0.042 kg/m"),
+        (fmt.cubic_metres(14_925_468.0), "14 930 000 m³"),
+        (fmt.metres(-0.001), "0.00 m"),
+        (fmt.position([256.5154, 10.35, -40.0]), "(256.52, 10.35, -40.00) m"),
+        (fmt.count(20_000), "20 000"),
+        (fmt.percent(0.0405), "4.05 %"),
+        (fmt.signed_percent(0.0203), "+2.0 %"),
+        (fmt.signed_percent(-0.0203), "-2.0 %"),
+        (fmt.power_of_ten(3.14e-12, "m"), "3.1 × 10⁻¹² m"),
+        (fmt.power_of_ten(0.0, "m"), "0 m"),
+        (fmt.factor(3.0564), "3.06"),
+        (fmt.number(9999.96), "10 000"),
+        (fmt.number(-0.0), "0"),
+        (fmt.trimmed(2.0), "2"),
+        (fmt.trimmed(2.5), "2.5"),
+        (fmt.trimmed(200.0), "200"),
+        (fmt.plural(1, "grade"), "1 grade"),
+        (fmt.plural(19, "grade"), "19 grades"),
+        (fmt.listing(["a"]), "a"),
+        (fmt.listing(["a", "b", "c"]), "a, b and c"),
+    ],
+)
+def test_text_of_a_value(text: str, expected: str) -> None:
+    assert plain(text) == expected
+
+
+@pytest.mark.parametrize(
+    "show", [fmt.newtons, fmt.metres, fmt.millimetres, fmt.percent, fmt.number]
+)
+def test_a_missing_number_has_no_unit(show: object) -> None:
+    assert callable(show)
+    assert show(math.nan) == fmt.MISSING
+
+
+def test_no_figure_can_be_broken_over_lines() -> None:
+    texts = [fmt.newtons(371e3), fmt.position([1e3, 2.0, 3.0]), fmt.count(10**6)]
+    assert all(" " not in text for text in texts)
+
+
+@pytest.mark.parametrize(
+    ("fraction", "expected"),
+    [(0.998, "99.8 %"), (1.0, "100.0 %"), (1.00004, "over 100 %"), (1.04, "104.0 %")],
+)
+def test_utilisation_never_hides_an_excess(fraction: float, expected: str) -> None:
+    assert plain(fmt.utilisation(fraction)) == expected
+
+
+def test_utilisation_of_a_cable_that_cannot_hold() -> None:
+    assert fmt.utilisation(math.inf) == "cannot hold"
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"), [(0, "0 %"), (810, "4.05 %"), (19_999, "over 99.9 %"), (20_000, "100 %")]
+)
+def test_share_is_full_only_for_all(part: int, expected: str) -> None:
+    assert plain(fmt.share(part, 20_000)) == expected
+
+
+def test_column_keeps_the_digits_of_its_smallest_number() -> None:
+    assert fmt.decimals([1130.0, 64.05]) == 1
+    assert fmt.decimals([1130.0, 640.5]) == 0
+    assert fmt.decimals([0.0, math.inf, math.nan]) == 0
+    assert fmt.decimals([1e-9]) == 3
+
+
+@given(st.floats(1e-6, 1e9), st.integers(1, 6))
+def test_number_is_close_to_the_value(value: float, digits: int) -> None:
+    shown = float(plain(fmt.number(value, digits)).replace(" ", ""))
+    assert shown == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits))

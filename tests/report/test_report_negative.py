@@ -1,0 +1,94 @@
+"""When the answer is no: the reason, the place, and what could be done."""
+
+from __future__ import annotations
+
+import pytest
+
+from designer.analysis import Analysis
+from designer.report.context import build_context
+from designer.report.pictures import Pictures
+from designer.report.sections.first_page import FirstPage
+
+
+def page_of(analysis: Analysis) -> FirstPage:
+    return build_context(analysis, Pictures()).first_page
+
+
+def said(page: FirstPage) -> str:
+    """All reasons and actions as one plain text."""
+    texts = [page.verdict.text, *(r.text for r in page.reasons), *page.actions]
+    return " ".join(texts).replace("\u00a0", " ")
+
+
+def test_no_finite_cable(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["no_finite_cable"]
+    page = page_of(analysis)
+    assert page.verdict.tone == "bad"
+    assert page.card is None
+    text = said(page)
+    assert analysis.workspace is not None
+    share = 100 * analysis.workspace.census.fraction("no_finite_cable")
+    assert f"In {share:#.3g} % of its volume no cable of the configured family" in text
+    assert "One such position is (" in text
+    assert "larger inset" in text
+    assert "hangs_below: exclude" in text
+    assert "40.4 mm" in text
+    assert "230.9 kN" in text
+
+
+def test_boundary_met_by_the_search_alone(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["only_found_by_search"]
+    assert analysis.workspace is not None
+    assert analysis.workspace.census.fraction("solved") == 1.0
+    page = page_of(analysis)
+    assert not analysis.is_positive
+    assert "the search between the samples met poses" in said(page)
+
+
+def test_real_rope_holds_where_the_configured_family_does_not(
+    analyses: dict[str, Analysis],
+) -> None:
+    analysis = analyses["only_found_by_search"]
+    assert analysis.selection is not None
+    assert analysis.selection.chosen is not None
+    page = page_of(analysis)
+    assert page.verdict.title == "In part"
+    assert page.card is not None
+    assert f"Configure the cable as a real rope. {analysis.selection.chosen.grade.id}" in said(page)
+
+
+def test_pose_outside_the_hull(analyses: dict[str, Analysis]) -> None:
+    page = page_of(analyses["pose_outside"])
+    assert page.verdict.title == "In part"
+    text = said(page)
+    assert "At (250.00, −60.00, −50.00) m no positive cable tensions" in text
+    assert "inside their outline" in text
+    assert "stronger" not in text
+
+
+def test_grade_ends_too_thin(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["too_thin"]
+    page = page_of(analysis)
+    assert page.verdict.title == "No"
+    assert page.card is not None
+    assert page.card.size == "51.2\u00a0mm"
+    text = said(page)
+    assert "unirope-7x19-galvanised, which ends at 3/8 in" in text
+    assert "the lightest first: gost-6x19s-iwrc-1960 (20.5 mm)" in text
+    context = build_context(analysis, Pictures())
+    assert context.selection is not None
+    assert context.selection.alternatives is not None
+
+
+@pytest.mark.parametrize("case", ["positive", "exclude"])
+def test_a_yes_needs_no_advice(analyses: dict[str, Analysis], case: str) -> None:
+    page = page_of(analyses[case])
+    assert page.verdict.title == "Yes"
+    assert page.reasons == ()
+    assert page.actions == ()
+
+
+def test_every_no_has_a_reason_and_an_advice(analyses: dict[str, Analysis]) -> None:
+    for analysis in analyses.values():
+        page = page_of(analysis)
+        assert bool(page.reasons) == bool(page.actions) == (not analysis.is_positive)

@@ -1,0 +1,191 @@
+"""HTML and PDF as files: self-contained, escaped, paged, with an outline."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pypdf
+import pytest
+from jinja2 import UndefinedError
+from test_report_context import PICTURES
+
+from designer.analysis import Analysis
+from designer.report.context import ReportContext, build_context
+from designer.report.render import render_html, render_pdf, write_report
+
+A4_POINTS = (595.3, 841.9)
+
+
+class Loads(HTMLParser):
+    """Collects whatever a browser would fetch for a page, and its scripts."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.tags: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        for name, value in attrs:
+            is_load = name in ("src", "srcset", "data", "poster") or (tag, name) == ("link", "href")
+            if is_load and value:
+                self.addresses.append(value)
+
+
+def loads(html: str) -> Loads:
+    parser = Loads()
+    parser.feed(html)
+    return parser
+
+
+@pytest.fixture(scope="module")
+def context(analyses: dict[str, Analysis]) -> ReportContext:
+    return build_context(analyses["positive"], PICTURES)
+
+
+@pytest.fixture(scope="module")
+def pdf(context: ReportContext) -> pypdf.PdfReader:
+    return pypdf.PdfReader(io.BytesIO(render_pdf(render_html(context, paged=True))))
+
+
+def outline_titles(items: list[object]) -> list[object]:
+    """Titles of the outline, one list for each level."""
+    return [
+        outline_titles(item) if isinstance(item, list) else str(getattr(item, "title", ""))
+        for item in items
+    ]
+
+
+def test_nothing_is_loaded_from_outside(context: ReportContext) -> None:
+    html = render_html(context)
+    addresses = loads(html).addresses
+    assert len(addresses) >= 3
+    assert all(address.startswith("data:") for address in addresses)
+    assert re.findall(r"url\(\s*['\"]?(?!#)", html) == []
+    assert "@import" not in html
+
+
+def test_page_has_no_script_of_its_own(context: ReportContext) -> None:
+    assert "script" not in loads(render_html(context)).tags
+
+
+def test_scenes_are_in_the_html_only(context: ReportContext) -> None:
+    assert 'srcdoc="&lt;p&gt;3-D&lt;/p&gt;"' in render_html(context)
+    assert "iframe" not in loads(render_html(context, paged=True)).tags
+
+
+def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["markup"]
+    assert analysis.selection is not None
+    chosen = analysis.selection.chosen
+    assert chosen is not None
+    evil = dataclasses.replace(chosen.grade, product="<img src=x onerror=alert(2)>")
+    swapped = dataclasses.replace(chosen, grade=evil)
+    outcomes = tuple(
+        dataclasses.replace(
+            o, candidates=tuple(swapped if c is chosen else c for c in o.candidates)
+        )
+        for o in analysis.selection.outcomes
+    )
+    selection = dataclasses.replace(analysis.selection, chosen=swapped, outcomes=outcomes)
+    html = render_html(build_context(dataclasses.replace(analysis, selection=selection), PICTURES))
+    assert "<script" not in html
+    assert "onerror=alert(2)>" not in html
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
+    assert "&lt;img src=x onerror=alert(2)&gt;" in html
+
+
+def test_rendering_again_gives_the_same(context: ReportContext) -> None:
+    html = render_html(context, paged=True)
+    assert html == render_html(context, paged=True)
+    assert render_pdf(html) == render_pdf(html)
+
+
+def test_pdf_is_on_a4_with_numbered_pages(pdf: pypdf.PdfReader) -> None:
+    total = len(pdf.pages)
+    assert 6 <= total <= 12
+    for number, page in enumerate(pdf.pages, start=1):
+        assert (page.mediabox.width, page.mediabox.height) == pytest.approx(A4_POINTS, abs=0.5)
+        text = page.extract_text()
+        assert f"page {number} of {total}" in text
+        assert "Crane" in text
+
+
+def test_first_page_has_the_answer_and_inputs_begin_on_the_second(pdf: pypdf.PdfReader) -> None:
+    first, second = (" ".join(pdf.pages[k].extract_text().split()) for k in (0, 1))
+    assert "holds every pose of the workspace" in first
+    assert "How sure this is" in first
+    assert "robot.anchors" not in first
+    assert "robot.anchors" in second
+
+
+def test_pdf_outline_is_that_of_the_headings(pdf: pypdf.PdfReader, context: ReportContext) -> None:
+    titles = outline_titles(list(pdf.outline))
+    top = [title for title in titles if isinstance(title, str)]
+    assert top == [f"{h.number} {h.title}" for h in context.headings]
+    nested = [entry for entry in titles if isinstance(entry, list)]
+    assert ["Equations"] in nested
+
+
+def test_outline_leads_to_the_right_page(pdf: pypdf.PdfReader) -> None:
+    for item in pdf.outline:
+        if not isinstance(item, list):
+            page = pdf.pages[pdf.get_destination_page_number(item) or 0]
+            assert str(item.title).split(maxsplit=1)[1] in page.extract_text()
+
+
+def test_pdf_metadata(pdf: pypdf.PdfReader, analyses: dict[str, Analysis]) -> None:
+    data = pdf.metadata
+    assert data is not None
+    assert data.title == "Crane"
+    assert data.author == f"cdpr-designer {analyses['positive'].provenance.version}"
+    created = analyses["positive"].provenance.created.replace(microsecond=0)
+    assert data.creation_date == created
+
+
+def test_pdf_refuses_what_lies_outside(tmp_path: Path) -> None:
+    picture = tmp_path / "picture.png"
+    with pytest.raises(ValueError, match=r"picture\.png"):
+        render_pdf(f'<title>x</title><img src="{picture.as_uri()}">')
+
+
+def test_a_template_can_extend_ours(context: ReportContext, tmp_path: Path) -> None:
+    own = tmp_path / "report.html.j2"
+    own.write_text(
+        '{% extends "default/report.html.j2" %}'
+        "{% block nomenclature %}<p>Our own words for {{ report.title }}.</p>{% endblock %}",
+        encoding="utf-8",
+    )
+    html = render_html(context, user_folder=tmp_path)
+    assert "Our own words for Crane." in html
+    assert "length of cable paid out" not in html
+    assert "How sure this is" in html
+
+
+def test_a_misspelt_name_in_a_template_is_an_error(context: ReportContext, tmp_path: Path) -> None:
+    (tmp_path / "report.html.j2").write_text("{{ report.titel }}", encoding="utf-8")
+    with pytest.raises(UndefinedError, match="titel"):
+        render_html(context, user_folder=tmp_path)
+
+
+def test_report_files_are_written_whole(analyses: dict[str, Analysis], tmp_path: Path) -> None:
+    write_report(analyses["too_thin"], tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.pdf"]
+    assert (tmp_path / "report.html").read_text(encoding="utf-8").endswith("</html>")
+    assert (tmp_path / "report.pdf").stat().st_size < 8e6
+
+
+def test_a_failed_report_leaves_nothing(
+    analyses: dict[str, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(html: str) -> bytes:
+        raise OSError("disk full")
+
+    monkeypatch.setattr("designer.report.render.render_pdf", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_report(analyses["too_thin"], tmp_path)
+    assert list(tmp_path.iterdir()) == []
