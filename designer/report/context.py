@@ -109,7 +109,7 @@ def build_context(analysis: Analysis, pictures: Pictures) -> ReportContext:
         first_page=first_page(analysis, findings, pictures.robot),
         inputs=inputs_section(analysis),
         pose=pose_section(analysis, pictures.loop_chart, pictures.pose_scene),
-        workspace=workspace_section(analysis, findings, pictures.workspace),
+        workspace=workspace_section(analysis, findings, pictures),
         selection=selection_section(analysis, findings, pictures.candidates),
         left_out=left_out_section(analysis),
         assumptions=assumptions_section(analysis),

@@ -19,6 +19,8 @@ class Pictures:
         Diameter and tension over the turns of the loop.
     pose_scene : Picture or None
         The robot in the configured pose.
+    verdicts : Picture or None
+        The samples by verdict.
     workspace : tuple of Picture
         Maps and charts of the workspace, in the order in which they are shown.
     candidates : Picture or None
@@ -28,5 +30,6 @@ class Pictures:
     robot: Picture | None = None
     loop_chart: Picture | None = None
     pose_scene: Picture | None = None
+    verdicts: Picture | None = None
     workspace: tuple[Picture, ...] = ()
     candidates: Picture | None = None

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.report.context import ReportContext, build_context
+from designer.report.drawings import draw
 from designer.report.files import write_whole
 from designer.report.outline import add_outline
-from designer.report.pictures import Pictures
 from designer.resources import data_folder
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def write_report(analysis: Analysis, folder: Path) -> None:
 
     Both are made before either is written, and each takes its name only when it is whole.
     """
-    context = build_context(analysis, Pictures())
+    context = build_context(analysis, draw(analysis))
     files = {
         "report.html": render_html(context).encode(),
         "report.pdf": render_pdf(render_html(context, paged=True)),

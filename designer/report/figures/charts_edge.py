@@ -110,7 +110,7 @@ def _zones(axes: Axes, profile: EdgeProfile) -> None:
         axes.axvline(end, color=palette.WARNING, linewidth=0.9)
         distance = canvas.significant(end, 2 if end < 100.0 else 3)
         text = f"no cable holds within {distance} m of the edge"
-        inside = end > 0.05 * axes.get_xlim()[0]
+        inside = end > 0.024 * axes.get_xlim()[0]
         _upright(axes, end, text, palette.WARNING, 3.0 if inside else -3.0)
 
 
@@ -135,7 +135,7 @@ def _upright(axes: Axes, at: float, text: str, colour: str, offset: float) -> No
         textcoords="offset points", ha="left" if offset > 0.0 else "right", va="top",
         color=colour, fontsize=palette.FONT_POINTS - 0.5,
     )
-    label.set_path_effects(canvas.halo())
+    label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85})
 
 
 def _mark_focus(axes: Axes, profile: EdgeProfile, focus: Focus) -> None:

@@ -9,6 +9,7 @@ from designer.region import PointList, Region
 from designer.report import format as fmt
 from designer.report.findings import Findings, OtherPolicy
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.pictures import Pictures
 from designer.statics.verdict import Verdict
 from designer.study import HangsBelow, Workspace
 from designer.workspace.result import Census, Extreme, WorkspaceMap
@@ -32,7 +33,9 @@ class WorkspaceSection:
         How many poses have a cable below the platform, and what leaving them out changes.
     policies : Table or None
         The worst pose with and without those poses; None where there are none.
-    pictures : tuple of Picture
+    verdicts : Picture or None
+        The samples by verdict as a chart.
+    maps : tuple of Picture
         Maps and charts.
     """
 
@@ -42,11 +45,12 @@ class WorkspaceSection:
     census: Table
     hanging: Statement
     policies: Table | None
-    pictures: tuple[Picture, ...]
+    verdicts: Picture | None
+    maps: tuple[Picture, ...]
 
 
 def workspace_section(
-    analysis: Analysis, findings: Findings, pictures: tuple[Picture, ...]
+    analysis: Analysis, findings: Findings, pictures: Pictures
 ) -> WorkspaceSection | None:
     """Return the section on the workspace; None if the study has none."""
     study, found = analysis.study, analysis.workspace
@@ -59,7 +63,8 @@ def workspace_section(
         census=_census(found.census),
         hanging=_hanging(study.workspace, found, findings.other_policy),
         policies=_policies(study.workspace, found, findings.other_policy),
-        pictures=pictures,
+        verdicts=pictures.verdicts,
+        maps=pictures.workspace,
     )
 
 

@@ -1,0 +1,152 @@
+"""Robust least squares for the parameters of given effects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.predict import Setting
+from designer.diagnosis.problem import Problem
+from designer.effects.effect import Effect, Values
+
+_HUBER = 3.0
+_STEP = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit:
+    """Effects with fitted parameters.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+        The effects in the order in which they act, with their values.
+    vector : array (n_parameters,)
+        All values in that order.
+    std : array (n_parameters,)
+        Standard deviations, scaled up where the residual exceeds the noise.
+    loss : float
+        Robust sum of squares over the fitted rows, in units of noise.
+    n_data : int
+        Number of readings fitted.
+    """
+
+    settings: tuple[Setting, ...]
+    vector: FloatArray
+    std: FloatArray
+    loss: float
+    n_data: int
+
+    @property
+    def variance(self) -> float:
+        """Loss over degrees of freedom, at least 1: how much the noise is exceeded."""
+        return max(1.0, self.loss / max(self.n_data - len(self.vector), 1))
+
+
+def huber(residual: FloatArray) -> FloatArray:
+    """Return the robust square of each residual: r² up to 3, linear beyond; 0 where NaN."""
+    size = np.abs(np.nan_to_num(residual, nan=0.0))
+    return np.where(size <= _HUBER, size**2, 2.0 * _HUBER * size - _HUBER**2)
+
+
+def settings_at(effects: Sequence[Effect], vector: FloatArray) -> tuple[Setting, ...]:
+    """Give the effects the values of a vector."""
+    values = iter(vector.tolist())
+    return tuple(
+        Setting(effect, {p.name: next(values) for p in effect.parameters}) for effect in effects
+    )
+
+
+def starting_vector(
+    effects: Sequence[Effect], known: Sequence[Setting], start: Values
+) -> FloatArray:
+    """Return values to start from: those known, else ``start``, else a typical change."""
+    found = {setting.effect.key: setting.values for setting in known}
+    vector = []
+    for effect in effects:
+        values = found.get(effect.key, start)
+        for p in effect.parameters:
+            low, high = p.bounds
+            vector.append(np.clip(values.get(p.name, p.neutral + 0.1 * p.typical), low, high))
+    return np.array(vector)
+
+
+def fit(
+    problem: Problem,
+    effects: Sequence[Effect],
+    rows: BoolArray,
+    known: Sequence[Setting] = (),
+) -> Fit:
+    """Fit all parameters of the effects to the readings of some rows.
+
+    Huber's loss, bounds, and as many starts as the newest effect asks for. The slopes are central
+    differences of the compiled model over steps that each parameter's typical size sets.
+
+    Parameters
+    ----------
+    problem : Problem
+        Data and model.
+    effects : sequence of Effect
+        In the order in which they act.
+    rows : array (n_rows,) of bool
+        What may be seen.
+    known : sequence of Setting
+        Effects whose values are already near.
+    """
+    taken = rows[:, None] & ~np.isnan(problem.readings)
+    if not effects:
+        loss = float(huber(problem.residual(())[taken]).sum())
+        return Fit((), np.empty(0), np.empty(0), loss, int(taken.sum()))
+    fresh = [e for e in effects if e.key not in {s.effect.key for s in known}]
+    starts = [s for e in fresh for s in e.starts] or [{}]
+    fits = [_fit_from(problem, effects, taken, starting_vector(effects, known, s)) for s in starts]
+    return min(fits, key=lambda one: one.loss)
+
+
+def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
+    """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
+    parameters = [p for effect in effects for p in effect.parameters]
+    columns = []
+    for k, p in enumerate(parameters):
+        step = np.zeros_like(vector)
+        step[k] = _STEP * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+        ahead = problem.residual(settings_at(effects, vector + step))
+        behind = problem.residual(settings_at(effects, vector - step))
+        columns.append((ahead - behind) / (2.0 * step[k]))
+    return np.stack(columns, axis=-1)
+
+
+def _fit_from(
+    problem: Problem, effects: Sequence[Effect], taken: BoolArray, start: FloatArray
+) -> Fit:
+    from scipy.optimize import least_squares
+
+    parameters = [p for effect in effects for p in effect.parameters]
+    low, high = np.array([p.bounds for p in parameters]).T
+    inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
+    answer = least_squares(
+        lambda v: problem.residual(settings_at(effects, v))[taken],
+        inside,
+        jac=lambda v: jacobian(problem, effects, v)[taken],
+        bounds=(low, high),
+        x_scale=[p.typical for p in parameters],
+        loss="huber",
+        f_scale=_HUBER,
+        xtol=1e-10,
+        ftol=1e-10,
+        max_nfev=60,
+    )
+    loss, count = 2.0 * float(answer.cost), int(taken.sum())
+    variance = max(1.0, loss / max(count - len(start), 1))
+    slopes = jacobian(problem, effects, answer.x)[taken]
+    covariance = np.linalg.pinv(slopes.T @ slopes, rcond=1e-14)
+    return Fit(
+        settings=settings_at(effects, answer.x),
+        vector=answer.x,
+        std=np.sqrt(variance * np.diag(covariance)),
+        loss=loss,
+        n_data=count,
+    )

@@ -1,0 +1,75 @@
+"""The residual of measured data, in units of noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.diagnosis.predict import Predictor, Setting
+from designer.measured.data import Measured
+
+_UNHELD = 1e3
+"""Residual of a reading at a pose that the model cannot hold, in units of noise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard deviation of one reading.
+
+    Parameters
+    ----------
+    length_m, tension_N : float
+        Of a length [m] and of a tension [N].
+    source : str
+        ``declared``, or how it was estimated.
+    """
+
+    length_m: float
+    tension_N: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Problem:
+    """Data, model and noise.
+
+    Parameters
+    ----------
+    measured : Measured
+        The data.
+    predict : Predictor
+        The model.
+    noise : Noise
+        Scale of the residual.
+    """
+
+    measured: Measured
+    predict: Predictor
+    noise: Noise
+
+    @property
+    def sigma(self) -> FloatArray:
+        """Noise of each channel: lengths [m], then tensions [N] (2 n_cables,)."""
+        n = self.measured.length_m.shape[1]
+        return np.repeat([self.noise.length_m, self.noise.tension_N], n)
+
+    @property
+    def readings(self) -> FloatArray:
+        """Measured lengths [m], then tensions [N] (n_rows, 2 n_cables); NaN where missing."""
+        return np.hstack([self.measured.length_m, self.measured.tension_N])
+
+    def residual(self, settings: Sequence[Setting]) -> FloatArray:
+        """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
+        predicted = self.predict(settings)
+        model = np.hstack([predicted.length_m, predicted.tension_N])
+        residual = (self.readings - model) / self.sigma
+        unheld = np.isnan(model) & ~np.isnan(self.readings)
+        return np.where(unheld, _UNHELD, residual)
+
+
+def channel_names(n_cables: int) -> list[str]:
+    """Return the names of the columns of a residual."""
+    return [f"{kind} {k}" for kind in ("length", "tension") for k in range(1, n_cables + 1)]

@@ -1,0 +1,234 @@
+"""Which effects the data ask for: add the best while it earns its place, exchange, prune."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from designer.arrays import BoolArray
+from designer.diagnosis.blocks import folds
+from designer.diagnosis.fit import Fit, fit, huber
+from designer.diagnosis.problem import Problem
+from designer.effects.effect import Effect
+
+SIGNIFICANCE = 0.01
+"""Chance of a false finding in a whole round of candidates."""
+RIVAL_MARGIN = 9.0
+"""Difference of penalised loss below which two effects count as equally good."""
+_PENALTY = 2.0
+_MOST_EFFECTS = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trial:
+    """One candidate added to the present model.
+
+    Parameters
+    ----------
+    effect : Effect
+        The candidate.
+    fit : Fit
+        The model with it.
+    gain : float
+        What it takes off the robust loss over the rows for fitting, in units of the variance left.
+    chance : float
+        Probability of such a gain by chance in any of the candidates of this round.
+    heldout_gain : float
+        The same gain summed over parts of the rows that each fit has not seen; NaN if not tried.
+    """
+
+    effect: Effect
+    fit: Fit
+    gain: float
+    chance: float
+    heldout_gain: float
+
+    @property
+    def score(self) -> float:
+        """Gain less a penalty for each parameter."""
+        return self.gain - _PENALTY * len(self.effect.parameters)
+
+    @property
+    def earns_its_place(self) -> bool:
+        """Whether it is no accident, and foretells rows that it has not seen."""
+        return self.chance < SIGNIFICANCE and self.heldout_gain > 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """One round of the search.
+
+    Parameters
+    ----------
+    trials : tuple of Trial
+        All candidates, best first.
+    added : Effect or None
+        The one that earned its place.
+    """
+
+    trials: tuple[Trial, ...]
+    added: Effect | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """The whole search.
+
+    Parameters
+    ----------
+    steps : tuple of Step
+        Round by round.
+    fit : Fit
+        The final model, refitted jointly.
+    found : tuple of Effect
+        Its effects, without those unknown from the start.
+    """
+
+    steps: tuple[Step, ...]
+    fit: Fit
+    found: tuple[Effect, ...]
+
+
+Progress = Callable[[str], None]
+
+
+class Searcher:
+    """Searches one data set.
+
+    Parameters
+    ----------
+    problem : Problem
+        Data, model, noise.
+    candidates : sequence of Effect
+        In the order in which effects act.
+    given : sequence of Effect
+        Unknown from the start: always fitted, and never a finding.
+    rows : array (n_rows,) of bool
+        Rows for fitting.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        candidates: Sequence[Effect],
+        given: Sequence[Effect],
+        rows: BoolArray,
+        progress: Progress = lambda _: None,
+    ) -> None:
+        self._problem = problem
+        self._candidates = tuple(candidates)
+        self._given = tuple(given)
+        self._rows = rows
+        self._progress = progress
+
+    def run(self) -> Search:
+        """Add, exchange and prune until nothing changes."""
+        found: list[Effect] = []
+        steps: list[Step] = []
+        present = self.fit(found)
+        while len(found) <= _MOST_EFFECTS:
+            trials = self.trials(found, present)
+            best = next((t for t in trials if t.earns_its_place), None)
+            steps.append(Step(tuple(trials), best.effect if best else None))
+            if best is None or len(found) == _MOST_EFFECTS:
+                break
+            self._progress(f"found {best.effect.key}")
+            found = self._exchanged([*found, best.effect], best.fit)
+            found = self._pruned(found)
+            present = self.fit(found, best.fit)
+        return Search(tuple(steps), present, tuple(found))
+
+    def fit(self, found: Sequence[Effect], near: Fit | None = None) -> Fit:
+        """Fit the given effects and the found ones together."""
+        effects = self._sorted([*self._given, *found])
+        return fit(self._problem, effects, self._rows, near.settings if near else ())
+
+    def trials(self, found: Sequence[Effect], present: Fit) -> list[Trial]:
+        """Try every other candidate in addition, best first."""
+        taken = {e.key for e in (*found, *self._given)}
+        others = [e for e in self._candidates if e.key not in taken]
+        tried = [self._trial(found, present, effect, len(others)) for effect in others]
+        tried.sort(key=lambda trial: -trial.score)
+        return [self._validated(found, trial) for trial in tried]
+
+    def rivals(self, found: Sequence[Effect], effect: Effect, present: Fit) -> list[Effect]:
+        """Return the effects that explain the data as well in place of one that was found."""
+        rest = [e for e in found if e.key != effect.key]
+        taken = {e.key for e in (*found, *self._given)}
+        loss = self._penalised(present)
+        answer = []
+        for other in self._candidates:
+            if other.key in taken:
+                continue
+            swapped = self.fit([*rest, other], present)
+            if (self._penalised(swapped) - loss) / present.variance < RIVAL_MARGIN:
+                answer.append(other)
+        return answer
+
+    def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
+        from scipy.stats import chi2
+
+        self._progress(effect.key)
+        model = self.fit([*found, effect], present)
+        gain = (present.loss - model.loss) / model.variance
+        chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
+        return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
+
+    def _validated(self, found: Sequence[Effect], trial: Trial) -> Trial:
+        """Cross-validate a candidate that may be significant; the others need no proof."""
+        if trial.chance >= SIGNIFICANCE:
+            return trial
+        gain = 0.0
+        for part in folds(self._rows):
+            seen = self._rows & ~part
+            gain += self._unseen_loss(found, seen, part, trial.fit)
+            gain -= self._unseen_loss([*found, trial.effect], seen, part, trial.fit)
+        heldout = gain / trial.fit.variance
+        return Trial(trial.effect, trial.fit, trial.gain, trial.chance, heldout)
+
+    def _unseen_loss(
+        self, found: Sequence[Effect], seen: BoolArray, unseen: BoolArray, near: Fit
+    ) -> float:
+        effects = self._sorted([*self._given, *found])
+        model = fit(self._problem, effects, seen, near.settings)
+        return float(huber(self._problem.residual(model.settings)[unseen]).sum())
+
+    def _exchanged(self, found: list[Effect], near: Fit) -> list[Effect]:
+        """Replace a member by an outsider where that is clearly better: greed errs at times."""
+        present = self.fit(found, near)
+        for k in range(len(found) - 1):  # the newest was chosen among all
+            for other in self._candidates:
+                if other.key in {e.key for e in (*found, *self._given)}:
+                    continue
+                swapped = [*found[:k], other, *found[k + 1 :]]
+                model = self.fit(swapped, present)
+                better = (self._penalised(present) - self._penalised(model)) / model.variance
+                if better > RIVAL_MARGIN:
+                    found, present = swapped, model
+        return found
+
+    def _pruned(self, found: list[Effect]) -> list[Effect]:
+        """Leave out what the others have made superfluous."""
+        from scipy.stats import chi2
+
+        present = self.fit(found)
+        for effect in list(found):
+            if len(found) == 1:
+                break
+            rest = [e for e in found if e.key != effect.key]
+            without = self.fit(rest, present)
+            loss = max((without.loss - present.loss) / present.variance, 0.0)
+            chance = float(chi2.sf(loss, len(effect.parameters))) * len(self._candidates)
+            if chance > SIGNIFICANCE:
+                found, present = rest, without
+        return found
+
+    def _penalised(self, model: Fit) -> float:
+        return model.loss + _PENALTY * model.variance * len(model.vector)
+
+    def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
+        order = [e.key for e in self._candidates]
+        first = [e for e in effects if e.key not in order]
+        return first + sorted(
+            (e for e in effects if e.key in order), key=lambda e: order.index(e.key)
+        )

@@ -1,0 +1,160 @@
+"""Text, axes and colour bar that are written over the picture of a scene."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.report.figures import canvas, palette
+from designer.report.figures.colours import Steps
+from designer.report.figures.quantity import Quantity
+from designer.report.figures.stage import Image
+from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_ROOM_PX = 45.0
+_DOTS_PER_INCH = 240.0  # 1600 px fill the column of the printed report
+
+
+def over(image: Image) -> tuple[Figure, Axes]:
+    """Return a figure with the picture in it, whose axes count pixels from the upper left."""
+    from matplotlib.figure import Figure
+
+    size = (WIDTH_PX / _DOTS_PER_INCH, HEIGHT_PX / _DOTS_PER_INCH)
+    figure = Figure(figsize=size, dpi=_DOTS_PER_INCH)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.imshow(image, extent=(0, WIDTH_PX, HEIGHT_PX, 0), interpolation="nearest", aspect="auto")
+    axes.set_axis_off()
+    axes.set(xlim=(0, WIDTH_PX), ylim=(HEIGHT_PX, 0))
+    return figure, axes
+
+
+def png(figure: Figure) -> bytes:
+    """Return the finished picture as a PNG file of 1600 by 1000 pixels."""
+    stream = io.BytesIO()
+    figure.savefig(
+        stream, format="png", dpi=_DOTS_PER_INCH, metadata={"Software": None},
+        pil_kwargs={"optimize": True},
+    )
+    return stream.getvalue()
+
+
+def write(
+    axes: Axes, view: View, point_m: FloatArray, text: str, offset: tuple[float, float] = (0, 0),
+    **style: object,
+) -> None:
+    """Write a text beside a point of the scene, ``offset`` in points."""
+    label = axes.annotate(
+        text, view.pixels(point_m), offset, textcoords="offset points",
+        **{"ha": "center", "va": "center", **style},  # type: ignore[arg-type]
+    )
+    label.set_path_effects(canvas.halo())
+
+
+def mark(axes: Axes, view: View, point_m: FloatArray, colour: str = "white") -> None:
+    """Draw a ring at a point of the scene."""
+    axes.plot(
+        *view.pixels(point_m), marker="o", markersize=5.5, color=colour,
+        markeredgecolor=palette.INK, markeredgewidth=1.1,
+    )
+
+
+def hidden_lines(axes: Axes, view: View, lines_m: Iterable[FloatArray]) -> None:
+    """Draw lines faintly over everything, so that what lies behind a surface can be guessed."""
+    for line in lines_m:
+        axes.plot(
+            *view.pixels(line).T, color=palette.INK, linewidth=0.6, linestyle=(0, (2, 2)), alpha=0.6
+        )
+
+
+def colour_bar(figure: Figure, steps: Steps, quantity: Quantity) -> None:
+    """Draw the colour bar at the right edge."""
+    axes = figure.add_axes((0.895, 0.2, 0.016, 0.6))
+    bar = figure.colorbar(
+        steps.mappable, cax=axes, ticks=steps.ticks, extendfrac=0.04, label=quantity.label
+    )
+    bar.outline.set_linewidth(0.4)
+    bar.ax.tick_params(length=2)
+
+
+def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
+    """Write coordinates along the edges of a box (2, 3) that face the camera.
+
+    The lines themselves belong to the scene, see `floor_lines`.
+    """
+    low, high = bounds_m
+    near = np.where(view.toward_camera > 0.0, high, low)
+    middle = 0.5 * (low + high)
+    corner = leftmost_corner(view, bounds_m)
+    taken = view.pixels(np.array([*corner, low[2]]))
+    for axis, across in ((0, 1), (1, 0)):
+        for tick in ticks_between(low[axis], high[axis]):
+            point = np.array([0.0, 0.0, low[2]])
+            point[axis], point[across] = tick, near[across]
+            if np.hypot(*(view.pixels(point) - taken)) < _ROOM_PX:
+                continue  # the upright axis has its own label there
+            _tick(axes, view, point, canvas.number(float(tick)), across, near[across] - middle[across])
+        name = np.array([0.0, 0.0, low[2]])
+        name[axis], name[across] = middle[axis], near[across]
+        _tick(axes, view, name, "xy"[axis] + " [m]", across, near[across] - middle[across], 24.0)
+    for tick in ticks_between(low[2], high[2], 4):
+        write(
+            axes, view, np.array([*corner, tick]), canvas.number(float(tick)), (-5, 0), ha="right",
+            fontsize=palette.FONT_POINTS - 1.0,
+        )
+    write(axes, view, np.array([*corner, high[2]]), "z [m]", (-5, 12), ha="right")
+
+
+def _tick(
+    axes: Axes, view: View, point: FloatArray, text: str, across: int, side: float,
+    distance: float = 9.0,
+) -> None:
+    """Write outside the edge, in the direction in which the picture shows it to lie."""
+    beyond = point.copy()
+    beyond[across] += side
+    step = view.pixels(beyond) - view.pixels(point)
+    step = step / max(float(np.hypot(*step)), 1e-9) * distance
+    write(
+        axes, view, point, text, (float(step[0]), -float(step[1])),
+        fontsize=palette.FONT_POINTS - (1.0 if distance < 10.0 else 0.0),
+    )
+
+
+def floor_lines(view: View, bounds_m: FloatArray) -> list[FloatArray]:
+    """Return the grid on the floor of a box (2, 3) and its upright at the left, each (2, 3) [m]."""
+    low, high = bounds_m
+    lines = []
+    for axis, across in ((0, 1), (1, 0)):
+        for at in [low[axis], *ticks_between(low[axis], high[axis]), high[axis]]:
+            line = np.full((2, 3), low[2])
+            line[:, axis] = at
+            line[:, across] = low[across], high[across]
+            lines.append(line)
+    corner = leftmost_corner(view, bounds_m)
+    lines.append(np.array([[*corner, low[2]], [*corner, high[2]]]))
+    return lines
+
+
+def leftmost_corner(view: View, bounds_m: FloatArray) -> FloatArray:
+    """Return x and y of the upright edge of a box that is leftmost in the picture (2,) [m]."""
+    low, high = bounds_m
+    corners = np.array([[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])])
+    return np.asarray(corners[np.argmin(view.pixels(corners)[:, 0]), :2])
+
+
+def ticks_between(low: float, high: float, most: int = 5) -> FloatArray:
+    """Return round numbers from low to high."""
+    from matplotlib.ticker import MaxNLocator
+
+    if not high > low:
+        return np.array([low])
+    ticks = np.asarray(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]).tick_values(low, high))
+    slack = 1e-9 * (high - low)
+    return ticks[(ticks >= low - slack) & (ticks <= high + slack)]

@@ -1,0 +1,130 @@
+"""A parallel view of a scene: where the camera stands, and where each point lands on the picture.
+
+Parallel, so that lengths along an axis can be read off anywhere in the picture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+
+WIDTH_PX, HEIGHT_PX = 1600, 1000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A camera that looks at the scene from far away.
+
+    Parameters
+    ----------
+    azimuth_rad, elevation_rad : float
+        Where the camera stands, seen from the scene: around the vertical from the x axis, and
+        above the horizon [rad].
+    centre_m : array (3,)
+        What lands in the middle of the picture [m].
+    half_height_m : float
+        From the middle of the picture to its upper rim [m].
+    """
+
+    azimuth_rad: float
+    elevation_rad: float
+    centre_m: FloatArray
+    half_height_m: float
+
+    @property
+    def toward_camera(self) -> FloatArray:
+        """Unit vector from the scene to the camera."""
+        level = np.cos(self.elevation_rad)
+        return np.array(
+            [
+                level * np.cos(self.azimuth_rad),
+                level * np.sin(self.azimuth_rad),
+                np.sin(self.elevation_rad),
+            ]
+        )
+
+    @property
+    def right(self) -> FloatArray:
+        """Unit vector to the right in the picture."""
+        return np.array([-np.sin(self.azimuth_rad), np.cos(self.azimuth_rad), 0.0])
+
+    @property
+    def up(self) -> FloatArray:
+        """Unit vector upward in the picture."""
+        return np.cross(self.toward_camera, self.right)
+
+    @property
+    def pixels_per_m(self) -> float:
+        """Pixels per metre across the line of sight."""
+        return 0.5 * HEIGHT_PX / self.half_height_m
+
+    def pixels(self, points_m: FloatArray) -> FloatArray:
+        """Return where points (..., 3) land, from the upper left corner (..., 2) [px]."""
+        offset = (np.asarray(points_m) - self.centre_m) * self.pixels_per_m
+        return np.stack(
+            [0.5 * WIDTH_PX + offset @ self.right, 0.5 * HEIGHT_PX - offset @ self.up], axis=-1
+        )
+
+    def nearer(self, points_m: FloatArray, pixels: float) -> FloatArray:
+        """Return points (..., 3) moved toward the camera, so that they lie before a surface."""
+        return np.asarray(points_m + self.toward_camera * pixels / self.pixels_per_m)
+
+
+def fitting(
+    points_m: FloatArray,
+    azimuth_rad: float,
+    elevation_rad: float,
+    frame: tuple[float, float, float, float],
+) -> View:
+    """Return the view in which all points land within a frame, as large as can be.
+
+    Parameters
+    ----------
+    points_m : array (n, 3)
+        What must be seen [m].
+    azimuth_rad, elevation_rad : float
+        Where the camera stands [rad].
+    frame : tuple of float
+        Left, right, lower and upper bound of the frame as shares of the picture.
+    """
+    left, right, low, high = frame
+    plain = View(azimuth_rad, elevation_rad, np.zeros(3), 1.0)
+    across, upward = points_m @ plain.right, points_m @ plain.up
+    aspect = WIDTH_PX / HEIGHT_PX
+    half_height = max(
+        0.5 * np.ptp(across) / (aspect * (right - left)), 0.5 * np.ptp(upward) / (high - low), 1e-6
+    )
+    middle = [0.5 * (across.min() + across.max()), 0.5 * (upward.min() + upward.max())]
+    # the middle of the points shall land in the middle of the frame, not of the picture
+    middle[0] -= half_height * aspect * (left + right - 1.0)
+    middle[1] -= half_height * (low + high - 1.0)
+    depth = float(np.mean(points_m @ plain.toward_camera))
+    centre = plain.right * middle[0] + plain.up * middle[1] + plain.toward_camera * depth
+    return View(azimuth_rad, elevation_rad, centre, half_height)
+
+
+def clear_azimuth_rad(points_m: FloatArray, elevation_rad: float) -> float:
+    """Return the azimuth from which the points lie best apart in the picture [rad].
+
+    Parameters
+    ----------
+    points_m : array (n, 3)
+        Points to keep apart, such as exit points and platform [m].
+    elevation_rad : float
+        How high the camera stands [rad].
+    """
+    first, second = np.triu_indices(len(points_m), 1)
+    azimuths = np.radians(np.arange(-90.0, 270.0, 7.5))
+    best = 0.0
+    choice = float(azimuths[0])
+    for azimuth in azimuths:
+        view = View(float(azimuth), elevation_rad, np.zeros(3), 1.0)
+        shown = view.pixels(points_m)
+        gaps = np.linalg.norm(shown[first] - shown[second], axis=1)
+        apart = float(np.sort(gaps)[: max(len(gaps) // 3, 1)].sum())
+        if apart > 1.02 * best:
+            best, choice = apart, float(azimuth)
+    return choice

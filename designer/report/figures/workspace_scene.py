@@ -1,0 +1,157 @@
+"""The workspace cut open and coloured by what its poses need, as Riehl et al., ICRA 2010, Fig. 8."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.region import Prism
+from designer.report.figures import canvas, grids, overlay, palette, stage
+from designer.report.figures.colours import Steps, steps_for
+from designer.report.figures.field import cable_curves_m
+from designer.report.figures.maps import WorkspaceMaps
+from designer.report.figures.plan_map import names_of
+from designer.report.figures.quantity import DIAMETER, Quantity
+from designer.report.figures.view import View, fitting
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from pyvista import Plotter
+
+_ELEVATION_RAD = np.radians(28.0)
+_FRAME = (0.075, 0.85, 0.11, 0.93)
+
+
+def workspace_scene(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> bytes:
+    """Return a picture of the workspace with exit points and the cables at its worst pose, as PNG.
+
+    Parameters
+    ----------
+    maps : WorkspaceMaps
+        What to draw; a list of points is drawn as balls.
+    quantity : Quantity
+        What the colours mean.
+    """
+    steps = scale_of(maps, quantity)
+    view = view_of(maps)
+    plotter = stage.empty_stage()
+    add_workspace(plotter, maps, quantity, steps, view)
+    stage.add_lines(plotter, overlay.floor_lines(view, bounds_m(maps)), palette.FAINT, 1.0)
+    image = stage.picture(plotter, view)
+    with canvas.drawing():
+        figure, axes = overlay.over(image)
+        overlay.box_axes(axes, view, bounds_m(maps))
+        _label(axes, view, maps, quantity)
+        if steps is not None:
+            overlay.colour_bar(figure, steps, quantity)
+        return overlay.png(figure)
+
+
+def scale_of(maps: WorkspaceMaps, quantity: Quantity) -> Steps | None:
+    """Return the colour scale over all that the scene shows."""
+    fields = maps.shell.values() if maps.has_area else (maps.section,)
+    return steps_for(np.concatenate([quantity.of(field).ravel() for field in fields]), 18)
+
+
+def view_of(maps: WorkspaceMaps) -> View:
+    """Return the view into the opening of the region, or of a list of points."""
+    low, high = bounds_m(maps)
+    floor = [[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])]
+    top = maps.section.position_m[-1] if maps.has_area else maps.section.position_m
+    everything = np.concatenate([floor, top, maps.study.robot.exit_points_m])
+    return fitting(everything, _azimuth_rad(maps), float(_ELEVATION_RAD), _FRAME)
+
+
+def bounds_m(maps: WorkspaceMaps) -> FloatArray:
+    """Return the box around the region and the exit points in plan, (2, 3) [m]."""
+    region = maps.region.bounds_m
+    exits = maps.study.robot.exit_points_m
+    low = np.minimum(region[0], exits.min(axis=0))
+    high = np.maximum(region[1], exits.max(axis=0))
+    return np.array([low, high])
+
+
+def add_workspace(
+    plotter: Plotter, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, view: View
+) -> None:
+    """Put region, exit points and cables on the stage."""
+    if maps.has_area:
+        _add_region(plotter, maps, quantity, steps, view)
+    else:
+        _add_points(plotter, maps, quantity, steps)
+    _add_exit_points(plotter, maps)
+    if maps.focus.statics is not None:
+        curves = list(cable_curves_m(maps.focus.statics))
+        stage.add_lines(plotter, curves, palette.INK, 6.0)
+
+
+def _azimuth_rad(maps: WorkspaceMaps) -> float:
+    region = maps.region
+    if isinstance(region, Prism):
+        return grids.opening_azimuth_rad(region, maps.focus.position_m)
+    return float(np.radians(-60.0))
+
+
+def _add_region(
+    plotter: Plotter, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, view: View
+) -> None:
+    for field in maps.shell.values():
+        stage.add_field(plotter, field, quantity, steps)
+        if steps is not None:
+            lines = stage.contour_lines(field, quantity, steps)
+            stage.add_lines(plotter, [view.nearer(line, 1.0) for line in lines], "white", 1.2)
+    edges = [view.nearer(line, 1.5) for line in edges_m(maps)]
+    stage.add_lines(plotter, edges, palette.INK, 1.6)
+
+
+def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
+    """Return the edges of the opened region, each (n, 3) [m]."""
+    assert isinstance(maps.region, Prism)
+    wall = maps.shell["wall"].position_m
+    cuts = [maps.shell[name].position_m for name in ("cut", "other_cut")]
+    lines = [wall[0], wall[-1], cuts[0][:, 0]]
+    for cut in cuts:
+        lines += [cut[0], cut[-1], cut[:, -1]]
+    for corner in maps.region.polygon_m:
+        at = np.flatnonzero(np.linalg.norm(wall[0, :, :2] - corner, axis=1) < 1e-9)
+        lines += [wall[:, index] for index in at[:1]]
+    return [np.asarray(line, dtype=np.float64) for line in lines]
+
+
+def _add_points(
+    plotter: Plotter, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None
+) -> None:
+    field = maps.section
+    values = quantity.of(field)
+    stage.add_balls(plotter, field.position_m, values, steps, 0.008 * _size_m(maps))
+    for failed, colour in (
+        (field.is_infeasible, palette.WARNING),
+        (field.is_left_out, palette.LEFT_OUT),
+    ):
+        stage.add_spheres(plotter, field.position_m[failed], colour, 0.007 * _size_m(maps))
+
+
+def _add_exit_points(plotter: Plotter, maps: WorkspaceMaps) -> None:
+    robot, floor = maps.study.robot, bounds_m(maps)[0, 2]
+    stage.add_spheres(plotter, robot.exit_points_m, palette.INK, 0.006 * _size_m(maps))
+    feet = robot.exit_points_m * [1.0, 1.0, 0.0] + [0.0, 0.0, floor]
+    posts = list(np.stack([robot.exit_points_m, feet], axis=1))
+    stage.add_lines(plotter, posts, palette.FAINT, 1.5)
+
+
+def _size_m(maps: WorkspaceMaps) -> float:
+    return float(np.ptp(bounds_m(maps), axis=0).max())
+
+
+def _label(axes: Axes, view: View, maps: WorkspaceMaps, quantity: Quantity) -> None:
+    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * _size_m(maps)):
+        overlay.write(axes, view, place, name, (0, 8))
+    focus = maps.focus
+    if focus.statics is not None:
+        overlay.hidden_lines(axes, view, cable_curves_m(focus.statics))
+    value = float(quantity.of(focus.field))
+    text = f"{focus.label}, {quantity.text(value)}" if np.isfinite(value) else focus.label
+    overlay.mark(axes, view, focus.position_m)
+    overlay.write(axes, view, focus.position_m, text, (0, 11), fontweight="bold")

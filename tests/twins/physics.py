@@ -1,0 +1,232 @@
+"""Statics of a cable robot by quadrature of the cable equation in 3-D, all rows at once.
+
+Along the unstrained arc length s, counted from the platform, the tension vector is
+T(s) = T(0) - m g s, since each piece of cable of mass m s hangs in the gravity g; and the cable
+follows dr/ds = (1 + strain(|T|)) T/|T|. Gauss-Legendre quadrature gives r(length), so a row is the
+root of: every cable ends where it leaves its support, and the pulls T(0) carry the platform. The
+unknowns are the vectors T(0) and the lengths. No closed form, no plane, no preferred vertical.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from twins.bending import bending_shift_m
+
+NODES = 32
+_NODE, _WEIGHT = np.polynomial.legendre.leggauss(NODES)
+_NODE, _WEIGHT = (1 + _NODE) / 2, _WEIGHT / 2
+GRAVITY = 9.81
+MAX_STEPS = 80
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A robot as built; arrays broadcast over (rows, cables) or, for the platform, over (rows,).
+
+    Parameters
+    ----------
+    exit_m : array (rows or 1, cables, 3)
+        Exit points [m].
+    attachment_m : array (cables, 3)
+        Attachment points, body frame [m].
+    mass_kg, centre_m : float or array (rows,); array (3,)
+        Platform mass [kg] and its centre, body frame [m].
+    linear_mass, stiffness_N : array
+        Mass per unstrained length [kg/m] and EA [N].
+    has_moments : bool
+        False for a point mass.
+    gravity : array (3,)
+        Gravity [m/s²].
+    force_N : array (rows or 1, 3)
+        Force on the platform beside its weight [N].
+    toe_strain, toe_tension_N : float
+        Strain is T/EA + toe_strain (1 - exp(-T/toe_tension_N)).
+    pulley_radius_m : array
+        Radius of the swivelling pulleys [m].
+    mast_m_per_N : array
+        Exit point's movement per horizontal cable force on it, along that force [m/N].
+    bending_N_m2 : array
+        Flexural rigidity of the cable, clamped along its chord at both ends [N m²].
+    """
+
+    exit_m: np.ndarray
+    attachment_m: np.ndarray
+    mass_kg: np.ndarray | float
+    linear_mass: np.ndarray | float
+    stiffness_N: np.ndarray | float
+    has_moments: bool = False
+    centre_m: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    gravity: np.ndarray = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))
+    force_N: np.ndarray = field(default_factory=lambda: np.zeros((1, 3)))
+    toe_strain: float = 0.0
+    toe_tension_N: float = 1.0
+    pulley_radius_m: np.ndarray | float = 0.0
+    mast_m_per_N: np.ndarray | float = 0.0
+    bending_N_m2: np.ndarray | float = 0.0
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Lengths from the exit points, pulleys included, and tension vectors toward the exits."""
+
+    length_m: np.ndarray
+    exit_tension_N: np.ndarray
+    platform_pull_N: np.ndarray
+    exit_pull_N: np.ndarray
+
+
+def solve(machine: Machine, position_m: np.ndarray, rotation: np.ndarray) -> Equilibrium:
+    """Return the equilibrium of poses (rows, 3), (rows, 3, 3); raise where Newton fails."""
+    arm = np.einsum("rij,nj->rni", rotation, machine.attachment_m)
+    point = position_m[:, None, :] + arm
+    load = _load(machine, rotation)
+    pull, length = _straight_start(machine, point, arm, load)
+    for _ in range(MAX_STEPS):
+        end, reach, slope, along = _cable(machine, pull, length)
+        support, wrap = _support(machine, point, pull, end, length)
+        gap = point + reach - support
+        held = load + _wrench(machine, pull, arm)
+        step_pull, step_length = _newton_step(machine, gap, held, slope, along, arm)
+        # A step may at most halve or double a length; near the root it is always a full one.
+        part = np.min(np.minimum(1.0, 0.5 * length / np.maximum(np.abs(step_length), 1e-300)), 1)
+        pull = pull + part[:, None, None] * step_pull
+        length = length + part[:, None] * step_length
+        size = np.linalg.norm(pull, axis=-1)
+        done = np.abs(step_length) < 1e-12 * length
+        done &= np.linalg.norm(step_pull, axis=-1) < 1e-12 * size.max(1, keepdims=True)
+        if done.all():
+            end = pull - _weight(machine, length)
+            tension = np.linalg.norm(end, axis=-1)
+            wrap = wrap / (1 + _strain(machine, tension)[0])
+            return Equilibrium(length + wrap, tension, pull, end)
+    raise RuntimeError(f"no equilibrium in rows {np.flatnonzero(~done.all(1))}")
+
+
+def _weight(machine: Machine, length: np.ndarray) -> np.ndarray:
+    """Weight of lengths (rows, cables, ...) as vectors."""
+    mass = np.asarray(machine.linear_mass)
+    mass = mass.reshape(mass.shape + (1,) * (length.ndim - 2)) if mass.ndim else mass
+    return (mass * length)[..., None] * machine.gravity
+
+
+def _strain(machine: Machine, tension: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Strain and its slope in tension; tension (rows, cables, ...)."""
+    stiffness = np.asarray(machine.stiffness_N, dtype=float)
+    if stiffness.ndim:
+        stiffness = stiffness.reshape(stiffness.shape + (1,) * (tension.ndim - 2))
+    fading = machine.toe_strain * np.exp(-tension / machine.toe_tension_N)
+    strain = tension / stiffness + machine.toe_strain - fading
+    return strain, 1 / stiffness + fading / machine.toe_tension_N
+
+
+def _cable(machine: Machine, pull: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Tension at the exit, reach r(length), its slope in the pull, and dr/ds at the exit."""
+    arc = length[..., None] * _NODE
+    vector = pull[:, :, None, :] - _weight(machine, arc)
+    tension = np.sqrt((vector**2).sum(-1))
+    unit = vector / tension[..., None]
+    strain, softness = _strain(machine, tension)
+    weight = length[..., None] * _WEIGHT
+    reach = ((weight * (1 + strain))[..., None] * unit).sum(2)
+    across = (1 + strain) / tension
+    slope = (unit * (weight * (softness - across))[..., None]).swapaxes(-1, -2) @ unit
+    slope += (weight * across).sum(-1)[..., None, None] * np.eye(3)
+    end = pull - _weight(machine, length)
+    size = np.sqrt((end**2).sum(-1))
+    along = ((1 + _strain(machine, size)[0]) / size)[..., None] * end
+    return end, reach, slope, along
+
+
+def _support(
+    machine: Machine, point: np.ndarray, pull: np.ndarray, end: np.ndarray, length: np.ndarray
+) -> tuple[np.ndarray, np.ndarray | float]:
+    """Where the cable has to end for the present tensions, and what lies on the pulley."""
+    exit_m, wrap = machine.exit_m, 0.0
+    down = machine.gravity / np.linalg.norm(machine.gravity)
+    level = -(end - (end @ down)[..., None] * down)  # the horizontal force on the support
+    if np.any(machine.mast_m_per_N):
+        exit_m = exit_m + np.asarray(machine.mast_m_per_N)[..., None] * level
+    if np.any(machine.pulley_radius_m):
+        radius = np.asarray(machine.pulley_radius_m)[..., None]
+        size = np.linalg.norm(level, axis=-1)
+        toward = point - exit_m
+        toward = toward - (toward @ down)[..., None] * down
+        toward /= np.linalg.norm(toward, axis=-1, keepdims=True)
+        fall = np.arctan2(-(end @ down), size)  # below the horizontal, toward the platform
+        spoke = np.sin(fall)[..., None] * toward - np.cos(fall)[..., None] * down
+        exit_m = exit_m + radius * (toward + spoke)
+        wrap = radius[..., 0] * (np.pi / 2 + fall)
+    if np.any(machine.bending_N_m2):
+        shift = bending_shift_m(
+            machine.bending_N_m2, machine.stiffness_N, exit_m - point, pull,
+            _weight(machine, length), down, length,
+        )  # fmt: skip
+        exit_m = exit_m - shift
+    return exit_m, wrap
+
+
+def _load(machine: Machine, rotation: np.ndarray) -> np.ndarray:
+    """Weight and other forces on the platform (rows, 3 or 6), moments about the body's origin."""
+    weight = np.asarray(machine.mass_kg)[..., None] * machine.gravity
+    force = np.broadcast_to(weight + machine.force_N, (len(rotation), 3))
+    if not machine.has_moments:
+        return force
+    # The extra force (wind) acts at the body's origin, the weight at the centre of mass.
+    moment = np.cross(rotation @ machine.centre_m, weight)
+    return np.concatenate([force, moment], axis=-1)
+
+
+def _wrench(machine: Machine, pull: np.ndarray, arm: np.ndarray) -> np.ndarray:
+    """Sum of the pulls and their moments (rows, 3 or 6)."""
+    force = pull.sum(1)
+    if not machine.has_moments:
+        return force
+    return np.concatenate([force, np.cross(arm, pull).sum(1)], axis=-1)
+
+
+def _balance_matrix(machine: Machine, arm: np.ndarray) -> np.ndarray:
+    """Slope of the wrench in the pulls (rows, 3 or 6, cables, 3)."""
+    rows, cables, _ = arm.shape
+    force = np.broadcast_to(np.eye(3)[:, None, :], (rows, 3, cables, 3))
+    if not machine.has_moments:
+        return force
+    moment = np.cross(arm[:, :, None, :], np.eye(3))  # (rows, cables, pull component, moment)
+    return np.concatenate([force, moment.transpose(0, 3, 1, 2)], axis=1)
+
+
+def _newton_step(
+    machine: Machine,
+    gap: np.ndarray,
+    held: np.ndarray,
+    slope: np.ndarray,
+    along: np.ndarray,
+    arm: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solve closure and balance linearised, the support held still.
+
+    The pulls are eliminated cable by cable: step = -slope⁻¹ (gap + along × dlength).
+    """
+    compliance = np.linalg.inv(slope)
+    balance = _balance_matrix(machine, arm)
+    free = -(compliance @ gap[..., None])[..., 0]
+    per_length = -(compliance @ along[..., None])[..., 0]
+    matrix = np.einsum("rdni,rni->rdn", balance, per_length)
+    right = -held - np.einsum("rdni,rni->rd", balance, free)
+    step_length = np.linalg.solve(matrix, right[..., None])[..., 0]
+    return free + per_length * step_length[..., None], step_length
+
+
+def _straight_start(
+    machine: Machine, point: np.ndarray, arm: np.ndarray, load: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Straight cables that carry the load and half of their own weight."""
+    chord = machine.exit_m - point
+    length = np.linalg.norm(chord, axis=-1)
+    half = 0.5 * _weight(machine, length)
+    matrix = np.einsum("rdni,rni->rdn", _balance_matrix(machine, arm), chord / length[..., None])
+    right = -(load + _wrench(machine, half, arm))
+    tension = np.linalg.solve(matrix, right[..., None])[..., 0]
+    tension = np.maximum(tension, 0.02 * np.abs(tension).max(1, keepdims=True))
+    return (tension / length)[..., None] * chord + half, length
