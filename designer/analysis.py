@@ -13,6 +13,7 @@ from typing import Protocol
 
 from designer import __version__
 from designer.catalogue.registry import Catalogue
+from designer.effects.declared import as_built_by
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
@@ -132,11 +133,13 @@ def analyse_pose(study: Study) -> PoseAnalysis | None:
     """Size the configured pose in every way; None if the study has none."""
     if study.pose is None:
         return None
+    built = as_built_by(study)
+    robot, material = built.robot, built.material(study.material)
     return PoseAnalysis(
-        sizing=size_poses(study.robot, study.pose, study.material),
-        massless=solve_massless(study.robot, study.pose),
-        loop=size_by_loop(study.robot, study.pose, study.material),
-        limit_ratio=float(limit_ratio(study.robot, study.pose, study.material)),
+        sizing=size_poses(robot, study.pose, material),
+        massless=solve_massless(robot, study.pose),
+        loop=size_by_loop(robot, study.pose, material),
+        limit_ratio=float(limit_ratio(robot, study.pose, material)),
     )
 
 
@@ -156,14 +159,15 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
     """
     provenance = Provenance.now()
     pose = analyse_pose(study)
+    built = as_built_by(study)
     workspace = sweep_file = chosen = None
     if study.workspace is not None:
         sweep_file = folder / "workspace.nc"
         with reporter.task("workspace", sample_count(study.workspace)) as advance:
             workspace = map_workspace(
-                study.robot,
+                built.robot,
                 study.workspace,
-                study.material,
+                built.material(study.material),
                 file=sweep_file,
                 attributes=_attributes(study, provenance),
                 progress=advance,
@@ -172,10 +176,11 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
         names = study.selection.grades
         with reporter.task("grades", len(names or catalogue.grades)) as advance:
             chosen = select(
-                study.robot,
+                built.robot,
                 study.workspace,
                 study.selection,
                 catalogue.grades,
+                built=built,
                 progress=lambda: advance(1),
             )
     return Analysis(study, catalogue, provenance, pose, workspace, sweep_file, chosen)

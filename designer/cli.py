@@ -90,9 +90,11 @@ def report(
     """
     from designer.output import output_folder
     from designer.report.figures.opengl import require_opengl
+    from designer.study import require_square
     from designer.terminal import ProgressBars, announce_compiling, print_faults_of, print_summary
 
     study = _study(config)
+    require_square(study)
     if study.workspace is None and study.pose is None:
         raise InputError(
             [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
@@ -128,9 +130,11 @@ def size(
     Example:  designer size fast.yaml
     """
     from designer.result_json import size_text
+    from designer.study import require_square
     from designer.terminal import announce_compiling, print_pose
 
     study = _study(config)
+    require_square(study)
     announce_compiling()
     from designer.analysis import analyse_pose
 
@@ -144,6 +148,59 @@ def size(
     else:
         print_pose(study, pose)
     if not pose.sizing.statics.is_solved:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
+def diagnose(
+    config: Config,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Folder to write, CONFIG-diagnosis if left out."
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Compare measured data with the model, and find the effect that the model lacks.
+
+    Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
+    was found under `effects:`; `designer report` on it uses it everywhere.
+
+    Example:  designer diagnose built-crane.yaml
+
+    Exit status 0: all structure is explained. 1: some is left. 2: the input is wrong.
+    """
+    from designer.measured.read import read_measured
+    from designer.output import output_folder
+    from designer.terminal import Spinner, announce_compiling, print_diagnosis, print_faults_of
+
+    study = _study(config)
+    if study.measurements is None:
+        raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
+    measured = read_measured(study)
+    catalogue = _catalogue(study, with_plugins=not no_plugins)
+    print_faults_of(catalogue)
+    announce_compiling()
+    folder = output or Path(f"{config.stem}-diagnosis")
+
+    from designer.diagnosis.case import case_of
+    from designer.diagnosis.design import with_design
+    from designer.diagnosis.diagnose import diagnose as run
+    from designer.diagnosis_files import diagnosed_config, diagnosis_text
+    from designer.report.diagnosis import write_diagnosis
+
+    with output_folder(folder) as building, Spinner("searching") as spinner:
+        diagnosis = run(case_of(study, study.measurements, measured), spinner)
+        spinner("the design with and without")
+        diagnosis = with_design(diagnosis, catalogue.grades)
+        spinner("report")
+        write_diagnosis(diagnosis, building)
+        (building / "diagnosis.json").write_text(diagnosis_text(diagnosis), encoding="utf-8")
+        text = diagnosed_config(diagnosis, folder)
+        (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
+    print_diagnosis(diagnosis, folder)
+    if diagnosis.is_unexplained:
         raise typer.Exit(NEGATIVE_ANSWER)
 
 

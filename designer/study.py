@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from designer.cable import Material
-from designer.errors import Fault
+from designer.errors import Fault, InputError
 from designer.region import Region
 from designer.robot import Poses, Robot
 
@@ -109,6 +109,26 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
+class LogColumn:
+    """What one column of a log is to us: ``scale`` · reading + ``offset``.
+
+    Parameters
+    ----------
+    name : str
+        Its name in the log.
+    target : str
+        Our name for it, see `designer.measured.names`; ``ignore`` or ``covariate`` for none.
+    scale, offset : float
+        From the log's numbers to ours, in the unit that our name ends in.
+    """
+
+    name: str
+    target: str
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Measurements:
     """Data measured on the built machine, and what is known about it.
 
@@ -120,8 +140,8 @@ class Measurements:
         Mass per length of the cable on the machine [kg/m].
     axial_stiffness_N : float
         EA of the cable on the machine [N].
-    columns : mapping
-        From a log's own columns, units and rotation form to ours, as the file gives it.
+    columns : tuple of LogColumn
+        Columns of the file that are not as our names and units say.
     settled : bool
         Whether the rows are poses at rest; False for samples of a slow motion.
     unknown : tuple of str
@@ -135,11 +155,30 @@ class Measurements:
     file: Path
     linear_density_kg_per_m: float
     axial_stiffness_N: float
-    columns: Mapping[str, object] = field(default_factory=dict, hash=False)
+    columns: tuple[LogColumn, ...] = ()
     settled: bool = True
     unknown: tuple[str, ...] = ()
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredEffect:
+    """An effect that the model of this machine has.
+
+    Parameters
+    ----------
+    id : str
+        As in `designer.effect_names`.
+    cable : int or None
+        The one cable that it concerns, from 1; None for all.
+    parameters : mapping of str to float
+        All of its parameters, in the units that their names end in.
+    """
+
+    id: str
+    cable: int | None
+    parameters: Mapping[str, float] = field(hash=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,3 +194,27 @@ class Study:
     selection: Selection | None = None
     catalogues: tuple[Path, ...] = ()
     measurements: Measurements | None = None
+    effects: tuple[DeclaredEffect, ...] = ()
+
+
+def require_square(study: Study) -> None:
+    """Refuse a robot that has not as many cables as degrees of freedom.
+
+    Sizing needs a square robot; measured data may come from any.
+
+    Raises
+    ------
+    InputError
+        With one fault, at the anchors.
+    """
+    robot = study.robot
+    if robot.is_square:
+        return
+    load = "a point mass" if robot.is_point_mass else "a platform with attachments"
+    problem = (
+        f"{robot.n_cables} cables on {load}; "
+        "this version solves as many cables as degrees of freedom"
+    )
+    alternative = ", or 6 and as many attachments" if robot.is_point_mass else ""
+    expected = f"{robot.degrees_of_freedom}{alternative}"
+    raise InputError([study.source.fault("robot.anchors", problem, expected)])

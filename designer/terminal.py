@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,9 +20,11 @@ from designer.catalogue.registry import Catalogue
 
 if TYPE_CHECKING:
     from designer.analysis import Analysis, PoseAnalysis
+    from designer.diagnosis.result import Diagnosis
     from designer.study import Study
 
-_out = Console(highlight=False)
+# A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns.
+_out = Console(highlight=False, width=None if sys.stdout.isatty() else 240)
 _notes = Console(stderr=True, highlight=False)
 
 
@@ -51,6 +54,24 @@ class ProgressBars:
         bar = self._progress.add_task(name, total=total)
         yield lambda steps: self._progress.advance(bar, steps)
         self._progress.update(bar, completed=total, total=total)
+
+
+class Spinner:
+    """Context manager that shows what is being tried; call it with a new text."""
+
+    def __init__(self, text: str) -> None:
+        self._status = _notes.status(text)
+
+    def __enter__(self) -> Spinner:
+        self._status.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._status.stop()
+
+    def __call__(self, text: str) -> None:
+        """Show another text."""
+        self._status.update(escape(text))
 
 
 def announce_compiling() -> None:
@@ -115,6 +136,41 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
                 f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, "
                 f"{chosen.total_mass_kg:.4g} kg in all",
             )
+
+
+def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
+    """Print the short table at the end of ``designer diagnose``."""
+    table = Table(title=escape(diagnosis.study.name), title_justify="left", show_header=False)
+    for finding in diagnosis.findings:
+        values = ", ".join(
+            f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
+        )
+        table.add_row(f"[bold]{finding.effect.key}[/]", values)
+        if finding.rivals:
+            table.add_row("  or", ", ".join(finding.rivals))
+    if not diagnosis.findings:
+        table.add_row("effects", "none found")
+    if diagnosis.is_unexplained:
+        carrier = diagnosis.structure_after.carriers[0]
+        share = f"{carrier.fraction_of_variance:.0%} of its variance"
+        table.add_row("[bold red]unexplained[/]", f"goes with {escape(carrier.name)}, {share}")
+    for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
+        before, after = (
+            stage.length_m if kind == "length" else stage.tension_N
+            for stage in (diagnosis.stages[0], diagnosis.final)
+        )
+        if before is not None and after is not None:
+            was, now = scale * before.heldout.value, scale * after.heldout.value
+            table.add_row(f"{kind} error", f"{was:.3g} → {now:.3g} {unit} on unseen rows")
+    for label, choice in (
+        ("cable before", diagnosis.design_before),
+        ("after", diagnosis.design_after),
+    ):
+        if choice is not None:
+            table.add_row(label, f"{choice.grade}, {choice.size_id}" if choice.grade else "none")
+    _out.print(table)
+    names = ", ".join(sorted(file.name for file in folder.iterdir() if file.is_file()))
+    _out.print(f"{folder}: {names}", markup=False)
 
 
 def _factor(analysis: Analysis) -> str:

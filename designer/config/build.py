@@ -6,6 +6,8 @@ from pathlib import Path
 
 from designer.arrays import frozen_array
 from designer.cable import Material
+from designer.config.columns import log_column
+from designer.config.effects import read_effects
 from designer.config.schema import (
     BoxSection,
     CableSection,
@@ -37,6 +39,7 @@ def build_study(section: StudySection, source: Source) -> Study:
         selection=_selection(section.selection),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
+        effects=tuple(one for _, one in read_effects(section.effects, robot.n_cables).effects),
     )
 
 
@@ -89,7 +92,7 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         file=folder / section.file,
         linear_density_kg_per_m=section.cable.linear_mass,
         axial_stiffness_N=section.cable.axial_stiffness,
-        columns=section.columns,
+        columns=tuple(log_column(*item) for item in section.columns.items()),
         settled=section.settled,
         unknown=section.unknown,
         length_noise_m=section.noise.length,

@@ -7,19 +7,17 @@ together.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
 from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.config.document import Document
 from designer.config.fields import Distance, Point, Rotation
-from designer.config.node import Data, Key
+from designer.config.measured_checks import MEASURED_CHECKS
+from designer.config.parts import Parts
 from designer.config.schema import Anchors, Attachments, Corners, PrismBase
 from designer.errors import Fault
 from designer.region import Prism
@@ -27,37 +25,6 @@ from designer.units import describe
 
 _COINCIDENT = 1e-9
 _FLAT = 1e-6
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """A document whose parts can be had one by one, whatever is wrong with the others."""
-
-    document: Document
-    data: Data
-
-    def raw(self, *keys: str) -> Data:
-        """Return what the file holds at a path, None for nothing."""
-        found = self.data
-        for key in keys:
-            found = found.get(key) if isinstance(found, dict) else None
-        return found
-
-    def read(self, kind: Any, *keys: str) -> Any:
-        """Return the value at a path, checked as ``kind``; None if it is absent or faulty."""
-        try:
-            return TypeAdapter(kind).validate_python(self.raw(*keys))
-        except ValidationError:
-            return None
-
-    def array(self, kind: Any, *keys: str) -> FloatArray | None:
-        """Return the value at a path as an array; None if it is absent or faulty."""
-        value = self.read(kind, *keys)
-        return None if value is None else np.array(value, dtype=np.float64)
-
-    def fault(self, keys: tuple[Key, ...], problem: str, expected: str = "") -> Fault:
-        """Return a fault at a path."""
-        return self.document.fault(keys, problem, expected)
 
 
 _ANCHORS = ("robot", "anchors")
@@ -70,21 +37,6 @@ def all_faults(document: Document) -> list[Fault]:
     """Return every fault that concerns more than one field of the document."""
     parts = Parts(document, document.root.data())
     return [fault for check in CHECKS for fault in check(parts)]
-
-
-def cable_count(parts: Parts) -> Iterator[Fault]:
-    """Only as many cables as degrees of freedom, which is all that this version solves."""
-    anchors = parts.read(Anchors, *_ANCHORS)
-    is_point_mass = parts.raw(*_ATTACHMENTS) is None
-    needed = 3 if is_point_mass else 6
-    if anchors is None or len(anchors) == needed:
-        return
-    load = "a point mass" if is_point_mass else "a platform with attachments"
-    problem = (
-        f"{len(anchors)} cables on {load}; this version solves as many cables as degrees of freedom"
-    )
-    alternative = ", or 6 and as many attachments" if is_point_mass else ""
-    yield parts.fault(_ANCHORS, problem, f"{needed}{alternative}")
 
 
 def distinct_anchors(parts: Parts) -> Iterator[Fault]:
@@ -167,7 +119,6 @@ def catalogues_exist(parts: Parts) -> Iterator[Fault]:
 
 
 CHECKS = (
-    cable_count,
     distinct_anchors,
     anchors_span_area,
     attachment_count,
@@ -175,6 +126,7 @@ CHECKS = (
     point_mass_has_no_body,
     prism_has_area,
     catalogues_exist,
+    *MEASURED_CHECKS,
 )
 
 

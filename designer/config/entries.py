@@ -8,6 +8,7 @@ from typing import Any, get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from designer.config.columns import ColumnSection
 from designer.config.fields import Quantity
 from designer.config.node import Key, Node, path_text
 from designer.study import Entry
@@ -46,8 +47,8 @@ def _entries(
 ) -> Iterator[Entry]:
     if node is None:
         yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
-    elif isinstance(value, dict):
-        yield Entry(path_text(place), node.as_written(), node.as_written())
+    elif isinstance(value, dict) and value:
+        yield from _map_entries(value, node, place)
     elif not _has_rows(value):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
     elif len(value) > _MOST_ROWS:
@@ -56,6 +57,14 @@ def _entries(
     else:
         for index, row in enumerate(value):
             yield from _entries(row, node.child(index), (*place, index), dimension)
+
+
+def _map_entries(value: dict[str, Any], node: Node, place: tuple[Key, ...]) -> Iterator[Entry]:
+    for name, item in value.items():
+        if isinstance(item, ColumnSection):
+            below = node.child(name)
+            given = DEFAULT if below is None else below.as_written()
+            yield Entry(path_text((*place, name)), given, item.meaning)
 
 
 def _has_rows(value: object) -> bool:

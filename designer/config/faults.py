@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator, Sequence
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, Tag, ValidationError
 from pydantic.fields import FieldInfo
@@ -47,6 +47,8 @@ def known_fields(schema: type[BaseModel], loc: Sequence[Key]) -> dict[str, Field
 
 def _step(kind: Any, key: Key) -> Any:
     """Return what the schema holds one step further; a place in a list keeps its kind."""
+    if get_origin(kind) is dict:
+        return get_args(kind)[1]
     branch = _branch(kind, key)
     if branch is not None:
         return branch

@@ -154,7 +154,8 @@ def _rising(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
-def _mapping(given: object) -> object:
+def mapping(given: object) -> object:
+    """Return the mapping unchanged, or refuse what is given."""
     if not isinstance(given, dict):
         raise refusal(f"{describe(given)} is not a mapping", "a mapping such as {}")
     return given
@@ -165,7 +166,7 @@ _FARTHEST_M = 1e7
 _POINT = "three lengths [x, y, z]"
 
 Text = Annotated[str, BeforeValidator(_text)]
-FreeMapping = Annotated[dict[str, Any], BeforeValidator(_mapping)]
+FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 
 Length = Annotated[float, Quantity(LENGTH, at_least=-_FARTHEST_M, at_most=_FARTHEST_M)]
 Distance = Annotated[float, Quantity(LENGTH, at_least=0.0, at_most=_FARTHEST_M)]

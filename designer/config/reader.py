@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -9,12 +10,13 @@ from pydantic import ValidationError
 from designer.config.build import build_study
 from designer.config.checks import all_faults
 from designer.config.document import Document, read_document
+from designer.config.effects import effect_entries
 from designer.config.entries import all_entries
 from designer.config.faults import MOST_FAULTS, schema_faults
 from designer.config.node import path_text
 from designer.config.schema import StudySection
 from designer.errors import Fault, InputError
-from designer.study import Source, Study
+from designer.study import Entry, Source, Study
 
 
 def study_from(path: Path) -> Study:
@@ -44,5 +46,11 @@ def _place(fault: Fault) -> tuple[int, str]:
 
 def _source(path: Path, document: Document, section: StudySection) -> Source:
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
-    entries = all_entries(section, document.root)
+    entries = [*all_entries(section, document.root), *_effect_entries(document, section)]
     return Source(path, document.sha256, tuple(entries), lines)
+
+
+def _effect_entries(document: Document, section: StudySection) -> Iterator[Entry]:
+    node = document.root.child("effects")
+    if node is not None:
+        yield from effect_entries(section.effects, node, len(section.robot.anchors))

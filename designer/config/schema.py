@@ -1,15 +1,17 @@
 """The config file as pydantic models: which fields there are and what each may hold.
 
-Geometry, which needs several fields at once, is checked in `designer.config.checks`.
+Geometry, which needs several fields at once, is checked in `designer.config.checks`, and what is in
+``effects`` in `designer.config.effects`.
 """
 
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
 
+from designer.config.columns import Columns, Unknown
 from designer.config.fields import (
     Corner,
     Density,
@@ -51,6 +53,7 @@ Corners = Annotated[tuple[Corner, ...], BeforeValidator(_corners)]
 Positions = Annotated[tuple[Point, ...], BeforeValidator(_positions)]
 Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
 Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
+Unknowns = Annotated[tuple[Unknown, ...], BeforeValidator(_names)]
 
 
 def _word_or_list(given: object) -> str:
@@ -67,12 +70,6 @@ GradeIds = Annotated[
     | Annotated[tuple[Text, ...], BeforeValidator(ListOf(1, 1000, _GRADES)), Tag("a list")],
     Discriminator(_word_or_list),
 ]
-
-
-def _no_effects(given: object) -> object:
-    if isinstance(given, dict) and given:
-        raise refusal("effects are not supported by this version", "an empty mapping {}")
-    return given
 
 
 class PlatformSection(Section):
@@ -202,9 +199,9 @@ class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
     file: Text = Field(description="the name of a CSV file")
-    columns: FreeMapping = Field(default_factory=dict)
+    columns: Columns = Field(default_factory=dict)
     settled: StrictBool = True
-    unknown: Names = ()
+    unknown: Unknowns = ()
     cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
     noise: NoiseSection = NoiseSection()
 
@@ -222,4 +219,4 @@ class StudySection(Section):
     selection: SelectionSection | None = None
     catalogues: Names = ()
     measurements: MeasurementsSection | None = None
-    effects: Annotated[dict[str, Any], BeforeValidator(_no_effects)] = Field(default_factory=dict)
+    effects: FreeMapping = Field(default_factory=dict)  # checked by designer.config.effects

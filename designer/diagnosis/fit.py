@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.predict import Setting
 from designer.diagnosis.problem import Problem
-from designer.effects.effect import Effect, Values
+from designer.effects.effect import Effect, Setting, Values
 
 _HUBER = 3.0
 _STEP = 1e-3
@@ -135,9 +134,9 @@ def _fit_from(
         x_scale=[p.typical for p in parameters],
         loss="huber",
         f_scale=_HUBER,
-        xtol=1e-10,
-        ftol=1e-10,
-        max_nfev=60,
+        xtol=1e-8,
+        ftol=1e-8,
+        max_nfev=30,
     )
     loss, count = 2.0 * float(answer.cost), int(taken.sum())
     variance = max(1.0, loss / max(count - len(start), 1))

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.effect import Effect, Readings, Values
+from designer.effects.effect import Readings, Setting, as_built
 from designer.machine import Machine
 from designer.measured.data import Measured
 from designer.robot import Poses
@@ -17,14 +16,6 @@ from designer.statics.nearest import solve_nearest
 
 AIR_DENSITY_KG_PER_M3 = 1.225
 """Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Setting:
-    """An effect with values for its parameters."""
-
-    effect: Effect
-    values: Values
 
 
 class Predictor:
@@ -38,17 +29,20 @@ class Predictor:
         As declared.
     measured : Measured
         The data; only poses and surroundings are used.
+    fixed : sequence of Setting
+        Effects on readings that are declared: they act before all others.
     """
 
-    def __init__(self, machine: Machine, measured: Measured) -> None:
+    def __init__(self, machine: Machine, measured: Measured, fixed: Sequence[Setting] = ()) -> None:
         self._machine = machine
         self._measured = measured
+        self._fixed = tuple(fixed)
         self._known: dict[tuple[object, ...], Readings] = {}
 
     def __call__(self, settings: Sequence[Setting]) -> Readings:
         """Return what the sensors would show with these effects, applied in their order."""
         readings = self._physical([s for s in settings if s.effect.on_machine is not None])
-        for setting in settings:
+        for setting in (*self._fixed, *settings):
             if setting.effect.on_readings is not None:
                 readings = setting.effect.on_readings(readings, setting.values, self._measured)
         return readings
@@ -61,14 +55,6 @@ class Predictor:
             machine = as_built(self._machine, settings)
             self._known[key] = readings_of(machine, self._measured.poses, self._measured)
         return self._known[key]
-
-
-def as_built(machine: Machine, settings: Sequence[Setting]) -> Machine:
-    """Return the machine changed by all effects that act on it."""
-    for setting in settings:
-        if setting.effect.on_machine is not None:
-            machine = setting.effect.on_machine(machine, setting.values)
-    return machine
 
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
@@ -106,6 +92,7 @@ def _straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray)
     rigidity = machine.flexural_rigidity_N_m2
     if rigidity == 0.0:
         return np.zeros_like(tension_N)
-    layer = np.sqrt(rigidity / tension_N)
+    # Odd in the rigidity, so that its slope at zero can be taken from both sides.
+    layer = np.sign(rigidity) * np.sqrt(abs(rigidity) / tension_N)
     load = machine.cable.weight_N_per_m * span_m  # w_⊥ c
     return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.diagnosis.predict import Predictor, Setting
+from designer.diagnosis.predict import Predictor
+from designer.effects.effect import Setting
 from designer.measured.data import Measured
 
 _UNHELD = 1e3

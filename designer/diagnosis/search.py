@@ -17,6 +17,8 @@ RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
 _MOST_EFFECTS = 6
+_ALWAYS_VALIDATED = 3
+_EXCHANGED = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,7 +135,8 @@ class Searcher:
             if best is None or len(found) == _MOST_EFFECTS:
                 break
             self._progress(f"found {best.effect.key}")
-            found = self._exchanged([*found, best.effect], best.fit)
+            outsiders = [t.effect for t in trials[:_EXCHANGED]]
+            found = self._exchanged([*found, best.effect], best.fit, outsiders)
             found = self._pruned(found)
             present = self.fit(found, best.fit)
         return Search(tuple(steps), present, tuple(found))
@@ -149,7 +152,7 @@ class Searcher:
         others = [e for e in self._candidates if e.key not in taken]
         tried = [self._trial(found, present, effect, len(others)) for effect in others]
         tried.sort(key=lambda trial: -trial.score)
-        return [self._validated(found, trial) for trial in tried]
+        return self._validated_best(found, tried)
 
     def rivals(self, found: Sequence[Effect], effect: Effect, present: Fit) -> list[Effect]:
         """Return the effects that explain the data as well in place of one that was found."""
@@ -174,6 +177,14 @@ class Searcher:
         chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
         return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
 
+    def _validated_best(self, found: Sequence[Effect], tried: list[Trial]) -> list[Trial]:
+        """Cross-validate from the best down, the first few and then until one earns its place."""
+        answer: list[Trial] = []
+        for trial in tried:
+            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.earns_its_place for t in answer)
+            answer.append(trial if settled else self._validated(found, trial))
+        return answer
+
     def _validated(self, found: Sequence[Effect], trial: Trial) -> Trial:
         """Cross-validate a candidate that may be significant; the others need no proof."""
         if trial.chance >= SIGNIFICANCE:
@@ -193,11 +204,13 @@ class Searcher:
         model = fit(self._problem, effects, seen, near.settings)
         return float(huber(self._problem.residual(model.settings)[unseen]).sum())
 
-    def _exchanged(self, found: list[Effect], near: Fit) -> list[Effect]:
+    def _exchanged(
+        self, found: list[Effect], near: Fit, outsiders: Sequence[Effect]
+    ) -> list[Effect]:
         """Replace a member by an outsider where that is clearly better: greed errs at times."""
         present = self.fit(found, near)
         for k in range(len(found) - 1):  # the newest was chosen among all
-            for other in self._candidates:
+            for other in outsiders:
                 if other.key in {e.key for e in (*found, *self._given)}:
                     continue
                 swapped = [*found[:k], other, *found[k + 1 :]]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.diagnosis.blocks import block_of
 from designer.effects.effect import Readings
 from designer.measured.data import Measured
@@ -142,7 +142,8 @@ def _channels(residual: FloatArray) -> FloatArray:
         filled = filled - filled.mean(axis=0)
         mean = filled.sum(axis=1, keepdims=True) / np.sqrt(n)
         kinds += [filled, mean]
-    return np.hstack(kinds) if kinds else np.empty((len(residual), 0))
+    channels = np.hstack(kinds) if kinds else np.empty((len(residual), 0))
+    return np.asarray(channels[:, channels.any(axis=0)])
 
 
 def _basis(column: FloatArray) -> FloatArray:
@@ -167,13 +168,13 @@ def _surprise(basis: FloatArray, channels: FloatArray) -> tuple[float, float]:
     return float(-0.5 * len(channels) * np.log1p(-share[best])), float(share[best])
 
 
-def _permutation(rng: np.random.Generator, count: int, settled: bool) -> FloatArray:
+def _permutation(rng: np.random.Generator, count: int, settled: bool) -> IntArray:
     if settled:
-        return rng.permutation(count)
+        return np.asarray(rng.permutation(count))
     block = block_of(count, 20)
     order = rng.permutation(int(block.max()) + 1)
     shift = int(rng.integers(count))
-    return np.roll(np.concatenate([np.flatnonzero(block == k) for k in order]), shift)
+    return np.asarray(np.roll(np.concatenate([np.flatnonzero(block == k) for k in order]), shift))
 
 
 def _varies(column: FloatArray) -> bool:

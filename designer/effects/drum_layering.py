@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.arrays import FloatArray
 from designer.effects.effect import Effect, Parameter, Readings, Values
 from designer.machine import Machine
 from designer.measured.data import Measured
@@ -13,25 +14,43 @@ from designer.measured.data import Measured
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     gain = values["radius_gain_per_m"]
-    # The scale is right at the longest length of each cable; shorter, the drum is thicker and a
-    # turn pays out more than the winch counts.
-    full = np.nanmax(readings.length_m, axis=0)
-    wound = full - readings.length_m
-    counted = np.log1p(gain * wound) / gain if abs(gain) > 1e-12 else wound
-    return replace(readings, length_m=full - counted)
+    n = readings.length_m.shape[1]
+    reference = np.array([values[f"reference_{k}_m"] for k in range(1, n + 1)])
+    return replace(readings, length_m=_counted(readings.length_m, gain, reference))
+
+
+def _counted(length_m: FloatArray, gain: float, reference_m: FloatArray) -> FloatArray:
+    """Return what a winch counts that is right at a reference length.
+
+    A turn pays out 1 + gain · (reference - length) times what is counted, so the counted length
+    is the integral of its inverse.
+    """
+    wound = reference_m - length_m
+    if abs(gain) < 1e-12:
+        return length_m
+    return np.asarray(reference_m - np.log(np.maximum(1.0 + gain * wound, 1e-6)) / gain)
 
 
 def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
+    """Return the effect; where each winch's scale is right is fitted with it."""
+    exits = machine.robot.exit_points_m
+    size = float(np.ptp(exits, axis=0).max())
+    gain = Parameter(
+        "radius_gain_per_m", "1/m", 0.0, 1e-2 / size, (-0.3 / size, 0.3 / size), (0.0, 0.02)
+    )
+    references = tuple(
+        Parameter(
+            f"reference_{k}_m", "m", 0.5 * size, 0.1 * size, (-2 * size, 3 * size), (0.0, 2 * size)
+        )
+        for k in range(1, machine.robot.n_cables + 1)
+    )
     return [
         Effect(
             id="drum_layering",
             summary="the drums grow as cable is wound onto them",
-            law="radius times 1 + gain · wound length, wound from the longest length",
+            law="drum radius times 1 + gain · length wound on since the reference length",
             source="definition",
-            parameters=(
-                Parameter("radius_gain_per_m", "1/m", 0.0, 2e-4, (-0.05, 0.05), (0.0, 0.02)),
-            ),
+            parameters=(gain, *references),
             on_readings=_change,
             needs=frozenset({"length"}),
         )

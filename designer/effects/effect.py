@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from designer.arrays import FloatArray
@@ -106,6 +106,22 @@ class Effect:
     def neutral(self) -> dict[str, float]:
         """Values at which it does nothing."""
         return {p.name: p.neutral for p in self.parameters}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Setting:
+    """An effect with values for its parameters."""
+
+    effect: Effect
+    values: Values
+
+
+def as_built(machine: Machine, settings: Sequence[Setting]) -> Machine:
+    """Return the machine changed by all effects that act on it, in their order."""
+    for setting in settings:
+        if setting.effect.on_machine is not None:
+            machine = setting.effect.on_machine(machine, setting.values)
+    return machine
 
 
 Builder = Callable[[Machine], list[Effect]]

@@ -140,7 +140,7 @@ def _length_from_pull(p: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatA
         newton = length - f / fall
         inside = (newton >= low) & (newton <= high)
         new = np.where(inside, newton, 0.5 * (low + np.minimum(high, 4.0 * length)))
-        done = ~(np.abs(new - length) > 4e-16 * length)
+        done = ~(np.abs(new - length) > 2e-15 * length)
         length = new
         if np.all(done):
             break

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import base64
+import re
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from designer.analysis import Analysis
@@ -20,12 +23,29 @@ def draw(analysis: Analysis) -> Pictures:
         from designer.report.figures.maps import workspace_maps
 
         maps = workspace_maps(analysis)
+    workspace = tuple(_workspace(maps)) if maps is not None else ()
+    robot = _robot(analysis)
+    # The scene to turn is large, so only the section on the workspace carries it.
     return Pictures(
+        robot=replace(workspace[0], scene="") if workspace else robot,
         loop_chart=_loop(analysis),
+        pose_scene=robot,
         verdicts=_verdicts(analysis),
-        workspace=tuple(_workspace(maps)) if maps is not None else (),
+        workspace=workspace,
         candidates=_candidates(analysis),
     )
+
+
+def _robot(analysis: Analysis) -> Picture | None:
+    if analysis.pose is None:
+        return None
+    from designer.report.figures.robot_scene import robot_scene
+
+    caption = "The robot in the configured pose"
+    caption += (
+        ", its cables in their true shape." if analysis.pose.sizing.statics.is_solved else "."
+    )
+    return _scene(caption, "The robot with its cables, in space", robot_scene(analysis.pose))
 
 
 def _loop(analysis: Analysis) -> Picture | None:
@@ -34,7 +54,7 @@ def _loop(analysis: Analysis) -> Picture | None:
     from designer.report.figures.charts_loop import loop_chart
 
     caption = "Largest tension and diameter over the turns of the loop, and the optimum."
-    return Picture(
+    return _chart(
         caption, "Two curves that rise from the massless start", loop_chart(analysis.pose)
     )
 
@@ -45,7 +65,7 @@ def _verdicts(analysis: Analysis) -> Picture | None:
     from designer.report.figures.charts_verdicts import verdict_chart
 
     caption = "All samples by verdict."
-    return Picture(
+    return _chart(
         caption, "A bar with a part for each verdict", verdict_chart(analysis.workspace.census)
     )
 
@@ -54,20 +74,31 @@ def _workspace(maps: WorkspaceMaps) -> Iterator[Picture]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_served import served_chart
     from designer.report.figures.charts_slice import slice_chart, slice_panels
+    from designer.report.figures.interactive import workspace_scene_html
+    from designer.report.figures.workspace_scene import workspace_scene
 
+    caption = "Needed diameter over the region"
+    caption += ", a part of it cut away" if maps.has_area else ""
+    shown = "; the cables hang at the marked pose" if maps.focus.statics is not None else ""
+    yield _scene(
+        f"{caption}{shown}.",
+        "The region in space, coloured by diameter",
+        workspace_scene(maps),
+        workspace_scene_html(maps),
+    )
     place = "at the top of the region" if maps.has_area else "at each point, seen from above"
-    yield Picture(f"Needed diameter {place}.", "A map in plan", slice_chart(maps))
+    yield _chart(f"Needed diameter {place}.", "A map in plan", slice_chart(maps))
     edge = edge_chart(maps)
     if edge is not None:
         caption = (
-            "Needed diameter from the centre of the region outward, through the worst pose to the "
-            "edge of the exit points' outline. The nearer the edge, the steeper it climbs."
+            "Needed diameter from the centre of the region outward, through the marked pose to the "
+            "edge of the exit points' outline."
         )
-        yield Picture(caption, "A curve that climbs toward the edge", edge)
+        yield _chart(caption, "A curve that climbs toward the edge", edge)
     caption = f"Largest tension, and its ratio to the tension without sag, {place}."
-    yield Picture(caption, "Two maps in plan", slice_panels(maps))
+    yield _chart(caption, "Two maps in plan", slice_panels(maps))
     caption = "Share of the poses that a cable of the configured family serves."
-    yield Picture(caption, "Two staircases, with sag and without", served_chart(maps.served))
+    yield _chart(caption, "Two staircases, with sag and without", served_chart(maps.served))
 
 
 def _candidates(analysis: Analysis) -> Picture | None:
@@ -81,4 +112,19 @@ def _candidates(analysis: Analysis) -> Picture | None:
     )
     if analysis.selection.alternatives:
         caption += " A star marks grades that the study does not allow."
-    return Picture(caption, "A row for each grade", candidates_chart(analysis.selection))
+    return _chart(caption, "A row for each grade", candidates_chart(analysis.selection))
+
+
+def _scene(caption: str, alternative: str, png: bytes, page: str = "") -> Picture:
+    address = f"data:image/png;base64,{base64.b64encode(png).decode()}"
+    return Picture(caption, alternative, bitmap=address, scene=page)
+
+
+def _chart(caption: str, alternative: str, svg: str) -> Picture:
+    """Return a chart, its half-transparent parts written so that they stay vector graphics.
+
+    PlutoPrint composes an element with ``opacity`` and a clip as a bitmap; the same with
+    ``fill-opacity`` and ``stroke-opacity`` it draws.
+    """
+    split = r"fill-opacity: \1; stroke-opacity: \1"
+    return Picture(caption, alternative, re.sub(r"(?<![-\w])opacity: ([\d.]+)", split, svg))

@@ -23,7 +23,9 @@ from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging
 from designer.statics.verdict import Verdict
 from designer.study import HangsBelow
+from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
+from designer.workspace.samples import positions_m
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -104,6 +106,9 @@ class Findings:
         Utilisation at the worst pose with the lowest and the highest modulus that is possible.
     other_policy : OtherPolicy or None
         None where no cable hangs below the platform.
+    hanging : float or None
+        Share of the samples in which a cable hangs below the platform: with the chosen rope where
+        there is one, else with what the configured family needs. None without a workspace.
     unserved : Unserved or None
         None where every sample is served, and for a list of points.
     """
@@ -113,13 +118,18 @@ class Findings:
     massless_choice: MasslessChoice | None = None
     modulus_utilisation: tuple[float, float] | None = None
     other_policy: OtherPolicy | None = None
+    hanging: float | None = None
     unserved: Unserved | None = None
 
 
 def find(analysis: Analysis) -> Findings:
     """Answer the questions of this module."""
     chosen = analysis.selection.chosen if analysis.selection else None
-    findings = Findings(other_policy=_other_policy(analysis), unserved=_unserved(analysis))
+    findings = Findings(
+        other_policy=_other_policy(analysis),
+        hanging=_hanging(analysis),
+        unserved=_unserved(analysis),
+    )
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
@@ -173,6 +183,23 @@ def _other_policy(analysis: Analysis) -> OtherPolicy | None:
     samples = min(study.workspace.samples, _MOST_SAMPLES)
     changed = replace(study.workspace, hangs_below=other, samples=samples)
     return OtherPolicy(other, map_workspace(study.robot, changed, study.material))
+
+
+def _hanging(analysis: Analysis) -> float | None:
+    workspace, found = analysis.study.workspace, analysis.workspace
+    if workspace is None or found is None:
+        return None
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if chosen is None:
+        return found.census.hangs_below / found.census.samples
+    few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
+    hangs = [
+        is_left_out(
+            solve_sagging(analysis.study.robot, Poses.at(positions), chosen.cable), "exclude"
+        )
+        for positions in positions_m(few)
+    ]
+    return float(np.concatenate(hangs).mean())
 
 
 def _unserved(analysis: Analysis) -> Unserved | None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from designer.catalogue.grade import Grade, Size
+from designer.effects.design import AsBuilt
 from designer.robot import Robot
 from designer.selection.result import Candidate, GradeOutcome, Outcome, SelectionResult
 from designer.selection.verify import verify, worst_of
@@ -23,6 +24,7 @@ def select(
     selection: Selection,
     grades: Sequence[Grade],
     *,
+    built: AsBuilt | None = None,
     progress: Progress = lambda: None,
 ) -> SelectionResult:
     """Choose the lightest product among the grades that the study allows.
@@ -33,20 +35,22 @@ def select(
         The study.
     grades : sequence of Grade
         The whole catalogue; ``selection.grades`` narrows it.
+    built : AsBuilt, optional
+        By how much cables on this machine differ from their data sheet.
     progress : callable
         Called after each grade.
     """
     allowed = [g for g in grades if selection.grades is None or g.id in selection.grades]
     outcomes = []
     for grade in allowed:
-        outcomes.append(try_grade(robot, workspace, grade, selection.safety_factor))
+        outcomes.append(try_grade(robot, workspace, grade, selection.safety_factor, built))
         progress()
     fitting = [outcome.best for outcome in outcomes if outcome.best is not None]
     if fitting:
         chosen = min(fitting, key=lambda candidate: candidate.total_mass_kg)
         return SelectionResult(tuple(outcomes), chosen, None)
     others = [g for g in grades if g not in allowed]
-    alternatives = [try_grade(robot, workspace, g, selection.safety_factor) for g in others]
+    alternatives = [try_grade(robot, workspace, g, selection.safety_factor, built) for g in others]
     return SelectionResult(
         tuple(outcomes),
         None,
@@ -56,23 +60,28 @@ def select(
 
 
 def try_grade(
-    robot: Robot, workspace: Workspace, grade: Grade, safety_factor: float
+    robot: Robot,
+    workspace: Workspace,
+    grade: Grade,
+    safety_factor: float,
+    built: AsBuilt | None = None,
 ) -> GradeOutcome:
     """Find the thinnest size of a grade that holds everywhere.
 
     The sizes of a table scatter about their family, so the size below the snap is tried as well:
     it either proves that the choice is the thinnest, or replaces it.
     """
-    family = grade.family(safety_factor)
+    built = built or AsBuilt(robot)
+    family = built.material(grade.family(safety_factor))
     demand = diameter_demand(robot, family, workspace.hangs_below)
     worst = worst_of(workspace, demand, demand)
     if not np.isfinite(worst.demand):
         return GradeOutcome(grade, family, float("nan"), (), "no_finite_cable")
 
     def attempt(size: Size) -> Candidate:
-        cable = grade.cable(size, safety_factor)
+        cable = built.cable(grade.cable(size, safety_factor))
         result = verify(robot, workspace, cable)
-        mass = size.linear_density_kg_per_m * float(result.longest_m.sum())
+        mass = cable.linear_density_kg_per_m * float(result.longest_m.sum())
         return Candidate(grade, size, cable, worst.demand, result, mass)
 
     tried = _around_the_snap(grade.sizes, worst.demand, attempt)

@@ -10,7 +10,7 @@ import pytest
 
 from designer.config import read_study
 from designer.errors import Fault, InputError
-from designer.study import Study
+from designer.study import Study, require_square
 
 FaultsOf = Callable[[str], list[Fault]]
 StudyOf = Callable[[str], Study]
@@ -128,7 +128,6 @@ MISTAKES: list[Mistake] = [
     ("safety_factor: 4", "grades: [7]", 18, "selection.grades[0]", "7 is not a text", "quotes"),
     ("name: A crane", "name: 7", 1, "name", "7 is not a text", "quotes"),
     ("name: A crane", "name: ''", 1, "name", "the text has 0 characters", "1 to"),
-    ("name: A crane", "effects: {creep: {}}", 1, "effects", "effects are not supported", "{}"),
     ("name: A crane", "effects: [creep]", 1, "effects", "a list is not a mapping", "{}"),
     ("name: A crane", "catalogues: mine", 1, "catalogues", "'mine' is not a list", "a list"),
     ("name: A crane", "catalogues: [no]", 1, "catalogues[0]", "there is no 'no'", "relative"),
@@ -208,18 +207,32 @@ def test_missing_sections(faults_of: FaultsOf) -> None:
     ]
 
 
+FIVE = SIX.replace(", [4, 9, 9]", "").replace(", [0, 0, 0]]", "]")
+
+
 @pytest.mark.parametrize(
     ("text", "problem", "expected"),
     [
-        (SIX.replace(", [4, 9, 9]", ""), "5 cables on a platform with attachments", "6"),
+        (FIVE, "5 cables on a platform with attachments", "6"),
         (SIX.replace("    attach", "    # attach"), "6 cables on a point mass", "3, or 6"),
     ],
 )
-def test_number_of_cables(faults_of: FaultsOf, text: str, problem: str, expected: str) -> None:
-    fault = next(one for one in faults_of(text) if one.field == "robot.anchors")
+def test_a_robot_that_is_not_square_can_be_read_but_not_sized(
+    study_of: StudyOf, text: str, problem: str, expected: str
+) -> None:
+    study = study_of(text)
+    with pytest.raises(InputError) as caught:
+        require_square(study)
+    (fault,) = caught.value.faults
+    assert (fault.line, fault.field) == (2, "robot.anchors")
     assert fault.problem.startswith(problem)
     assert "as many cables as degrees of freedom" in fault.problem
     assert fault.expected.startswith(expected)
+
+
+@pytest.mark.parametrize("is_body", [True, False])
+def test_a_square_robot_can_be_sized(valid: str, study_of: StudyOf, is_body: bool) -> None:
+    require_square(study_of(SIX if is_body else valid))
 
 
 @pytest.mark.parametrize(
@@ -282,8 +295,9 @@ PYDANTIC_WORDS = (
 def test_no_spoilt_config_escapes_as_another_error(valid: str, study_of: StudyOf) -> None:
     rng = random.Random(7)
     full = valid + (
-        "catalogues: []\neffects: {}\nmeasurements:\n  file: a.csv\n  columns: {}\n"
-        "  settled: true\n  unknown: [a]\n  cable: {linear_mass: 1, axial_stiffness: 2}\n"
+        "catalogues: []\neffects: {creep: {strain_per_decade: 1e-4, onset_s: 1 min}}\n"
+        "measurements:\n  file: a.csv\n  columns: {a: {to: x_m, unit: mm}, b: y_m}\n"
+        "  settled: true\n  unknown: [anchors]\n  cable: {linear_mass: 1, axial_stiffness: 2}\n"
         "  noise: {length: 1, tension: 2}\n"
     )
     places = [

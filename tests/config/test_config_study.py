@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.config import read_study, schema
+from designer.config import columns, read_study, schema
 from designer.config.section import Section
 from designer.errors import InputError
 from designer.region import PointList, Prism
 from designer.resources import data_folder, example_file
-from designer.study import Entry, Study
+from designer.study import Entry, LogColumn, Study
 
 StudyOf = Callable[[str], Study]
 
@@ -24,7 +24,7 @@ measurements:
   file: data/measured.csv
   settled: false
   unknown: [length_offset]
-  columns: {L1: {name: length_1_m, unit: mm}}
+  columns: {L1: {to: length_1_m, unit: mm}}
   cable: {linear_mass: 0.142 kg/m, axial_stiffness: 3.3 MN}
   noise: {length: 1 mm}
 """
@@ -124,7 +124,7 @@ def test_measurements(valid: str, study_of: StudyOf, tmp_path: Path) -> None:
     assert measurements.axial_stiffness_N == pytest.approx(3.3e6)
     assert measurements.settled is False
     assert measurements.unknown == ("length_offset",)
-    assert measurements.columns == {"L1": {"name": "length_1_m", "unit": "mm"}}
+    assert measurements.columns == (LogColumn("L1", "length_1_m", 1e-3, 0.0),)
     assert measurements.length_noise_m == pytest.approx(0.001)
     assert measurements.tension_noise_N is None
 
@@ -221,12 +221,12 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     assert study.workspace.hangs_below == "exclude"
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)
+    assert len(study.measurements.columns) == 4
+    assert [effect.id for effect in study.effects] == ["pulley_radius", *["anchor_offset"] * 2]
     with pytest.raises(InputError) as caught:
         study_of(text)
-    assert {fault.field for fault in caught.value.faults} == {
-        "robot.anchors",
-        "robot.platform.attachments",
-    }
+    (fault,) = caught.value.faults
+    assert fault.problem == "6 attachments for 3 anchors"
 
 
 def test_the_starter_config_shows_every_field() -> None:
@@ -234,11 +234,11 @@ def test_the_starter_config_shows_every_field() -> None:
     names = set(re.findall(r"\b(\w+):", text))
     sections = [
         value
-        for value in vars(schema).values()
+        for value in (*vars(schema).values(), *vars(columns).values())
         if isinstance(value, type) and issubclass(value, Section)
     ]
     known = {name for section in sections for name in section.model_fields}
-    assert known - names == {"effects"}  # not yet supported
+    assert known <= names
 
 
 def test_the_yard_example_names_grades_that_are_shipped() -> None:

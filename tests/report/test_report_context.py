@@ -201,3 +201,12 @@ def test_grades_that_are_not_allowed_are_named(contexts: dict[str, ReportContext
     assert left_out is not None
     assert "gost-6x19s-iwrc-1960" in left_out.not_allowed
     assert "unirope-7x19-galvanised" not in left_out.not_allowed
+
+
+def test_first_page_says_how_much_is_left_out(contexts: dict[str, ReportContext]) -> None:
+    assert "of the volume is left out, as configured" in contexts["exclude"].first_page.verdict.text
+    assert "left out" not in contexts["positive"].first_page.verdict.text
+    titles = {case: [s.title for s in contexts[case].first_page.confidence] for case in contexts}
+    assert "Poses left out" in titles["exclude"]
+    assert "Cables below the platform" in titles["positive"]
+    assert {"Poses left out", "Cables below the platform"}.isdisjoint(titles["yard"])

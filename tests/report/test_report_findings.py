@@ -103,3 +103,16 @@ def test_nothing_is_found_for_a_pose_alone(pose_only: Analysis) -> None:
     assert findings.chosen_outcome is None
     assert findings.other_policy is None
     assert findings.unserved is None
+
+
+def test_hanging_share_is_that_of_the_chosen_rope(
+    analyses: dict[str, Analysis], yard: Analysis, pose_only: Analysis
+) -> None:
+    included = find(analyses["positive"]).hanging
+    assert analyses["positive"].workspace is not None
+    census = analyses["positive"].workspace.census
+    assert included is not None
+    # The rope needs less than half the diameter of the idealised cable, so it hangs less often.
+    assert 0.0 < included < census.hangs_below / census.samples
+    assert find(yard).hanging == 0.0
+    assert find(pose_only).hanging is None

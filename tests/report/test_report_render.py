@@ -189,3 +189,20 @@ def test_a_failed_report_leaves_nothing(
     with pytest.raises(OSError, match="disk full"):
         write_report(analyses["too_thin"], tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_browser_is_told_to_load_nothing(context: ReportContext) -> None:
+    html = render_html(context)
+    policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', html)
+    assert policy is not None
+    assert policy.group(1).startswith("default-src 'none'")
+    assert "http" not in policy.group(1)
+
+
+def test_on_paper_a_group_heading_stays_with_its_first_row(context: ReportContext) -> None:
+    assert context.selection is not None
+    title = context.selection.candidates.groups[0].title
+    lifted = rf'<td><span class="lifted \w*">{re.escape(title)} '
+    assert re.search(lifted, render_html(context, paged=True))
+    assert not re.search(lifted, render_html(context))
+    assert re.search(rf'<th scope="rowgroup"[^>]*>{re.escape(title)} ', render_html(context))

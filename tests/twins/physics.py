@@ -10,13 +10,13 @@ unknowns are the vectors T(0) and the lengths. No closed form, no plane, no pref
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
+
 from twins.bending import bending_shift_m
 
-NODES = 32
-_NODE, _WEIGHT = np.polynomial.legendre.leggauss(NODES)
-_NODE, _WEIGHT = (1 + _NODE) / 2, _WEIGHT / 2
+NODES = (32, 128, 512)
 GRAVITY = 9.81
 MAX_STEPS = 80
 
@@ -79,29 +79,45 @@ class Equilibrium:
 
 def solve(machine: Machine, position_m: np.ndarray, rotation: np.ndarray) -> Equilibrium:
     """Return the equilibrium of poses (rows, 3), (rows, 3, 3); raise where Newton fails."""
+    for nodes in NODES:
+        pull, length, wrap = _newton(machine, position_m, rotation, nodes)
+        reach = _cable(machine, pull, length, nodes)[1]
+        error = np.linalg.norm(reach - _cable(machine, pull, length, 2 * nodes)[1], axis=-1)
+        if (error < 1e-11 * length).all():
+            break
+    else:
+        raise RuntimeError(f"cable too slack for the quadrature, off by {error.max():.1e} m")
+    end = pull - _weight(machine, length)
+    tension = np.linalg.norm(end, axis=-1)
+    wrap = wrap / (1 + _strain(machine, tension)[0])
+    return Equilibrium(length + wrap, tension, pull, end)
+
+
+def _newton(
+    machine: Machine, position_m: np.ndarray, rotation: np.ndarray, nodes: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | float]:
+    """Pulls on the platform, free lengths, and what lies on the pulleys under tension."""
     arm = np.einsum("rij,nj->rni", rotation, machine.attachment_m)
     point = position_m[:, None, :] + arm
     load = _load(machine, rotation)
     pull, length = _straight_start(machine, point, arm, load)
     for _ in range(MAX_STEPS):
-        end, reach, slope, along = _cable(machine, pull, length)
+        end, reach, slope, along = _cable(machine, pull, length, nodes)
         support, wrap = _support(machine, point, pull, end, length)
-        gap = point + reach - support
         held = load + _wrench(machine, pull, arm)
-        step_pull, step_length = _newton_step(machine, gap, held, slope, along, arm)
-        # A step may at most halve or double a length; near the root it is always a full one.
-        part = np.min(np.minimum(1.0, 0.5 * length / np.maximum(np.abs(step_length), 1e-300)), 1)
-        pull = pull + part[:, None, None] * step_pull
-        length = length + part[:, None] * step_length
+        steps = _newton_step(machine, point + reach - support, held, slope, along, arm)
         size = np.linalg.norm(pull, axis=-1)
-        done = np.abs(step_length) < 1e-12 * length
-        done &= np.linalg.norm(step_pull, axis=-1) < 1e-12 * size.max(1, keepdims=True)
-        if done.all():
-            end = pull - _weight(machine, length)
-            tension = np.linalg.norm(end, axis=-1)
-            wrap = wrap / (1 + _strain(machine, tension)[0])
-            return Equilibrium(length + wrap, tension, pull, end)
-    raise RuntimeError(f"no equilibrium in rows {np.flatnonzero(~done.all(1))}")
+        change = np.maximum(np.linalg.norm(steps[0], axis=-1) / size, abs(steps[1]) / length)
+        # A step may change no pull and no length by more than half.
+        part = np.minimum(1.0, 0.5 / np.maximum(change.max(1), 1e-300))
+        pull = pull + part[:, None, None] * steps[0]
+        length = length + part[:, None] * steps[1]
+        if (change < 1e-12 * size.max(1, keepdims=True) / size).all():
+            return pull, length, wrap
+    lost = np.flatnonzero(change.max(1) > 1e-9)
+    if lost.size:
+        raise RuntimeError(f"no equilibrium in rows {lost}")
+    return pull, length, wrap  # bending by finite differences leaves some rounding
 
 
 def _weight(machine: Machine, length: np.ndarray) -> np.ndarray:
@@ -121,14 +137,24 @@ def _strain(machine: Machine, tension: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return strain, 1 / stiffness + fading / machine.toe_tension_N
 
 
-def _cable(machine: Machine, pull: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, ...]:
+@cache
+def _rule(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre nodes and weights on the unit interval."""
+    node, weight = np.polynomial.legendre.leggauss(nodes)
+    return (1 + node) / 2, weight / 2
+
+
+def _cable(
+    machine: Machine, pull: np.ndarray, length: np.ndarray, nodes: int
+) -> tuple[np.ndarray, ...]:
     """Tension at the exit, reach r(length), its slope in the pull, and dr/ds at the exit."""
-    arc = length[..., None] * _NODE
+    node, share = _rule(nodes)
+    arc = length[..., None] * node
     vector = pull[:, :, None, :] - _weight(machine, arc)
     tension = np.sqrt((vector**2).sum(-1))
     unit = vector / tension[..., None]
     strain, softness = _strain(machine, tension)
-    weight = length[..., None] * _WEIGHT
+    weight = length[..., None] * share
     reach = ((weight * (1 + strain))[..., None] * unit).sum(2)
     across = (1 + strain) / tension
     slope = (unit * (weight * (softness - across))[..., None]).swapaxes(-1, -2) @ unit

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
@@ -73,14 +73,14 @@ def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    layout = "compressed" if keeps_aspect else "constrained"
     size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
-    return Figure(figsize=size, layout=layout)
+    return Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
 
 
 def number(value: float) -> str:
     """Return a number as short as it can be, with a true minus sign."""
-    return f"{value:g}".replace("-", "\N{MINUS SIGN}")
+    text = f"{value:.6g}" if abs(value) < 1e4 else f"{value:,.0f}"
+    return text.replace(",", "\N{NARROW NO-BREAK SPACE}").replace("-", "\N{MINUS SIGN}")
 
 
 def significant(value: float, digits: int = 4) -> str:
@@ -105,7 +105,7 @@ def halo() -> list[AbstractPathEffect]:
     return [withStroke(linewidth=2.2, foreground="white")]
 
 
-def grid_lines(axes: Axes, axis: str = "y") -> None:
+def grid_lines(axes: Axes, axis: Literal["x", "y"] = "y") -> None:
     """Draw faint lines at the ticks of one axis, behind the data."""
     axes.grid(axis=axis, color=palette.FAINT, linewidth=0.4, alpha=0.6)
     axes.set_axisbelow(True)
@@ -136,7 +136,9 @@ def _standalone(text: str, key: str, title: str) -> str:
     text = re.sub(r' d="[^"]+"', lambda match: _rounded(match.group()), text)
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height)="[^"]*"', "", head)
-    return f"{head} role=\"img\" aria-label={quoteattr(title)}>\n <title>{escape(title)}</title>{body}"
+    return (
+        f'{head} role="img" aria-label={quoteattr(title)}>\n <title>{escape(title)}</title>{body}'
+    )
 
 
 def _rounded(path: str) -> str:

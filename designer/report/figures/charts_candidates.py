@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -78,14 +78,14 @@ def _row(axes: Axes, row: int, outcome: GradeOutcome, right: float) -> None:
     )
     if high > right:
         axes.annotate(
-            "", (right, row), (right * 0.985, row),
+            "",
+            (right, row),
+            (right * 0.985, row),
             arrowprops={"arrowstyle": "-|>", "color": palette.MASSLESS, "linewidth": 0.8},
         )
     need = 1e3 * outcome.continuous_diameter_m
     if np.isfinite(need):
-        axes.plot(
-            [need, need], [row - 0.4, row + 0.4], color=palette.SAG, linewidth=1.6, zorder=4
-        )
+        axes.plot([need, need], [row - 0.4, row + 0.4], color=palette.SAG, linewidth=1.6, zorder=4)
     for candidate in outcome.candidates:
         _size(axes, row, candidate, right)
 
@@ -95,8 +95,14 @@ def _size(axes: Axes, row: int, candidate: Candidate, right: float) -> None:
     if diameter > right:
         return
     axes.plot(
-        diameter, row, marker="o", markersize=4.2, zorder=5, markeredgewidth=1.0,
-        color=palette.INK if candidate.verified else "white", markeredgecolor=palette.INK,
+        diameter,
+        row,
+        marker="o",
+        markersize=4.2,
+        zorder=5,
+        markeredgewidth=1.0,
+        color=palette.INK if candidate.verified else "white",
+        markeredgecolor=palette.INK,
     )
 
 
@@ -113,8 +119,13 @@ def _names(axes: Axes, shown: Sequence[GradeOutcome], selection: SelectionResult
     for row, outcome in enumerate(shown):
         is_chosen = selection.chosen is not None and outcome.best is selection.chosen
         axes.annotate(
-            _ending(outcome), (1.0, row), (5, 0), xycoords=("axes fraction", "data"),
-            textcoords="offset points", va="center", annotation_clip=False,
+            _ending(outcome),
+            (1.0, row),
+            (5, 0),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            va="center",
+            annotation_clip=False,
             color=palette.INK if outcome.best is not None else palette.WARNING,
             fontweight="bold" if is_chosen else "normal",
             fontsize=palette.FONT_POINTS - 0.5,
@@ -133,18 +144,33 @@ def _ending(outcome: GradeOutcome) -> str:
 def _legend(axes: Axes, left_out: int) -> None:
     from matplotlib.lines import Line2D
 
-    mark = {"linestyle": "none", "marker": "o", "markersize": 4.2, "markeredgecolor": palette.INK}
+    mark: dict[str, Any] = {
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": 4.2,
+        "markeredgecolor": palette.INK,
+    }
     entries = [
         Line2D([], [], color=_RANGE, linewidth=5.0, label="sizes sold"),
         Line2D(
-            [], [], color=palette.SAG, linestyle="none", marker="|", markersize=8,
-            markeredgewidth=1.6, label="continuous optimum",
+            [],
+            [],
+            color=palette.SAG,
+            linestyle="none",
+            marker="|",
+            markersize=8,
+            markeredgewidth=1.6,
+            label="continuous optimum",
         ),
         Line2D([], [], color=palette.INK, label="tried, holds", **mark),
         Line2D([], [], color="white", label="tried, does not hold", **mark),
     ]
     more = f"{left_out} more grades are not shown" if left_out > 0 else None
     axes.figure.legend(
-        handles=entries, loc="outside upper center", ncols=4, frameon=False, title=more,
+        handles=entries,
+        loc="outside upper center",
+        ncols=4,
+        frameon=False,
+        title=more,
         title_fontsize=palette.FONT_POINTS - 0.5,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -80,37 +80,55 @@ def _curves(axes: Axes, profile: EdgeProfile) -> None:
     ):
         values = 1e3 * diameter_m
         axes.plot(profile.distance_m, np.where(values < 2.0 * top, values, np.nan), color=colour)
-        at = int(np.argmin(np.abs(profile.distance_m - 0.94 * axes.get_xlim()[0])))
+        at = int(np.argmin(np.abs(profile.distance_m - _label_place(axes, profile))))
         if np.isfinite(values[at]):
             axes.annotate(
-                label, (profile.distance_m[at], values[at]), (0, 5 if above else -5),
-                textcoords="offset points", va="bottom" if above else "top", color=colour,
+                label,
+                (profile.distance_m[at], values[at]),
+                (0, 5 if above else -5),
+                textcoords="offset points",
+                va="bottom" if above else "top",
+                color=colour,
             )
+
+
+def _label_place(axes: Axes, profile: EdgeProfile) -> float:
+    """Where to name the curves: at their start, unless the worst pose lies there [m]."""
+    start = axes.get_xlim()[0]
+    return float((0.45 if profile.focus_distance_m > 0.9 * start else 0.94) * start)
 
 
 def _zones(axes: Axes, profile: EdgeProfile) -> None:
     """Shade what the study leaves out, hatch what no cable can hold."""
     x, field = profile.distance_m, profile.field
-    band = {"transform": axes.get_xaxis_transform(), "linewidth": 0}
+    band: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "linewidth": 0}
     if field.is_left_out.any():
         axes.fill_between(
             x, 0, 1, where=field.is_left_out, facecolor=palette.LEFT_OUT, alpha=0.6, **band
         )
         start = min(float(x[field.is_left_out].max()), axes.get_xlim()[0])
         axes.annotate(
-            "left out: a cable hangs below the platform", (start, 0.97), (4, 0),
-            xycoords=("data", "axes fraction"), textcoords="offset points", va="top",
+            "left out: a cable hangs below the platform",
+            (start, 0.97),
+            (4, 0),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            va="top",
         )
     end = profile.limit_distance_m
     failed = ~field.is_solved if end is None else ~field.is_solved & (x > end)
-    hatch = {"facecolor": palette.WARNING_PALE, "edgecolor": palette.WARNING, "hatch": "//////"}
+    hatch: dict[str, Any] = {
+        "facecolor": palette.WARNING_PALE,
+        "edgecolor": palette.WARNING,
+        "hatch": "//////",
+    }
     axes.fill_between(x, 0, 1, where=failed, **hatch, **band)
     if end is not None and _is_visible(axes, end):
         axes.axvspan(end, 0.0, linewidth=0, **hatch)
         axes.axvline(end, color=palette.WARNING, linewidth=0.9)
         distance = canvas.significant(end, 2 if end < 100.0 else 3)
         text = f"no cable holds within {distance} m of the edge"
-        inside = end > 0.024 * axes.get_xlim()[0]
+        inside = end > 0.02 * axes.get_xlim()[0]
         _upright(axes, end, text, palette.WARNING, 3.0 if inside else -3.0)
 
 
@@ -119,7 +137,8 @@ def _region_end(axes: Axes, profile: EdgeProfile) -> None:
     if end is None or not _is_visible(axes, end):
         return
     axes.axvline(end, color=palette.INK, linewidth=0.8, linestyle=(0, (5, 2)))
-    _upright(axes, end, f"region ends, {canvas.significant(end, 4)} m", palette.INK, -3.0)
+    side = 3.0 if end > 0.9 * axes.get_xlim()[0] else -3.0
+    _upright(axes, end, f"region ends, {canvas.significant(end, 4)} m", palette.INK, side)
 
 
 def _is_visible(axes: Axes, distance_m: float) -> bool:
@@ -131,9 +150,17 @@ def _is_visible(axes: Axes, distance_m: float) -> bool:
 def _upright(axes: Axes, at: float, text: str, colour: str, offset: float) -> None:
     """Write along a vertical line, on the side that the offset tells."""
     label = axes.annotate(
-        text, (at, 0.97), (offset, 0), xycoords=("data", "axes fraction"), rotation=90,
-        textcoords="offset points", ha="left" if offset > 0.0 else "right", va="top",
-        color=colour, fontsize=palette.FONT_POINTS - 0.5,
+        text,
+        (at, 0.97),
+        (offset, 0),
+        xycoords=("data", "axes fraction"),
+        rotation=90,
+        textcoords="offset points",
+        ha="left" if offset > 0.0 else "right",
+        va="top",
+        color=colour,
+        fontsize=palette.FONT_POINTS - 0.5,
+        zorder=1.9,  # below the curves
     )
     label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85})
 
@@ -144,13 +171,23 @@ def _mark_focus(axes: Axes, profile: EdgeProfile, focus: Focus) -> None:
         return
     at = profile.focus_distance_m
     axes.plot(
-        at, value, marker="o", markersize=6, color="white", markeredgecolor=palette.INK,
-        markeredgewidth=1.1, zorder=5,
+        at,
+        value,
+        marker="o",
+        markersize=6,
+        color="white",
+        markeredgecolor=palette.INK,
+        markeredgewidth=1.1,
+        zorder=5,
     )
     is_left = at > 0.6 * axes.get_xlim()[0]
     label = axes.annotate(
-        f"{focus.label}, {canvas.significant(value)} mm", (at, value), (8 if is_left else -16, 6),
-        textcoords="offset points", ha="left" if is_left else "right", va="bottom",
+        f"{focus.label}, {canvas.significant(value)} mm",
+        (at, value),
+        (8 if is_left else -16, 6),
+        textcoords="offset points",
+        ha="left" if is_left else "right",
+        va="bottom",
         fontweight="bold",
     )
     label.set_path_effects(canvas.halo())

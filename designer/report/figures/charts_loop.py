@@ -57,12 +57,20 @@ def _shown(pose: PoseAnalysis) -> tuple[Iterate, ...]:
 
 def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
     """One iterate, and the optimum where there is one."""
+    from matplotlib.ticker import MaxNLocator
+
     if np.isfinite(limit):
         axes.axhline(limit, color=palette.SAG, linewidth=0.9, linestyle=(0, (5, 2)))
         text = f"optimum {canvas.significant(limit)} {unit}"
         axes.annotate(
-            text, (1.0, limit), (0, 4), xycoords=("axes fraction", "data"),
-            textcoords="offset points", ha="right", va="bottom", color=palette.SAG,
+            text,
+            (1.0, limit),
+            (0, 4),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            ha="right",
+            va="bottom",
+            color=palette.SAG,
         )
     marker = "o" if len(values) <= _MOST_MARKERS else ""
     axes.plot(values, color=palette.SAG, marker=marker, markersize=3.2)
@@ -70,24 +78,37 @@ def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
     low, high = np.nanmin([*values, limit]), np.nanmax([*values, limit])
     room = max(0.16 * (high - low), 0.05 * high)  # does not magnify a sag that hardly matters
     axes.set_ylim(low - room, high + room)
-    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True))
     axes.set_xlabel("turn")
     canvas.grid_lines(axes)
 
 
 def _mark_start(axes: Axes, value: float, unit: str) -> None:
     axes.plot(
-        0, value, marker="o", markersize=5.5, color="white", markeredgecolor=palette.MASSLESS,
+        0,
+        value,
+        marker="o",
+        markersize=5.5,
+        color="white",
+        markeredgecolor=palette.MASSLESS,
         markeredgewidth=1.3,
     )
     axes.annotate(
-        f"massless {canvas.significant(value)} {unit}", (0, value), (9, -3),
-        textcoords="offset points", va="top", color=palette.MASSLESS,
+        f"massless {canvas.significant(value)} {unit}",
+        (0, value),
+        (9, -3),
+        textcoords="offset points",
+        va="top",
+        color=palette.MASSLESS,
     )
 
 
 def _say_unsettled(axes: Axes, turns: int) -> None:
     axes.text(
-        0.04, 0.94, f"not settled after {turns} turns", transform=axes.transAxes, va="top",
+        0.04,
+        0.94,
+        f"not settled after {turns} turns",
+        transform=axes.transAxes,
+        va="top",
         color=palette.WARNING,
     )

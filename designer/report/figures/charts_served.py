@@ -66,10 +66,13 @@ def _label_curves(axes: Axes, served: Served) -> None:
         if len(diameter_m) > 0:
             at = int(np.searchsorted(share, 0.45 * share[-1]))
             axes.annotate(
-                label, (1e3 * diameter_m[at], 100.0 * share[at]),
+                label,
+                (1e3 * diameter_m[at], 45.0 * share[-1]),
                 (6 if aligned == "left" else -6, -4 if aligned == "left" else 4),
-                textcoords="offset points", ha=aligned,
-                va="top" if aligned == "left" else "bottom", color=colour,
+                textcoords="offset points",
+                ha=aligned,
+                va="top" if aligned == "left" else "bottom",
+                color=colour,
             )
 
 
@@ -83,23 +86,38 @@ def _needed(axes: Axes, served: Served) -> None:
         value = 1e3 * needed_m
         axes.axvline(value, color=colour, linewidth=0.9, linestyle=(0, (5, 2)))
         axes.annotate(
-            f"{what}: {canvas.significant(value)} mm", (value, 3.0),
-            (-3 if side == "right" else 3, 0), rotation=90, textcoords="offset points", ha=side,
-            va="bottom", color=colour,
+            f"{what}: {canvas.significant(value)} mm",
+            (value, 3.0),
+            (-3 if side == "right" else 3, 0),
+            rotation=90,
+            textcoords="offset points",
+            ha=side,
+            va="bottom",
+            color=colour,
         )
 
 
 def _unserved(axes: Axes, served: Served) -> None:
+    if served.samples == 0:
+        axes.text(0.5, 50.0, "every pose is left out", ha="center", va="center")
     if served.unserved == 0.0:
         return
     low = 100.0 * (1.0 - served.unserved)
     axes.axhspan(
-        low, 100.0, facecolor=palette.WARNING_PALE, edgecolor=palette.WARNING, hatch="//////",
+        low,
+        100.0,
+        facecolor=palette.WARNING_PALE,
+        edgecolor=palette.WARNING,
+        hatch="//////",
         linewidth=0,
     )
     text = axes.annotate(
-        f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %", (0.0, low),
-        (6, -3), xycoords=("axes fraction", "data"), textcoords="offset points", va="top",
+        f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %",
+        (0.0, max(low, 20.0)),
+        (6, -3),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        va="top",
         color=palette.WARNING,
     )
-    text.set_path_effects(canvas.halo())
+    text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from designer.report.figures import canvas, palette
 from designer.report.figures.colours import Steps, steps_for
@@ -29,20 +29,18 @@ def slice_chart(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
     with canvas.drawing():
         figure = canvas.sheet(112.0, keeps_aspect=True)
         axes = figure.subplots()
-        _panel(figure, axes, maps, quantity, "right")
+        _panel(figure, axes, maps, quantity, "right", 0.045)
         _legend(figure, maps)
         return canvas.svg(figure, f"slice-{quantity.key}", f"{_place(maps)}: {quantity.title}")
 
 
-def slice_panels(
-    maps: WorkspaceMaps, quantities: Sequence[Quantity] = (TENSION, RATIO)
-) -> str:
+def slice_panels(maps: WorkspaceMaps, quantities: Sequence[Quantity] = (TENSION, RATIO)) -> str:
     """Return small maps of the same section side by side, one for each quantity, as SVG."""
     with canvas.drawing():
         figure = canvas.sheet(108.0 if len(quantities) == 2 else 84.0, keeps_aspect=True)
         row = figure.subplots(1, len(quantities), squeeze=False)[0]
         for axes, quantity in zip(row, quantities, strict=True):
-            _panel(figure, axes, maps, quantity, "bottom")
+            _panel(figure, axes, maps, quantity, "bottom", 0.09)
         for axes in row[1:]:
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
@@ -52,24 +50,31 @@ def slice_panels(
 
 
 def _panel(
-    figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: Quantity, bar: str
+    figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: Quantity, bar: str, room: float
 ) -> None:
     steps = steps_for(quantity.of(maps.section))
-    draw_plan(axes, maps, quantity, steps)
+    draw_plan(axes, maps, quantity, steps, room)
     axes.set_title(_place(maps), loc="left", color=palette.INK)
     if steps is None:
-        axes.set_title(f"{_place(maps)}; no pose can be held", loc="left")
+        why = "all left out" if maps.section.is_left_out.all() else "no pose can be held"
+        axes.set_title(f"{_place(maps)}; {why}", loc="left")
         return
     _colour_bar(figure, axes, steps, quantity, bar)
 
 
-def _colour_bar(
-    figure: Figure, axes: Axes, steps: Steps, quantity: Quantity, place: str
-) -> None:
-    shape = {"right": {"shrink": 0.9, "aspect": 26}, "bottom": {"shrink": 0.92, "aspect": 30}}
+def _colour_bar(figure: Figure, axes: Axes, steps: Steps, quantity: Quantity, place: str) -> None:
+    shape: dict[str, dict[str, Any]] = {
+        "right": {"shrink": 0.9, "aspect": 26},
+        "bottom": {"shrink": 0.92, "aspect": 30},
+    }
     bar = figure.colorbar(
-        steps.mappable, ax=axes, location=place, ticks=steps.ticks, extendfrac=0.04,
-        label=quantity.label, **shape[place],
+        steps.mappable,
+        ax=axes,
+        location=place,
+        ticks=steps.ticks,
+        extendfrac=0.04,
+        label=quantity.label,
+        **shape[place],
     )
     bar.outline.set_linewidth(0.4)
     bar.ax.tick_params(length=2)

@@ -85,10 +85,14 @@ def _text(part: Part, share: float) -> str:
     return f"{part.label}\n{figures} %, {count}"
 
 
-def _bar(
-    axes: Axes, part: Part, start: float, width: float, middle: float, height: float
-) -> None:
+def _bar(axes: Axes, part: Part, start: float, width: float, middle: float, height: float) -> None:
     axes.barh(
-        middle, width, left=start, height=height, color=part.colour, hatch=part.hatch,
-        edgecolor=palette.WARNING if part.hatch else "white", linewidth=0.6,
+        middle,
+        width,
+        left=start,
+        height=height,
+        color=part.colour,
+        hatch=part.hatch,
+        edgecolor=palette.WARNING if part.hatch else "white",
+        linewidth=0.6,
     )

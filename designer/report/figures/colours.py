@@ -30,6 +30,13 @@ class Steps:
     extend: Literal["max", "neither"]
 
     @property
+    def edges(self) -> FloatArray:
+        """Boundaries of all steps; one above the scale is as wide as its neighbours."""
+        if self.extend == "neither":
+            return self.levels
+        return np.append(self.levels, 2.0 * self.levels[-1] - self.levels[-2])
+
+    @property
     def colormap(self) -> Colormap:
         """One colour a step."""
         import matplotlib
@@ -50,7 +57,7 @@ class Steps:
         if len(self.levels) <= 9:
             return self.levels
         number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
-        return self.levels[number % 2 == 0]
+        return np.asarray(self.levels[number % 2 == 0])
 
     @property
     def mappable(self) -> Any:
@@ -85,6 +92,6 @@ def steps_for(values: FloatArray, most: int = 14) -> Steps | None:
     top = cap if capped else high
     if top - low < 1e-3 * abs(top):
         low, top = 0.9 * low, 1.1 * top
-    levels = MaxNLocator(nbins=most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, top)
-    levels = np.asarray(levels, dtype=np.float64)
+    locator = MaxNLocator(nbins=most, steps=[1, 2, 2.5, 5, 10])
+    levels = np.asarray(locator.tick_values(low, top), dtype=np.float64)
     return Steps(levels, "max" if high > levels[-1] * (1.0 + 1e-9) else "neither")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.physics import catenary
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
@@ -49,7 +49,7 @@ class Field:
     massless_diameter_m: FloatArray
     massless_tension_N: FloatArray
     uplift: FloatArray
-    verdict: IntArray
+    verdict: VerdictArray
     is_left_out: BoolArray
 
     @property
@@ -74,6 +74,12 @@ class Field:
         if len(reasons) > 1:
             return "no cable holds the platform"
         return "".join(_REASONS[Verdict(reason)] for reason in reasons)
+
+    def every_second(self) -> Field:
+        """Return every second point along both axes of a grid, its rim kept."""
+        rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in self.position_m.shape[:2])
+        chosen = np.ix_(rows, columns)
+        return Field(*(getattr(self, item.name)[chosen] for item in fields(self)))
 
 
 def field_at(study: Study, position_m: FloatArray) -> Field:
@@ -122,3 +128,40 @@ def chords_m(statics: Statics) -> FloatArray:
     """
     ends = statics.poses.attachment_points_m(statics.robot)
     return np.stack([statics.robot.exit_points_m, ends], axis=1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sag:
+    """The largest sag among the cables of a pose.
+
+    Parameters
+    ----------
+    cable : int
+        Which cable, from 0.
+    on_chord_m, on_cable_m : array (3,)
+        Points on the straight line and on the cable, one above the other [m].
+    """
+
+    cable: int
+    on_chord_m: FloatArray
+    on_cable_m: FloatArray
+
+    @property
+    def depth_m(self) -> float:
+        """How far the cable hangs below the straight line [m]."""
+        return float(np.linalg.norm(self.on_chord_m - self.on_cable_m))
+
+
+def largest_sag(statics: Statics) -> Sag:
+    """Return where a cable of a solved pose hangs farthest below its chord."""
+    curves = cable_curves_m(statics, 401)
+    start, span = curves[:, :1], curves[:, -1:] - curves[:, :1]
+    along = np.einsum("cnk,cok->cn", (curves - start)[..., :2], span[..., :2])
+    length = np.sum(span[..., :2] ** 2, axis=-1)
+    share = along / np.where(length > 0.0, length, np.inf)
+    on_chord = start + share[..., None] * span
+    depth = np.where(length > 0.0, on_chord[..., 2] - curves[..., 2], 0.0)
+    cable, place = np.unravel_index(int(np.argmax(depth)), depth.shape)
+    on_cable = curves[cable, place]
+    level = np.array([*on_cable[:2], on_chord[cable, place, 2]])
+    return Sag(int(cable), level if depth.max() > 0.0 else on_cable, on_cable)

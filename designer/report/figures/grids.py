@@ -116,9 +116,8 @@ def reach_m(polygon_m: FloatArray, centre_m: FloatArray, azimuth_rad: float) -> 
 
 def opening_azimuth_rad(region: Prism, toward_m: FloatArray) -> float:
     """Return the direction in which `cutaway_m` is open, seen from the centre [rad]."""
-    return _azimuth(np.asarray(toward_m)[None, :2] - centroid_m(region.polygon_m))[0] + (
-        0.5 * _OPENING_RAD
-    )
+    toward = np.asarray(toward_m)[None, :2] - centroid_m(region.polygon_m)
+    return float(_azimuth(toward)[0] + 0.5 * _OPENING_RAD)
 
 
 def _opened(polygon_m: FloatArray, centre: FloatArray, toward_m: FloatArray) -> FloatArray:

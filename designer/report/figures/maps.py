@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from designer.region import PointList, Region
 from designer.report.figures import grids
 from designer.report.figures.edge import EdgeProfile, edge_profile
 from designer.report.figures.field import Field, field_at
+from designer.report.figures.quantity import Quantity
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
@@ -46,6 +47,11 @@ class Focus:
     label: str
     statics: Statics | None
     field: Field
+
+    def text(self, quantity: Quantity) -> str:
+        """Return what it is, and the value of a quantity where it has one."""
+        value = float(quantity.of(self.field))
+        return f"{self.label}, {quantity.text(value)}" if np.isfinite(value) else self.label
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,6 +122,11 @@ class WorkspaceMaps:
     def has_area(self) -> bool:
         """Whether the region is more than a list of points."""
         return bool(self.shell)
+
+    def thinned(self) -> WorkspaceMaps:
+        """Return the same with every second point of the shell, for a smaller scene."""
+        shell = {name: field.every_second() for name, field in self.shell.items()}
+        return replace(self, shell=shell)
 
 
 def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
@@ -190,20 +201,20 @@ def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatAr
 
 
 def _focus(study: Study, found: WorkspaceMap) -> Focus:
+    """The worst pose; else a pose that cannot be held; else, with all left out, the middle."""
     if found.sagging is not None:
-        position, label = found.sagging.position_m, "worst pose"
-    elif found.sampled is not None:
-        position, label = found.sampled.position_m, "worst sample that can be held"
+        position = found.sagging.position_m
+    elif found.infeasible_example_m is not None:
+        position = found.infeasible_example_m
     else:
-        region = _workspace(study).region
-        low, high = region.bounds_m
-        middle = 0.5 * (low + high)
-        position = middle if found.infeasible_example_m is None else found.infeasible_example_m
-        label = "cannot be held"
+        position = np.asarray(_workspace(study).region.bounds_m.mean(axis=0))
+    field = field_at(study, position)
     statics = size_poses(study.robot, Poses.at(position), study.material).statics
-    return Focus(
-        position, label, statics if statics.is_solved else None, field_at(study, position)
-    )
+    if found.sagging is not None:
+        label = "worst pose"
+    else:
+        label = f"{field.why_infeasible}, for example here" if field.is_infeasible else "left out"
+    return Focus(position, label, statics if statics.is_solved else None, field)
 
 
 def _workspace(study: Study) -> Workspace:

@@ -8,21 +8,23 @@ import sys
 
 from designer.errors import MissingLibraryError
 
-_LIBRARIES = ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so.6")
+_EGL = "libEGL.so.1"
+_MESA_OFFSCREEN = ("libOSMesa.so.8", "libOSMesa.so.6")
+_DESKTOP = "libGL.so.1"
 
 
 def require_opengl() -> None:
-    """Make sure that scenes can be drawn off-screen, before hours are spent on their content.
+    """Make sure that scenes can be drawn off-screen, before the work on their content begins.
 
-    VTK ends the process where it finds no OpenGL library, so this looks first. Only Linux can be
-    without one.
+    VTK ends the whole process where it finds no OpenGL library, so this looks first. Only Linux
+    can be without one.
 
     Raises
     ------
     MissingLibraryError
         If there is none; the message names the package to install.
     """
-    if not sys.platform.startswith("linux") or any(_loads(name) for name in _LIBRARIES):
+    if not sys.platform.startswith("linux") or _can_draw():
         return
     raise MissingLibraryError(
         "the pictures of the report need an OpenGL library and this machine has none; install "
@@ -32,13 +34,33 @@ def require_opengl() -> None:
 
 def prefer_offscreen() -> None:
     """Let VTK go straight for EGL where there is no display, instead of warning about it."""
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and _loads(_LIBRARIES[0]):
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and _has_egl_device():
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
-def _loads(name: str) -> bool:
-    try:
-        ctypes.CDLL(name)
-    except OSError:
+def _can_draw() -> bool:
+    on_screen = bool(os.environ.get("DISPLAY")) and _library(_DESKTOP) is not None
+    return on_screen or _has_egl_device() or any(_library(name) for name in _MESA_OFFSCREEN)
+
+
+def _has_egl_device() -> bool:
+    """Ask EGL for its devices: the library without a driver behind it is of no use."""
+    egl = _library(_EGL)
+    if egl is None:
         return False
-    return True
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    address = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
+    if not address:
+        return True  # too old to ask
+    count = ctypes.c_int32(0)
+    query = ctypes.CFUNCTYPE(
+        ctypes.c_uint32, ctypes.c_int32, ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32)
+    )(address)
+    return bool(query(0, None, ctypes.byref(count))) and count.value > 0
+
+
+def _library(name: str) -> ctypes.CDLL | None:
+    try:
+        return ctypes.CDLL(name)
+    except OSError:
+        return None

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
 from designer.report.figures.colours import Steps
+from designer.report.figures.field import Field
 from designer.report.figures.quantity import Quantity
 from designer.report.figures.stage import Image
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
@@ -40,29 +41,41 @@ def png(figure: Figure) -> bytes:
     """Return the finished picture as a PNG file of 1600 by 1000 pixels."""
     stream = io.BytesIO()
     figure.savefig(
-        stream, format="png", dpi=_DOTS_PER_INCH, metadata={"Software": None},
+        stream,
+        format="png",
+        dpi=_DOTS_PER_INCH,
+        metadata={"Software": None},
         pil_kwargs={"optimize": True},
     )
     return stream.getvalue()
 
 
 def write(
-    axes: Axes, view: View, point_m: FloatArray, text: str, offset: tuple[float, float] = (0, 0),
-    **style: object,
+    axes: Axes,
+    view: View,
+    point_m: FloatArray,
+    text: str,
+    offset: tuple[float, float] = (0, 0),
+    **style: Any,
 ) -> None:
-    """Write a text beside a point of the scene, ``offset`` in points."""
-    label = axes.annotate(
-        text, view.pixels(point_m), offset, textcoords="offset points",
-        **{"ha": "center", "va": "center", **style},  # type: ignore[arg-type]
-    )
+    """Write a text beside a point of the scene, ``offset`` in points; none outside the picture."""
+    x, y = view.pixels(point_m)
+    if not (0.0 <= x <= WIDTH_PX and 0.0 <= y <= HEIGHT_PX):
+        return
+    placed = {"ha": "center", "va": "center", **style}
+    label = axes.annotate(text, (x, y), offset, textcoords="offset points", **placed)
     label.set_path_effects(canvas.halo())
 
 
 def mark(axes: Axes, view: View, point_m: FloatArray, colour: str = "white") -> None:
     """Draw a ring at a point of the scene."""
     axes.plot(
-        *view.pixels(point_m), marker="o", markersize=5.5, color=colour,
-        markeredgecolor=palette.INK, markeredgewidth=1.1,
+        *view.pixels(point_m),
+        marker="o",
+        markersize=5.5,
+        color=colour,
+        markeredgecolor=palette.INK,
+        markeredgewidth=1.1,
     )
 
 
@@ -84,6 +97,22 @@ def colour_bar(figure: Figure, steps: Steps, quantity: Quantity) -> None:
     bar.ax.tick_params(length=2)
 
 
+def legend(figure: Figure, fields: Sequence[Field]) -> None:
+    """Say what the colours mean that are not on the colour bar."""
+    from matplotlib.patches import Patch
+
+    reasons = {field.why_infeasible for field in fields} - {""}
+    entries = []
+    if reasons:
+        label = reasons.pop() if len(reasons) == 1 else "no cable holds the platform"
+        entries.append(Patch(facecolor=palette.WARNING, label=label))
+    if any(field.is_left_out.any() for field in fields):
+        label = "left out: a cable hangs below the platform"
+        entries.append(Patch(facecolor=palette.LEFT_OUT, label=label))
+    if entries:
+        figure.legend(handles=entries, loc="lower left", ncols=2, frameon=False)
+
+
 def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     """Write coordinates along the edges of a box (2, 3) that face the camera.
 
@@ -95,25 +124,45 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     corner = leftmost_corner(view, bounds_m)
     taken = view.pixels(np.array([*corner, low[2]]))
     for axis, across in ((0, 1), (1, 0)):
-        for tick in ticks_between(low[axis], high[axis]):
+        for tick in _ticks_along(view, low, high, axis):
             point = np.array([0.0, 0.0, low[2]])
             point[axis], point[across] = tick, near[across]
             if np.hypot(*(view.pixels(point) - taken)) < _ROOM_PX:
                 continue  # the upright axis has its own label there
-            _tick(axes, view, point, canvas.number(float(tick)), across, near[across] - middle[across])
+            _tick(
+                axes, view, point, canvas.number(float(tick)), across, near[across] - middle[across]
+            )
         name = np.array([0.0, 0.0, low[2]])
         name[axis], name[across] = middle[axis], near[across]
         _tick(axes, view, name, "xy"[axis] + " [m]", across, near[across] - middle[across], 24.0)
     for tick in ticks_between(low[2], high[2], 4):
         write(
-            axes, view, np.array([*corner, tick]), canvas.number(float(tick)), (-5, 0), ha="right",
+            axes,
+            view,
+            np.array([*corner, tick]),
+            canvas.number(float(tick)),
+            (-5, 0),
+            ha="right",
             fontsize=palette.FONT_POINTS - 1.0,
         )
-    write(axes, view, np.array([*corner, high[2]]), "z [m]", (-5, 12), ha="right")
+    write(axes, view, np.array([*corner, high[2]]), "z [m]", (-13, 12), ha="right")
+
+
+def _ticks_along(view: View, low: FloatArray, high: FloatArray, axis: int) -> FloatArray:
+    """As many ticks as there is room for along an edge."""
+    edge = np.zeros((2, 3))
+    edge[:, axis] = low[axis], high[axis]
+    length = float(np.hypot(*np.diff(view.pixels(edge), axis=0)[0]))
+    return ticks_between(low[axis], high[axis], min(max(int(length / 90.0), 1), 5))
 
 
 def _tick(
-    axes: Axes, view: View, point: FloatArray, text: str, across: int, side: float,
+    axes: Axes,
+    view: View,
+    point: FloatArray,
+    text: str,
+    across: int,
+    side: float,
     distance: float = 9.0,
 ) -> None:
     """Write outside the edge, in the direction in which the picture shows it to lie."""
@@ -122,7 +171,11 @@ def _tick(
     step = view.pixels(beyond) - view.pixels(point)
     step = step / max(float(np.hypot(*step)), 1e-9) * distance
     write(
-        axes, view, point, text, (float(step[0]), -float(step[1])),
+        axes,
+        view,
+        point,
+        text,
+        (float(step[0]), -float(step[1])),
         fontsize=palette.FONT_POINTS - (1.0 if distance < 10.0 else 0.0),
     )
 

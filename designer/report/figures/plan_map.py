@@ -11,13 +11,16 @@ from designer.report.figures import canvas, palette
 from designer.report.figures.colours import Steps
 from designer.report.figures.field import Field
 from designer.report.figures.maps import WorkspaceMaps
+from designer.report.figures.names import names_of
 from designer.report.figures.quantity import Quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_plan(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None) -> None:
+def draw_plan(
+    axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, room: float
+) -> None:
     """Draw the section of a workspace into axes of equal scale.
 
     Parameters
@@ -30,10 +33,12 @@ def draw_plan(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps 
         What the colours mean.
     steps : Steps or None
         Colour scale; None where no pose has a value.
+    room : float
+        Distance between labels of contour lines, over the size of the region.
     """
     field = maps.section
     if maps.has_area:
-        _fill(axes, field, quantity, steps)
+        _fill(axes, field, quantity, steps, room)
     else:
         _scatter(axes, field, quantity, steps)
     corners = maps.study.robot.exit_points_m[:, :2]
@@ -44,30 +49,6 @@ def draw_plan(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps 
     axes.set_ylabel("y [m]")
 
 
-def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
-    """Return a name and a place for each exit point, one for those that are close together.
-
-    Parameters
-    ----------
-    points_m : array (n_cables, 2 or 3)
-        Exit points [m].
-    apart_m : float
-        Names this close would overlap [m].
-    """
-    groups: list[list[int]] = []
-    for index, point in enumerate(points_m):
-        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
-        group = next(near, None)
-        if group is None:
-            groups.append([index])
-        else:
-            group.append(index)
-    return [
-        (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
-        for group in groups
-    ]
-
-
 def keys(field: Field) -> list[Any]:
     """Return legend entries for what the plan shows besides colours."""
     from matplotlib.lines import Line2D
@@ -75,7 +56,7 @@ def keys(field: Field) -> list[Any]:
 
     entries: list[Any] = []
     if field.position_m.ndim == 3 and _has_border(field) and not field.is_left_out.any():
-        style = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
+        style: dict[str, Any] = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
         label = "beyond: a cable hangs below the platform"
         entries.append(Line2D([], [], label=label, **style))
     if field.is_infeasible.any():
@@ -94,19 +75,24 @@ def keys(field: Field) -> list[Any]:
     return entries
 
 
-def _fill(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) -> None:
+def _fill(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None, room: float) -> None:
     x, y = field.position_m[..., 0], field.position_m[..., 1]
     axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     _region_of(axes, x, y, field.is_infeasible)
     values = np.ma.masked_invalid(quantity.of(field))
     if steps is not None and values.count() > 0:
         surface = axes.contourf(
-            x, y, values, levels=steps.levels, cmap=steps.colormap, norm=steps.norm,
+            x,
+            y,
+            values,
+            levels=steps.levels,
+            cmap=steps.colormap,
+            norm=steps.norm,
             extend=steps.extend,
         )
         surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
         surface.set_linewidth(0.3)
-        _contour_lines(axes, x, y, values, steps)
+        _contour_lines(axes, x, y, values, steps, room)
     if _has_border(field):
         uplift = np.ma.masked_invalid(field.uplift)
         axes.contour(
@@ -120,9 +106,7 @@ def _region_of(axes: Axes, x: FloatArray, y: FloatArray, inside: BoolArray) -> N
     if not inside.any():
         return
     levels = [0.5, 1.5]
-    axes.contourf(
-        x, y, inside.astype(np.float64), levels=levels, colors=[palette.WARNING_PALE]
-    )
+    axes.contourf(x, y, inside.astype(np.float64), levels=levels, colors=[palette.WARNING_PALE])
     hatched = axes.contourf(
         x, y, inside.astype(np.float64), levels=levels, colors="none", hatches=["//////"]
     )
@@ -131,19 +115,22 @@ def _region_of(axes: Axes, x: FloatArray, y: FloatArray, inside: BoolArray) -> N
 
 
 def _contour_lines(
-    axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, steps: Steps
+    axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray, steps: Steps, room: float
 ) -> None:
     decimals = canvas.decimals(steps.ticks)
     lines = axes.contour(x, y, values, levels=steps.ticks, colors="white", linewidths=0.5)
     labels = axes.clabel(
-        lines, fmt=f"%.{decimals}f", fontsize=palette.FONT_POINTS - 1.5, colors=palette.INK,
+        lines,
+        fmt=f"%.{decimals}f",
+        fontsize=palette.FONT_POINTS - 1.5,
+        colors=palette.INK,
         inline=False,
     )
     size = max(np.ptp(x), np.ptp(y))
     placed = list(np.stack([x[-1], y[-1]], axis=1))  # keeps labels off the outline, too
     for label in labels:
         at = np.array(label.get_position())
-        if np.hypot(*(np.array(placed) - at).T).min() < 0.045 * size:
+        if np.hypot(*(np.array(placed) - at).T).min() < room * size:
             label.remove()
             continue
         placed.append(at)
@@ -157,8 +144,14 @@ def _scatter(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) 
     shown = np.isfinite(values[order])
     if steps is not None:
         axes.scatter(
-            x[shown], y[shown], c=values[order][shown], cmap=steps.colormap, norm=steps.norm,
-            s=26, linewidths=0.4, edgecolors=palette.INK,
+            x[shown],
+            y[shown],
+            c=values[order][shown],
+            cmap=steps.colormap,
+            norm=steps.norm,
+            s=26,
+            linewidths=0.4,
+            edgecolors=palette.INK,
         )
     bad, left = field.is_infeasible[order], field.is_left_out[order]
     axes.scatter(x[bad], y[bad], marker="x", s=16, linewidths=1.0, color=palette.WARNING)
@@ -173,10 +166,12 @@ def _frame(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
     shows_corners = bool(np.ptp(flat, axis=0).max() > 0.2 * wide or len(flat) == 1)
     shown = everything if shows_corners else flat
     low, high = shown.min(axis=0), shown.max(axis=0)
-    margin = 0.09 * max((high - low).max(), 1e-3)
+    half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
+    half = np.maximum(half, 0.35 * half.max())  # no slivers
+    middle = 0.5 * (low + high)
     axes.set_aspect("equal")
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(low[1] - margin, high[1] + margin)
+    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
     return shows_corners
 
 
@@ -186,33 +181,47 @@ def _exit_points(axes: Axes, corners: FloatArray) -> None:
     )
     middle = corners.mean(axis=0)
     for text, place in names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
-        outward = _outward(place - middle, 1.0)
-        axes.annotate(
-            text, place, outward * 6.0, textcoords="offset points",
-            ha=_side(outward[0], "left", "right"), va=_side(outward[1], "bottom", "top"),
-        )
+        _write_away(axes, text, place, place - middle, 6.0)
 
 
 def _focus(axes: Axes, maps: WorkspaceMaps, quantity: Quantity) -> None:
-    position = maps.focus.position_m
-    if maps.has_area and not np.isclose(position[2], maps.section.position_m[0, 0, 2]):
+    focus = maps.focus
+    if maps.has_area and not np.isclose(focus.position_m[2], maps.section.position_m[0, 0, 2]):
         return
-    value = float(quantity.of(maps.focus.field))
-    label = f"{maps.focus.label}, {quantity.text(value)}" if np.isfinite(value) else maps.focus.label
-    outward = _outward(position[:2] - _middle(maps.section), 1.0)
+    place = focus.position_m[:2]
     axes.plot(
-        *position[:2], marker="o", markersize=6, color="white" if maps.has_area else "none",
-        markeredgecolor=palette.INK, markeredgewidth=1.1, clip_on=False, zorder=5,
+        *place,
+        marker="o",
+        markersize=6,
+        color="white" if maps.has_area else "none",
+        markeredgecolor=palette.INK,
+        markeredgewidth=1.1,
+        clip_on=False,
+        zorder=5,
     )
-    text = axes.annotate(
-        label, position[:2], outward * 9.0, textcoords="offset points", zorder=6,
-        ha=_side(outward[0], "left", "right"), va=_side(outward[1], "bottom", "top"),
-        fontweight="bold",
-    )
-    text.set_path_effects(canvas.halo())
+    away = place - _middle(maps.section)
+    _write_away(axes, focus.text(quantity), place, away, 9.0, fontweight="bold", zorder=6)
 
 
-def _side(component: float, positive: str, negative: str) -> str:
+def _write_away(
+    axes: Axes, text: str, place: FloatArray, away: FloatArray, points: float, **style: Any
+) -> None:
+    """Write beside a place, off in a direction, so that the text begins where the gap ends."""
+    length = float(np.hypot(*away))
+    right, up = away / length if length > 0.0 else (0.0, 1.0)
+    label = axes.annotate(
+        text,
+        (place[0], place[1]),
+        (points * right, points * up),
+        textcoords="offset points",
+        ha=_side(right, "left", "right"),
+        va=_side(up, "bottom", "top"),
+        **style,
+    )
+    label.set_path_effects(canvas.halo())
+
+
+def _side(component: float, positive: Any, negative: Any) -> Any:
     """Alignment of a text that stands off in a direction."""
     if abs(component) < 0.35:
         return "center"
@@ -222,12 +231,8 @@ def _side(component: float, positive: str, negative: str) -> str:
 def _middle(field: Field) -> FloatArray:
     """Centre of the region, or of the points."""
     positions = field.position_m[..., :2]
-    return positions[0, 0] if positions.ndim == 3 else positions.mean(axis=0)
-
-
-def _outward(direction: FloatArray, points: float) -> FloatArray:
-    length = float(np.hypot(*direction))
-    return direction / length * points if length > 0.0 else np.array([0.0, points])
+    middle = positions[0, 0] if positions.ndim == 3 else positions.mean(axis=0)
+    return np.asarray(middle, dtype=np.float64)
 
 
 def _has_border(field: Field) -> bool:

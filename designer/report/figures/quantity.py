@@ -11,7 +11,7 @@ from designer.arrays import FloatArray
 from designer.report.figures import canvas
 
 if TYPE_CHECKING:
-    from designer.report.figures.maps import Field
+    from designer.report.figures.field import Field
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +42,16 @@ class Quantity:
 
     def of(self, field: Field) -> FloatArray:
         """Return the values in the unit of the axis; NaN where the pose does not count."""
+        return np.where(field.counts, self.everywhere(field), np.nan)
+
+    def everywhere(self, field: Field) -> FloatArray:
+        """Return the values where the study leaves the pose out as well."""
         values = {
             "diameter": field.diameter_m,
             "tension": field.tension_N,
             "ratio": field.tension_N / field.massless_tension_N,
         }[self.key]
-        return np.where(field.counts, values * self.scale, np.nan)
+        return np.asarray(values * self.scale)
 
     def text(self, value: float) -> str:
         """Return a value with its unit, to a few digits."""

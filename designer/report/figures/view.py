@@ -106,25 +106,28 @@ def fitting(
     return View(azimuth_rad, elevation_rad, centre, half_height)
 
 
-def clear_azimuth_rad(points_m: FloatArray, elevation_rad: float) -> float:
-    """Return the azimuth from which the points lie best apart in the picture [rad].
+def clear_azimuth_rad(lines_m: FloatArray, elevation_rad: float) -> float:
+    """Return the azimuth from which lines lie best apart in the picture [rad].
 
     Parameters
     ----------
-    points_m : array (n, 3)
-        Points to keep apart, such as exit points and platform [m].
+    lines_m : array (n, 2, 3)
+        Straight lines to keep apart, such as cables and the outline of the base [m].
     elevation_rad : float
         How high the camera stands [rad].
     """
-    first, second = np.triu_indices(len(points_m), 1)
+    share = np.array([0.3, 0.5, 0.7])[:, None]
+    points = np.concatenate([a + share * (b - a) for a, b in lines_m])
+    line = np.repeat(np.arange(len(lines_m)), len(share))
+    first, second = np.triu_indices(len(points), 1)
+    others = line[first] != line[second]
+    first, second = first[others], second[others]
     azimuths = np.radians(np.arange(-90.0, 270.0, 7.5))
-    best = 0.0
-    choice = float(azimuths[0])
-    for azimuth in azimuths:
-        view = View(float(azimuth), elevation_rad, np.zeros(3), 1.0)
-        shown = view.pixels(points_m)
-        gaps = np.linalg.norm(shown[first] - shown[second], axis=1)
-        apart = float(np.sort(gaps)[: max(len(gaps) // 3, 1)].sum())
-        if apart > 1.02 * best:
-            best, choice = apart, float(azimuth)
-    return choice
+    azimuths = azimuths[np.abs(np.sin(2.0 * azimuths)) > 0.49]  # not along the x or the y axis
+
+    def apart(azimuth: float) -> float:
+        shown = View(azimuth, elevation_rad, np.zeros(3), 1.0).pixels(points)
+        gaps = np.sort(np.linalg.norm(shown[first] - shown[second], axis=1))
+        return float(gaps[: len(lines_m)].sum())
+
+    return float(max(azimuths, key=lambda azimuth: round(apart(float(azimuth)), 6)))

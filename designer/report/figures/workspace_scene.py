@@ -1,4 +1,4 @@
-"""The workspace cut open and coloured by what its poses need, as Riehl et al., ICRA 2010, Fig. 8."""
+"""The workspace cut open, coloured by what its poses need, as Riehl et al., ICRA 2010, Fig. 8."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ from designer.report.figures import canvas, grids, overlay, palette, stage
 from designer.report.figures.colours import Steps, steps_for
 from designer.report.figures.field import cable_curves_m
 from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.plan_map import names_of
+from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, Quantity
+from designer.report.figures.stage import PRINT, Pen
 from designer.report.figures.view import View, fitting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pyvista import Plotter
 
+_SPECK = 0.2
 _ELEVATION_RAD = np.radians(28.0)
-_FRAME = (0.075, 0.85, 0.11, 0.93)
+_FRAME = (0.085, 0.85, 0.11, 0.93)
 
 
 def workspace_scene(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> bytes:
@@ -44,6 +46,7 @@ def workspace_scene(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> bytes
         figure, axes = overlay.over(image)
         overlay.box_axes(axes, view, bounds_m(maps))
         _label(axes, view, maps, quantity)
+        overlay.legend(figure, [*maps.shell.values()] or [maps.section])
         if steps is not None:
             overlay.colour_bar(figure, steps, quantity)
         return overlay.png(figure)
@@ -60,50 +63,69 @@ def view_of(maps: WorkspaceMaps) -> View:
     low, high = bounds_m(maps)
     floor = [[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])]
     top = maps.section.position_m[-1] if maps.has_area else maps.section.position_m
-    everything = np.concatenate([floor, top, maps.study.robot.exit_points_m])
+    exits = maps.study.robot.exit_points_m
+    shown = exits[np.all((exits >= low) & (exits <= high), axis=1)]
+    everything = np.concatenate([floor, top, shown])
     return fitting(everything, _azimuth_rad(maps), float(_ELEVATION_RAD), _FRAME)
 
 
 def bounds_m(maps: WorkspaceMaps) -> FloatArray:
-    """Return the box around the region and the exit points in plan, (2, 3) [m]."""
-    region = maps.region.bounds_m
-    exits = maps.study.robot.exit_points_m
-    low = np.minimum(region[0], exits.min(axis=0))
-    high = np.maximum(region[1], exits.max(axis=0))
-    return np.array([low, high])
+    """Return the box that is shown (2, 3) [m]: region and exit points.
+
+    A region that would be a speck among the exit points is shown alone.
+    """
+    region, exits = maps.region.bounds_m, maps.study.robot.exit_points_m
+    everything = np.concatenate([region, exits])
+    whole = np.array([everything.min(axis=0), everything.max(axis=0)])
+    size = float(np.ptp(region, axis=0).max())
+    is_speck = maps.has_area and size < _SPECK * float(np.ptp(whole, axis=0).max())
+    return region if is_speck else whole
 
 
 def add_workspace(
-    plotter: Plotter, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, view: View
+    plotter: Plotter,
+    maps: WorkspaceMaps,
+    quantity: Quantity,
+    steps: Steps | None,
+    view: View,
+    pen: Pen = PRINT,
 ) -> None:
     """Put region, exit points and cables on the stage."""
     if maps.has_area:
-        _add_region(plotter, maps, quantity, steps, view)
+        _add_region(plotter, maps, quantity, steps, view, pen)
     else:
         _add_points(plotter, maps, quantity, steps)
-    _add_exit_points(plotter, maps)
+    _add_exit_points(plotter, maps, pen)
     if maps.focus.statics is not None:
-        curves = list(cable_curves_m(maps.focus.statics))
-        stage.add_lines(plotter, curves, palette.INK, 6.0)
+        stage.add_cables(plotter, list(cable_curves_m(maps.focus.statics)), view, pen)
 
 
 def _azimuth_rad(maps: WorkspaceMaps) -> float:
-    region = maps.region
-    if isinstance(region, Prism):
-        return grids.opening_azimuth_rad(region, maps.focus.position_m)
-    return float(np.radians(-60.0))
+    """Into the opening, but not along an axis, which would then be seen from its end."""
+    if not isinstance(maps.region, Prism):
+        return float(np.radians(-60.0))
+    azimuth = grids.opening_azimuth_rad(maps.region, maps.focus.position_m)
+    off_axis = (azimuth + 0.25 * np.pi) % (0.5 * np.pi) - 0.25 * np.pi
+    wanted = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
+    return float(azimuth + wanted - off_axis)
 
 
 def _add_region(
-    plotter: Plotter, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, view: View
+    plotter: Plotter,
+    maps: WorkspaceMaps,
+    quantity: Quantity,
+    steps: Steps | None,
+    view: View,
+    pen: Pen,
 ) -> None:
     for field in maps.shell.values():
         stage.add_field(plotter, field, quantity, steps)
         if steps is not None:
             lines = stage.contour_lines(field, quantity, steps)
-            stage.add_lines(plotter, [view.nearer(line, 1.0) for line in lines], "white", 1.2)
-    edges = [view.nearer(line, 1.5) for line in edges_m(maps)]
-    stage.add_lines(plotter, edges, palette.INK, 1.6)
+            lines = [view.nearer(line, pen.lift) for line in lines]
+            stage.add_lines(plotter, lines, "white", pen.contour)
+    edges = [view.nearer(line, 1.5 * pen.lift) for line in edges_m(maps)]
+    stage.add_lines(plotter, edges, palette.INK, pen.edge)
 
 
 def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
@@ -125,33 +147,35 @@ def _add_points(
 ) -> None:
     field = maps.section
     values = quantity.of(field)
-    stage.add_balls(plotter, field.position_m, values, steps, 0.008 * _size_m(maps))
+    if steps is not None:
+        stage.add_balls(plotter, field.position_m, values, steps, 0.008 * size_m(maps))
     for failed, colour in (
         (field.is_infeasible, palette.WARNING),
         (field.is_left_out, palette.LEFT_OUT),
     ):
-        stage.add_spheres(plotter, field.position_m[failed], colour, 0.007 * _size_m(maps))
+        stage.add_spheres(plotter, field.position_m[failed], colour, 0.007 * size_m(maps))
+    feet = field.position_m * [1.0, 1.0, 0.0] + [0.0, 0.0, bounds_m(maps)[0, 2]]
+    stage.add_lines(plotter, list(np.stack([field.position_m, feet], axis=1)), palette.FAINT, 1.0)
 
 
-def _add_exit_points(plotter: Plotter, maps: WorkspaceMaps) -> None:
+def _add_exit_points(plotter: Plotter, maps: WorkspaceMaps, pen: Pen) -> None:
     robot, floor = maps.study.robot, bounds_m(maps)[0, 2]
-    stage.add_spheres(plotter, robot.exit_points_m, palette.INK, 0.006 * _size_m(maps))
+    stage.add_spheres(plotter, robot.exit_points_m, palette.INK, 0.006 * size_m(maps))
     feet = robot.exit_points_m * [1.0, 1.0, 0.0] + [0.0, 0.0, floor]
     posts = list(np.stack([robot.exit_points_m, feet], axis=1))
-    stage.add_lines(plotter, posts, palette.FAINT, 1.5)
+    stage.add_lines(plotter, posts, palette.FAINT, pen.post)
 
 
-def _size_m(maps: WorkspaceMaps) -> float:
+def size_m(maps: WorkspaceMaps) -> float:
+    """Return the longest edge of the box around everything [m]."""
     return float(np.ptp(bounds_m(maps), axis=0).max())
 
 
 def _label(axes: Axes, view: View, maps: WorkspaceMaps, quantity: Quantity) -> None:
-    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * _size_m(maps)):
+    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
         overlay.write(axes, view, place, name, (0, 8))
     focus = maps.focus
     if focus.statics is not None:
         overlay.hidden_lines(axes, view, cable_curves_m(focus.statics))
-    value = float(quantity.of(focus.field))
-    text = f"{focus.label}, {quantity.text(value)}" if np.isfinite(value) else focus.label
     overlay.mark(axes, view, focus.position_m)
-    overlay.write(axes, view, focus.position_m, text, (0, 11), fontweight="bold")
+    overlay.write(axes, view, focus.position_m, focus.text(quantity), (0, 11), fontweight="bold")

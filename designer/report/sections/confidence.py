@@ -18,7 +18,7 @@ _NEAR_BOUNDARY = 0.9
 def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     """Return what a reviewer should know before relying on the answer."""
     chosen = analysis.selection.chosen if analysis.selection else None
-    statements = [*_margin(analysis, findings), *_sampling(analysis)]
+    statements = [*_margin(analysis, findings), *_sampling(analysis), *_hanging(analysis, findings)]
     if chosen is not None:
         statements += [_trust(chosen), _modulus(chosen, findings), *_doubt(chosen)]
     return tuple(statements)
@@ -36,13 +36,14 @@ def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         ratio, place = pose.limit_ratio, "configured"
     else:
         return
-    text = (
-        f"At the {place} pose the limit ratio of {whose} is {fmt.percent(ratio)}. This is the "
-        "share of the allowable stress that a cable of unlimited thickness would spend on its "
-        "own weight; at 100 % no finite cable is left."
-    )
+    other = ""
     if rope is not None and workspace is not None and workspace.sagging is not None:
-        text += f" For the configured family it is {fmt.percent(workspace.limit_ratio)}."
+        other = f" (configured family {fmt.percent(workspace.limit_ratio)})"
+    text = (
+        f"At the {place} pose the limit ratio of {whose} is {fmt.percent(ratio)}{other}: the "
+        "share of the allowable stress that a cable of unlimited thickness spends on its own "
+        "weight. At 100\u00a0% no finite cable is left."
+    )
     near = ratio > _NEAR_BOUNDARY
     yield Statement("Margin to the boundary", text, "bad" if near else "")
 
@@ -57,13 +58,25 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
         return
     best = f"the worst of {fmt.count(workspace.census.samples)} samples"
     text = (
-        f"In the configured family {best} needs {fmt.millimetres(workspace.sampled.diameter_m)} "
-        f"and meets {fmt.newtons(workspace.sampled.max_tension_N)}. A search between the samples "
-        f"found {fmt.millimetres(workspace.sagging.diameter_m)} and "
-        f"{fmt.newtons(workspace.sagging.max_tension_N)}. The searched value counts, here and "
-        "for the ropes."
+        f"In the configured family {best} meets {fmt.newtons(workspace.sampled.max_tension_N)}. "
+        f"A search between them found {fmt.newtons(workspace.sagging.max_tension_N)}. Searched "
+        "values count, here and for the ropes."
     )
     yield Statement("Sampled and searched maximum", text)
+
+
+def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
+    workspace, share = analysis.study.workspace, findings.hanging
+    if workspace is None or not share:
+        return
+    has_choice = analysis.selection is not None and analysis.selection.chosen is not None
+    whose = "the chosen rope" if has_choice else "the configured family"
+    text = f"With {whose} a cable hangs below the platform in {fmt.percent(share)} of the samples. "
+    if workspace.hangs_below == "include":
+        yield Statement("Cables below the platform", f"{text}These poses count.")
+        return
+    text += "These poses do not count, as configured. Which poses they are depends on the rope."
+    yield Statement("Poses left out", text, "doubt")
 
 
 def _trust(chosen: Candidate) -> Statement:
@@ -74,7 +87,8 @@ def _trust(chosen: Candidate) -> Statement:
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:
     modulus = chosen.grade.modulus
-    text = f"The modulus is {modulus.basis}, known to ± {fmt.trimmed(100 * modulus.uncertainty)} %."
+    doubt = f"±\u00a0{fmt.trimmed(100 * modulus.uncertainty)}\u00a0%"
+    text = f"The modulus is {modulus.basis}, known to {doubt}."
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
         text += f" Over that range the utilisation at the worst pose is {_range(low, high)}."

@@ -71,7 +71,7 @@ class FirstPage:
 def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) -> FirstPage:
     """Return the first page."""
     return FirstPage(
-        verdict=_verdict(analysis),
+        verdict=_verdict(analysis, findings),
         card=_card(analysis),
         reasons=reasons(analysis, findings),
         actions=actions(analysis, findings),
@@ -81,10 +81,11 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
     )
 
 
-def _verdict(analysis: Analysis) -> Statement:
+def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
     if analysis.is_positive:
-        return Statement("Yes", _positive(analysis, chosen), "good")
+        text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
+        return Statement("Yes", text, "good")
     if chosen is not None:
         text = f"{_holds(chosen)} But {_open_point(analysis)}."
         return Statement("In part", text, "doubt")
@@ -107,6 +108,14 @@ def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
         "holds the configured pose. Its largest tension is "
         f"{fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
     )
+
+
+def _exception(analysis: Analysis, findings: Findings) -> str:
+    """Say on the first line how much of the volume does not count."""
+    workspace = analysis.study.workspace
+    if workspace is None or workspace.hangs_below == "include" or not findings.hanging:
+        return ""
+    return f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
 
 
 def _holds(chosen: Candidate) -> str:

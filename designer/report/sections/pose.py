@@ -82,20 +82,19 @@ def _facts(pose: PoseAnalysis) -> tuple[Fact, ...]:
     facts = [Fact("Position", fmt.position(statics.poses.position_m))]
     if not statics.robot.is_point_mass:
         facts.append(Fact("Rotation vector", _rotation(statics.poses.rotation)))
-    facts.append(
-        Fact(
-            "Limit ratio",
-            fmt.percent(pose.limit_ratio),
-            "stress of a cable of infinite section over the allowable stress; "
-            "at 100 % no finite cable is left",
+    if np.isfinite(pose.limit_ratio):
+        meaning = (
+            "stress of a cable of unlimited thickness over the allowable stress; "
+            "at 100 % no finite cable is left"
         )
-    )
+        facts.append(Fact("Limit ratio", fmt.percent(pose.limit_ratio), meaning))
     if statics.is_solved:
         closure = float(np.max(statics.closure_residual_m()))
         balance = float(np.max(np.abs(statics.equilibrium_residual_N())))
         scale = f"weight of the platform {fmt.newtons(statics.robot.weight_N)}"
         facts.append(Fact("Largest closure residual", fmt.power_of_ten(closure, "m")))
-        facts.append(Fact("Largest balance residual", fmt.power_of_ten(balance, "N"), scale))
+        unit = "N" if statics.robot.is_point_mass else "N or N·m"
+        facts.append(Fact("Largest balance residual", fmt.power_of_ten(balance, unit), scale))
     return tuple(facts)
 
 

@@ -189,7 +189,7 @@ def _row(candidate: Candidate, decimals: Decimals, is_chosen: bool) -> Row:
 def _notes(selection: SelectionResult) -> tuple[Statement, ...]:
     seen = {outcome.grade.trust for outcome in selection.outcomes}
     return tuple(
-        Statement(f"Trust {letter}", f"{meaning}.")
+        Statement(f"Trust {letter}", f"{meaning[0].upper()}{meaning[1:]}.")
         for letter, meaning in TRUST_MEANING.items()
         if letter in seen
     )

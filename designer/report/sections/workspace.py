@@ -59,7 +59,7 @@ def workspace_section(
     return WorkspaceSection(
         verdict=_statement(found),
         facts=_facts(study.workspace, found),
-        extremes=_extremes(found),
+        extremes=_extremes(study.workspace.region, found),
         census=_census(found.census),
         hanging=_hanging(study.workspace, found, findings.other_policy),
         policies=_policies(study.workspace, found, findings.other_policy),
@@ -83,7 +83,8 @@ def _statement(found: WorkspaceMap) -> Statement:
     if found.sagging is not None:
         text = (
             f"A cable of {fmt.millimetres(found.sagging.diameter_m)} of the configured family "
-            f"serves every pose. The worst is at {fmt.position(found.sagging.position_m)}."
+            "serves every pose that counts. The worst is at "
+            f"{fmt.position(found.sagging.position_m)}."
         )
         return Statement("The workspace is served", text, "good")
     text = "There is no diameter of the configured family that serves every pose."
@@ -117,9 +118,10 @@ def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
     return tuple(facts)
 
 
-def _extremes(found: WorkspaceMap) -> Table:
+def _extremes(region: Region, found: WorkspaceMap) -> Table:
+    how = "" if isinstance(region, PointList) else ", searched between samples"
     named = (
-        ("Worst pose with sag, searched between samples", found.sagging, "good"),
+        (f"Worst pose with sag{how}", found.sagging, "good"),
         ("Worst sample with sag", found.sampled, ""),
         ("Worst pose without sag", found.massless, ""),
     )
@@ -171,23 +173,25 @@ def _hanging(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | Non
     census = found.census
     if census.hangs_below == 0:
         text = "In no solved sample does a cable hang below the platform."
-        return Statement("Cables below the platform", text)
+        return Statement("There are none", text)
     share = fmt.share(census.hangs_below, census.samples)
     text = (
         f"In {share} of the samples a cable hangs below the platform: it may touch the ground "
         "or what stands on it."
     )
     if workspace.hangs_below == "include":
-        text += " These poses count in all results of this report."
+        title = "These poses count"
+        text += " All results of this report include them."
     else:
+        title = "These poses are left out"
         left_out = fmt.share(census.excluded, census.samples)
         text += (
-            f" The study leaves such poses out, together with poses that have no finite cable: "
+            " The study leaves such poses out, together with poses that have no finite cable: "
             f"{left_out} of the samples do not count in the results of this report."
         )
     if other is not None:
         text += " The table shows what the other choice would give."
-    return Statement("Cables below the platform", text, "doubt")
+    return Statement(title, text, "doubt")
 
 
 def _policies(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None) -> Table | None:

@@ -1,0 +1,87 @@
+"""From a study with measurements to a case for the diagnosis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.cable import Cable
+from designer.diagnosis.diagnose import Case
+from designer.effects.declared import declared_settings
+from designer.effects.effect import Effect, as_built
+from designer.effects.registry import all_effects
+from designer.machine import Machine
+from designer.measured.data import Measured
+from designer.study import Measurements, Study
+
+_MEANINGS = {
+    "time": "a column time_s",
+    "temperature": "a column temperature_C that varies",
+    "wind": "columns wind_x_m_per_s … that vary",
+    "motion": "samples of a motion (settled: false)",
+    "tension": "measured tensions",
+    "length": "measured lengths",
+    "rotation": "a platform that can turn",
+}
+
+
+def case_of(study: Study, measurements: Measurements, measured: Measured) -> Case:
+    """Return what the diagnosis starts from; declared effects are part of the machine.
+
+    Parameters
+    ----------
+    study, measurements, measured
+        As read.
+    """
+    # The diagnosis asks no strength of the cable, and its diameter never enters.
+    cable = Cable(
+        diameter_m=float("nan"),
+        linear_density_kg_per_m=measurements.linear_density_kg_per_m,
+        axial_stiffness_N=measurements.axial_stiffness_N,
+        allowable_tension_N=float("inf"),
+    )
+    declared = declared_settings(study)
+    machine = as_built(Machine(study.robot, cable), declared)
+    known = {setting.effect.key for setting in declared}
+    effects = [e for e in all_effects(machine) if e.key not in known]
+    given = tuple(e for e in effects if _is_given(e, measurements))
+    candidates, skipped = [], []
+    for effect in effects:
+        missing = sorted(effect.needs - _recorded(study, measured))
+        if effect in given:
+            continue
+        if missing:
+            skipped.append((effect.key, f"needs {_MEANINGS[missing[0]]}"))
+        else:
+            candidates.append(effect)
+    return Case(
+        study,
+        measurements,
+        machine,
+        measured,
+        tuple(candidates),
+        given,
+        tuple(skipped),
+        tuple(
+            s
+            for s in declared
+            if s.effect.on_readings is not None and s.effect.needs <= _recorded(study, measured)
+        ),
+    )
+
+
+def _is_given(effect: Effect, measurements: Measurements) -> bool:
+    by_id = effect.id in measurements.unknown
+    return by_id or (effect.id == "anchor_offset" and "anchors" in measurements.unknown)
+
+
+def _recorded(study: Study, measured: Measured) -> frozenset[str]:
+    found = set(measured.columns)
+    if not measured.settled:
+        found.add("motion")
+    if not study.robot.is_point_mass:
+        found.add("rotation")
+    if not np.isnan(measured.length_m).all():
+        found.add("length")
+    if not np.isnan(measured.tension_N).all():
+        found.add("tension")
+    return frozenset(found)

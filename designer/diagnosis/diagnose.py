@@ -1,0 +1,286 @@
+"""The closed loop: measured data, residual, missing effect, better model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.correction import smooth_correction
+from designer.diagnosis.drift import drifting
+from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
+from designer.diagnosis.fit import Fit, fit
+from designer.diagnosis.noise import noise_of, rescaled
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Noise, Problem
+from designer.diagnosis.propose import propose
+from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage, Withdrawn
+from designer.diagnosis.search import Search, Searcher
+from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.effects.effect import Effect, Setting
+from designer.errors import Fault, InputError
+from designer.machine import Machine
+from designer.measured.data import Measured
+from designer.study import Measurements, Study
+
+_MOST_WITHDRAWN = 6
+_NOISE_ROUNDS = 3
+_NOISE_CHANGE = 0.15
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """What a diagnosis starts from.
+
+    Parameters
+    ----------
+    study, measurements, machine, measured
+        The study, its measurements, the machine as declared, the data.
+    candidates : tuple of Effect
+        Effects that the data can show, in the order in which they act.
+    given : tuple of Effect
+        What is unknown from the start.
+    skipped : tuple of (effect, reason)
+        Effects that the data cannot show.
+    fixed : tuple of Setting
+        Declared effects on readings.
+    """
+
+    study: Study
+    measurements: Measurements
+    machine: Machine
+    measured: Measured
+    candidates: tuple[Effect, ...]
+    given: tuple[Effect, ...]
+    skipped: tuple[tuple[str, str], ...]
+    fixed: tuple[Setting, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outcome:
+    """A search whose findings hold still."""
+
+    problem: Problem
+    searcher: Searcher
+    search: Search
+    withdrawn: tuple[Withdrawn, ...]
+    structure: Structure
+
+
+def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
+    """Find what the model lacks, and say how sure that is.
+
+    Raises
+    ------
+    InputError
+        If there are fewer readings than the unknowns ask for, or lengths are in another unit.
+    """
+    measured = case.measured
+    heldout = heldout_rows(measured.n_rows)
+    _check_size(case, heldout)
+    predict = Predictor(case.machine, measured, case.fixed)
+    _check_scale(case, predict)
+    outcome = _with_settled_noise(case, predict, ~heldout, progress)
+    problem, search = outcome.problem, outcome.search
+    base = fit(problem, case.given, ~heldout)
+    before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
+    predicted = predict(search.fit.settings)
+    covariates = covariates_of(measured, predicted)
+    findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
+    return Diagnosis(
+        study=case.study,
+        machine=case.machine,
+        measured=measured,
+        noise=problem.noise,
+        heldout=heldout,
+        findings=findings,
+        given=tuple(s for s in search.fit.settings if s.effect in case.given),
+        withdrawn=outcome.withdrawn,
+        skipped=case.skipped,
+        steps=search.steps,
+        stages=_stages(outcome, base, heldout),
+        structure_before=find_structure(
+            without_outliers(before), covariates, settled=measured.settled
+        ),
+        structure_after=outcome.structure,
+        residual_before=before,
+        residual_after=after,
+        predicted=predicted,
+        covariates=covariates,
+        outliers=outliers_of(after, measured.row_numbers),
+        correction=smooth_correction(after, outcome.structure, covariates, heldout),
+        proposals=_proposals(case, outcome, findings),
+    )
+
+
+def _with_settled_noise(
+    case: Case, predict: Predictor, rows: BoolArray, progress: Callable[[str], None]
+) -> _Outcome:
+    """Search; where noise is estimated, search again with what the better model leaves of it."""
+    measured = case.measured
+    unit = Problem(measured, predict, Noise(1.0, 1.0, "none"))
+    noise = noise_of(case.measurements, measured, unit.residual(_given_fit(unit, case, rows)))
+    for _ in range(_NOISE_ROUNDS):
+        problem = Problem(measured, predict, noise)
+        outcome = _search(problem, case, rows, progress)
+        if noise.source == "declared":
+            break
+        better = rescaled(noise, case.measurements, problem.residual(outcome.search.fit.settings))
+        change = max(
+            abs(better.length_m / noise.length_m - 1), abs(better.tension_N / noise.tension_N - 1)
+        )
+        noise = better
+        if change < _NOISE_CHANGE:
+            break
+    return outcome
+
+
+def _given_fit(unit: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ...]:
+    return fit(unit, case.given, rows).settings if case.given else ()
+
+
+def _search(
+    problem: Problem, case: Case, rows: BoolArray, progress: Callable[[str], None]
+) -> _Outcome:
+    """Search, withdraw what drifts, search again without it, until all that is found holds."""
+    withdrawn: list[Withdrawn] = []
+    candidates = list(case.candidates)
+    while True:
+        searcher = Searcher(problem, candidates, case.given, rows, progress)
+        search = searcher.run()
+        covariates = covariates_of(problem.measured, problem.predict(search.fit.settings))
+        structure = find_structure(
+            without_outliers(problem.residual(search.fit.settings)),
+            covariates,
+            settled=problem.measured.settled,
+        )
+        loose = None
+        if structure.is_present and len(withdrawn) < _MOST_WITHDRAWN:
+            loose = drifting(problem, search.fit, search.found, structure, covariates, rows)
+        if loose is None:
+            return _Outcome(problem, searcher, search, tuple(withdrawn), structure)
+        progress(f"{loose.effect} would have to change with {loose.covariate}")
+        withdrawn.append(loose)
+        candidates = [e for e in candidates if e.key != loose.effect]
+
+
+def _finding(
+    outcome: _Outcome, effect: Effect, rows: BoolArray, progress: Callable[[str], None]
+) -> Finding:
+    search, searcher = outcome.search, outcome.searcher
+    progress(f"rivals of {effect.key}")
+    rest = [e for e in search.found if e.key != effect.key]
+    without = searcher.fit(rest, search.fit)
+    unseen = ~rows
+    error_with = rms(without_outliers(outcome.problem.residual(search.fit.settings))[unseen])
+    error_without = rms(without_outliers(outcome.problem.residual(without.settings))[unseen])
+    rivals = searcher.rivals(search.found, effect, search.fit)
+    parameters = _estimates(search.fit)[effect.key]
+    warnings = [
+        f"{p.name} = {parameters[p.name].value:.4g} {p.unit} is outside what is plausible, "
+        f"{p.plausible[0]:.4g} to {p.plausible[1]:.4g}"
+        for p in effect.parameters
+        if not p.plausible[0] <= parameters[p.name].value <= p.plausible[1]
+    ]
+    return Finding(
+        effect=effect,
+        parameters=parameters,
+        rivals=tuple(dict.fromkeys(r.key for r in rivals)),
+        heldout_gain=1.0 - (error_with / error_without) ** 2,
+        warnings=tuple(warnings),
+    )
+
+
+def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
+    answer: dict[str, dict[str, Estimate]] = {}
+    at = 0
+    for setting in model.settings:
+        answer[setting.effect.key] = {}
+        for name, value in setting.values.items():
+            answer[setting.effect.key][name] = Estimate(value, float(model.std[at]))
+            at += 1
+    return answer
+
+
+def _stages(outcome: _Outcome, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
+    """Errors as declared, then with the found effects one after the other."""
+    label = "as declared, unknowns fitted" if base.settings else "as declared"
+    stages = [stage(outcome.problem, label, base.settings, heldout)]
+    added: list[Effect] = []
+    near = base
+    for effect in outcome.search.found:
+        added.append(effect)
+        last = len(added) == len(outcome.search.found)
+        near = outcome.search.fit if last else outcome.searcher.fit(added, near)
+        stages.append(stage(outcome.problem, f"+ {effect.key}", near.settings, heldout))
+    return tuple(stages)
+
+
+def _proposals(case: Case, outcome: _Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
+    region = case.study.workspace.region if case.study.workspace else None
+    by_key = {effect.key: effect for effect in case.candidates}
+    answer = []
+    for finding in findings:
+        rest = [e for e in outcome.search.found if e.key != finding.effect.key]
+        for rival in finding.rivals[:2]:
+            swapped = outcome.searcher.fit([*rest, by_key[rival]], outcome.search.fit)
+            names = (finding.effect.key, rival)
+            answer.append(
+                propose(
+                    case.machine,
+                    case.measured,
+                    outcome.problem.noise,
+                    region,
+                    outcome.search.fit.settings,
+                    swapped.settings,
+                    names,
+                )
+            )
+    return tuple(answer)
+
+
+def _check_size(case: Case, heldout: BoolArray) -> None:
+    measured = case.measured
+    readings = np.hstack([measured.length_m, measured.tension_N])[~heldout]
+    known = int(np.sum(~np.isnan(readings)))
+    unknown = sum(len(effect.parameters) for effect in case.given)
+    if known <= unknown + 2:
+        raise InputError(
+            [
+                Fault(
+                    str(case.measurements.file),
+                    None,
+                    "",
+                    f"{known} readings to fit, after holding some out, for {unknown} unknowns",
+                    f"at least {unknown + 3}",
+                )
+            ]
+        )
+
+
+def _check_scale(case: Case, predict: Predictor) -> None:
+    """Tell lengths in another unit by their scale; homing offsets do not come near it."""
+    if any(effect.id == "length_offset" for effect in case.given):
+        return
+    predicted: FloatArray = predict(()).length_m
+    ratio = case.measured.length_m / predicted
+    if np.isnan(ratio).all():
+        return
+    scale = float(np.nanmedian(ratio))
+    for name, factor in (("millimetres", 1e3), ("centimetres", 1e2), ("feet", 1 / 0.3048)):
+        if abs(scale / factor - 1.0) < 0.1:
+            raise InputError(
+                [
+                    Fault(
+                        str(case.measurements.file),
+                        None,
+                        "length_1_m",
+                        f"lengths are {scale:.4g} times what the poses ask for, "
+                        f"as if they were in {name}",
+                        "metres, or the unit in measurements.columns",
+                    )
+                ]
+            )

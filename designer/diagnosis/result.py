@@ -1,0 +1,253 @@
+"""What a diagnosis came to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.problem import Noise
+from designer.diagnosis.search import Step
+from designer.diagnosis.structure import Structure
+from designer.effects.effect import Effect, Readings, Setting
+from designer.machine import Machine
+from designer.measured.data import Measured
+from designer.study import Study
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A fitted value with its standard deviation."""
+
+    value: float
+    std: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Finding:
+    """An effect that the model lacked.
+
+    Parameters
+    ----------
+    effect : Effect
+        What it is.
+    parameters : mapping of str to Estimate
+        Its numbers.
+    rivals : tuple of str
+        Effects that this data cannot tell from it.
+    heldout_gain : float
+        Share of the held-out mean square that goes when it is added to the others.
+    warnings : tuple of str
+        Values that an engineer would not believe.
+    """
+
+    effect: Effect
+    parameters: Mapping[str, Estimate]
+    rivals: tuple[str, ...]
+    heldout_gain: float
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Withdrawn:
+    """An effect that fits, but not as a constant: it would have to change with a covariate."""
+
+    effect: str
+    covariate: str
+    variation: float
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A root mean square with its 95 % interval by block bootstrap."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Error:
+    """Error of one kind of reading, in SI units.
+
+    Parameters
+    ----------
+    rms : float
+        Over the rows that were fitted.
+    heldout : Interval
+        Over the rows that no fit has seen.
+    heldout_of_cable : array (n_cables,)
+        The same, cable by cable.
+    """
+
+    rms: float
+    heldout: Interval
+    heldout_of_cable: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """The model at one point of the search: as declared, then with each effect.
+
+    Parameters
+    ----------
+    label : str
+        What was added.
+    settings : tuple of Setting
+        All effects with their values.
+    length_m, tension_N : Error or None
+        None where nothing of the kind was measured.
+    """
+
+    label: str
+    settings: tuple[Setting, ...]
+    length_m: Error | None
+    tension_N: Error | None
+
+
+@dataclass(frozen=True, slots=True)
+class Outlier:
+    """A reading that no model here explains; shown, and given little weight."""
+
+    row: int
+    channel: str
+    size: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Correction:
+    """A smooth empirical correction: no physics, and not used by the design.
+
+    Parameters
+    ----------
+    covariate : str
+        Each channel is corrected by a parabola in it, fitted to the rows for fitting.
+    heldout_before, heldout_after : float
+        Root mean square over held-out rows, in units of noise.
+    """
+
+    covariate: str
+    heldout_before: float
+    heldout_after: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """Poses whose measurement would tell two rivals apart.
+
+    Parameters
+    ----------
+    found, rival : str
+        The two.
+    positions_m : array (n_poses, 3)
+        Where to measure.
+    separation : array (n_poses,)
+        Difference of what they foretell there, in units of noise, over all readings of a pose.
+    """
+
+    found: str
+    rival: str
+    positions_m: FloatArray
+    separation: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The cable that the design asks for.
+
+    Parameters
+    ----------
+    grade, size_id : str or None
+        None where no product holds.
+    diameter_m, max_tension_N : float
+        Of the product; NaN where none holds.
+    optimum_m, optimum_tension_N : float
+        Of the config's continuous family; NaN where it has no finite cable.
+    """
+
+    grade: str | None
+    size_id: str | None
+    diameter_m: float
+    max_tension_N: float
+    optimum_m: float
+    optimum_tension_N: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Diagnosis:
+    """Everything that the diagnosis report shows.
+
+    Parameters
+    ----------
+    study, machine, measured, noise
+        The problem.
+    heldout : array (n_rows,) of bool
+        Rows that no fit has seen.
+    findings : tuple of Finding
+        Effects that earned their place.
+    given : tuple of Setting
+        What was unknown from the start, with its values.
+    withdrawn : tuple of Withdrawn
+        Effects that fitted but would have to drift.
+    skipped : tuple of (effect, reason)
+        Effects that this data cannot show.
+    steps : tuple of Step
+        The search, round by round.
+    stages : tuple of Stage
+        Error at each point, the model as declared first.
+    structure_before, structure_after : Structure
+        Test for structure beyond noise.
+    residual_before, residual_after : array (n_rows, 2 n_cables)
+        In units of noise.
+    predicted : Readings
+        By the final model.
+    covariates : mapping of str to array (n_rows,)
+        What the residual was tested against.
+    outliers : tuple of Outlier
+        Readings that stand off.
+    correction : Correction or None
+        Where structure is left.
+    proposals : tuple of Proposal
+        For each pair of rivals.
+    design_before, design_after : Choice or None
+        Where the study has a workspace and a selection.
+    """
+
+    study: Study
+    machine: Machine
+    measured: Measured
+    noise: Noise
+    heldout: BoolArray
+    findings: tuple[Finding, ...]
+    given: tuple[Setting, ...]
+    withdrawn: tuple[Withdrawn, ...]
+    skipped: tuple[tuple[str, str], ...]
+    steps: tuple[Step, ...]
+    stages: tuple[Stage, ...]
+    structure_before: Structure
+    structure_after: Structure
+    residual_before: FloatArray
+    residual_after: FloatArray
+    predicted: Readings
+    covariates: Mapping[str, FloatArray]
+    outliers: tuple[Outlier, ...]
+    correction: Correction | None
+    proposals: tuple[Proposal, ...]
+    design_before: Choice | None = None
+    design_after: Choice | None = None
+
+    @property
+    def final(self) -> Stage:
+        """The model with everything that was found."""
+        return self.stages[-1]
+
+    @property
+    def settings(self) -> tuple[Setting, ...]:
+        """Found effects with their values, without those unknown from the start."""
+        found = {finding.effect.key for finding in self.findings}
+        return tuple(s for s in self.final.settings if s.effect.key in found)
+
+    @property
+    def is_unexplained(self) -> bool:
+        """Whether structure is left that no effect explains."""
+        return self.structure_after.is_present

@@ -1,0 +1,170 @@
+"""Finds out which column of a table is what to us."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from designer.errors import Fault
+from designer.measured.names import (
+    COVARIATE,
+    IGNORE,
+    POSITION,
+    ROTATION_VECTOR,
+    WIND,
+    cable_of,
+    is_rotation,
+    length_names,
+    rotation_form,
+    standard_names,
+    tension_names,
+)
+from designer.measured.table import RawColumn, Table
+from designer.nearest import did_you_mean
+from designer.study import LogColumn, Measurements, Study
+
+_MAP = "measurements.columns"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assigned:
+    """The columns of a table by what they are to us.
+
+    Parameters
+    ----------
+    table : Table
+        The whole of it.
+    ours : mapping of str to RawColumn
+        Columns that we have a name for, by that name, in its unit.
+    covariates : mapping of str to RawColumn
+        All other columns with a name, by that.
+    awaited : set of str
+        Our names of columns that the config's map looks for in vain.
+    faults : list of Fault
+        Columns that are missing, or that stand for the wrong thing.
+    notes : list of str
+        Columns that were left out, and why.
+    """
+
+    table: Table
+    ours: dict[str, RawColumn] = field(default_factory=dict)
+    covariates: dict[str, RawColumn] = field(default_factory=dict)
+    awaited: set[str] = field(default_factory=set)
+    faults: list[Fault] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def present(self, names: tuple[str, ...]) -> list[RawColumn]:
+        """Return those of our columns that there are."""
+        return [self.ours[name] for name in names if name in self.ours]
+
+    @property
+    def rotation(self) -> tuple[str, ...]:
+        """Names of the columns that give the orientation; empty for none."""
+        return next((rotation_form(name) for name in self.ours if is_rotation(name)), ())
+
+
+def assign(table: Table, study: Study, measurements: Measurements) -> Assigned:
+    """Return the table with its columns assigned by the config's map and by their names."""
+    found = Assigned(table)
+    named: dict[str, RawColumn] = {}
+    for place, column in enumerate(table.columns, start=1):
+        if column.name:
+            named.setdefault(column.name, column)
+        elif not column.is_empty:
+            found.notes.append(f"column {place} has no name and was left out")
+    for entry in measurements.columns:
+        _assign_mapped(found, named, entry, study)
+    mapped = {entry.name for entry in measurements.columns}
+    for column in named.values():
+        if column.name not in mapped:
+            _assign_by_name(found, column, study)
+    _set_half_a_wind_aside(found)
+    found.faults.extend(_missing(found, study))
+    return found
+
+
+def _assign_mapped(
+    found: Assigned, named: dict[str, RawColumn], entry: LogColumn, study: Study
+) -> None:
+    column = named.get(entry.name)
+    if column is None:
+        found.awaited.add(entry.target)
+        found.faults.append(_no_such_column(found.table, named, entry, study))
+    elif entry.target == COVARIATE:
+        found.covariates[entry.name] = column
+    elif entry.target != IGNORE:
+        found.ours[entry.target] = replace(
+            column, values=column.values * entry.scale + entry.offset
+        )
+
+
+def _no_such_column(
+    table: Table, named: dict[str, RawColumn], entry: LogColumn, study: Study
+) -> Fault:
+    problem = f"there is no such column in {table.name}"
+    expected = f"a name in its first line{did_you_mean(entry.name, named)}"
+    return study.source.fault(f"{_MAP}.{entry.name}", problem, expected)
+
+
+def _assign_by_name(found: Assigned, column: RawColumn, study: Study) -> None:
+    name, robot = column.name, study.robot
+    if name in found.ours:
+        problem = f"another column is mapped onto {name}, and this has the name already"
+        expected = f"'{name}: {IGNORE}' or '{name}: {COVARIATE}' in {_MAP}"
+        found.faults.append(found.table.fault(None, name, problem, expected))
+    elif is_rotation(name) and name in ROTATION_VECTOR and robot.is_point_mass:
+        found.notes.append(f"{name} was left out: a point mass has no orientation")
+    elif name in standard_names(robot.n_cables):
+        found.ours[name] = column
+    elif cable_of(name) is not None:
+        problem = f"there is no such cable, the robot has {robot.n_cables}"
+        expected = f"cables 1 to {robot.n_cables}; or '{name}: {IGNORE}' in {_MAP}"
+        found.faults.append(found.table.fault(None, name, problem, expected))
+    else:
+        found.covariates[name] = column
+
+
+def _set_half_a_wind_aside(found: Assigned) -> None:
+    """Take a wind without its horizontal components as covariates."""
+    present = [name for name in WIND if name in found.ours]
+    missing = [name for name in WIND[:2] if name not in found.ours]
+    if present and missing:
+        found.notes.append(f"the wind is not used as such: there is no {' and no '.join(missing)}")
+        for name in present:
+            found.covariates[name] = found.ours.pop(name)
+
+
+def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
+    lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
+    yield from _missing_of(found, POSITION)
+    if not study.robot.is_point_mass:
+        yield from _missing_rotation(found)
+    known = {*found.ours, *found.awaited}
+    if known.isdisjoint(lengths + tensions):
+        expected = f"{lengths[0]} … {lengths[-1]}, or {tensions[0]} … {tensions[-1]}, or both"
+        problem = "there is neither a column for lengths nor one for tensions"
+        yield found.table.fault(
+            None, "", problem, f"{expected}; {_MAP} says which columns they are"
+        )
+    for names in (lengths, tensions):
+        if not known.isdisjoint(names):
+            yield from _missing_of(found, names)
+
+
+def _missing_rotation(found: Assigned) -> Iterator[Fault]:
+    known = [*found.ours, *found.awaited]
+    forms = {rotation_form(name): name for name in known if is_rotation(name)}
+    if len(forms) > 1:
+        given = " and ".join(forms.values())
+        problem = f"the orientation is given in two forms, with {given}"
+        yield found.table.fault(None, "", problem, "one; the columns of the other ignored")
+        return
+    yield from _missing_of(found, next(iter(forms), ROTATION_VECTOR))
+
+
+def _missing_of(found: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:
+    for name in names:
+        if name not in found.ours and name not in found.awaited:
+            hint = did_you_mean(name, found.covariates)
+            expected = f"a column of this name, or one mapped onto it in {_MAP}{hint}"
+            yield found.table.fault(None, name, "is missing", expected)

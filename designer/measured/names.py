@@ -1,0 +1,116 @@
+"""Names that measured data go by: our columns, and what may be unknown from the start."""
+
+from __future__ import annotations
+
+import re
+
+from designer.effect_names import EFFECTS, TIME
+from designer.nearest import did_you_mean
+from designer.units import ANGLE, FORCE, LENGTH, NUMBER, Dimension
+
+TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
+SPEED = Dimension("a speed", "m/s", "3 m/s")
+
+TIME_NAME = "time_s"
+TEMPERATURE_NAME = "temperature_C"
+POSITION = ("x_m", "y_m", "z_m")
+ROTATION_VECTOR = ("rx_rad", "ry_rad", "rz_rad")
+QUATERNION = ("quaternion_w", "quaternion_x", "quaternion_y", "quaternion_z")
+WIND = ("wind_x_m_per_s", "wind_y_m_per_s", "wind_z_m_per_s")
+
+IGNORE = "ignore"
+COVARIATE = "covariate"
+"""What a log's column may be that is none of ours."""
+
+UNKNOWNS = (*EFFECTS, "anchors")
+"""What may be fitted from the start: every effect, and all exit points together."""
+
+_READING = re.compile(r"length_(?P<length>[0-9]{1,9})_m|tension_(?P<tension>[0-9]{1,9})_N")
+_EULER = re.compile(r"euler_(?:intrinsic|extrinsic)_(?P<axes>[xyz]{3})_[123]")
+_MOST_CABLES = 64
+_COMMON_EULER = tuple(
+    f"euler_{way}_{axes}_{number}"
+    for way in ("intrinsic", "extrinsic")
+    for axes in ("xyz", "zyx", "zxz", "zyz")
+    for number in (1, 2, 3)
+)
+_DIMENSIONS: dict[str, Dimension] = {
+    TIME_NAME: TIME,
+    TEMPERATURE_NAME: TEMPERATURE,
+    **dict.fromkeys(POSITION, LENGTH),
+    **dict.fromkeys(ROTATION_VECTOR, ANGLE),
+    **dict.fromkeys(QUATERNION, NUMBER),
+    **dict.fromkeys(WIND, SPEED),
+}
+
+
+def length_names(n_cables: int) -> tuple[str, ...]:
+    """Return the names of the length columns of so many cables."""
+    return tuple(f"length_{cable}_m" for cable in range(1, n_cables + 1))
+
+
+def tension_names(n_cables: int) -> tuple[str, ...]:
+    """Return the names of the tension columns of so many cables."""
+    return tuple(f"tension_{cable}_N" for cable in range(1, n_cables + 1))
+
+
+def standard_names(n_cables: int) -> frozenset[str]:
+    """Return the names that a column has without any map."""
+    fixed = (TIME_NAME, TEMPERATURE_NAME, *POSITION, *ROTATION_VECTOR, *WIND)
+    return frozenset((*fixed, *length_names(n_cables), *tension_names(n_cables)))
+
+
+def cable_of(name: str) -> int | None:
+    """Return the number of the cable that a length or tension belongs to; None for others."""
+    found = _READING.fullmatch(name)
+    return None if found is None else int(found["length"] or found["tension"])
+
+
+def is_rotation(name: str) -> bool:
+    """Return whether a column of ours is part of the platform's orientation."""
+    return name in ROTATION_VECTOR or name in QUATERNION or name.startswith("euler_")
+
+
+def rotation_form(name: str) -> tuple[str, ...]:
+    """Return the columns that give an orientation together with this one."""
+    if name in QUATERNION:
+        return QUATERNION
+    if name in ROTATION_VECTOR:
+        return ROTATION_VECTOR
+    return tuple(f"{name[:-1]}{number}" for number in (1, 2, 3))
+
+
+def dimension_of(name: str) -> Dimension | None:
+    """Return what kind of quantity a column of ours holds; None where there is no such column."""
+    if name in _DIMENSIONS:
+        return _DIMENSIONS[name]
+    cable = cable_of(name)
+    if cable is not None and str(cable) == name.split("_")[1] and cable > 0:
+        return LENGTH if name.startswith("length") else FORCE
+    return ANGLE if _is_euler_angle(name) else None
+
+
+def _is_euler_angle(name: str) -> bool:
+    found = _EULER.fullmatch(name)
+    if found is None:
+        return False
+    axes = found["axes"]
+    return bool(axes[0] != axes[1] != axes[2])
+
+
+def column_hint(name: str) -> str:
+    """Return a hint at the column of ours whose name is most like this one."""
+    known = (
+        *_DIMENSIONS,
+        *length_names(_MOST_CABLES),
+        *tension_names(_MOST_CABLES),
+        *_COMMON_EULER,
+        IGNORE,
+        COVARIATE,
+    )
+    return did_you_mean(name, known)
+
+
+def unknown_hint(given: object) -> str:
+    """Return what may stand in ``measurements.unknown``, with the nearest name to this one."""
+    return f"anchors, or an effect: {', '.join(EFFECTS)}{did_you_mean(str(given), UNKNOWNS)}"

@@ -1,0 +1,137 @@
+"""From the log of a built machine to measured poses, lengths and tensions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray, frozen_array
+from designer.errors import Fault, InputError
+from designer.measured.assign import Assigned, assign
+from designer.measured.data import Measured
+from designer.measured.names import POSITION, length_names, tension_names
+from designer.measured.orientation import orientation, quaternion_faults
+from designer.measured.rows import Rows, cell_faults, usable_rows
+from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
+from designer.measured.table import Table, read_table
+from designer.robot import Poses
+from designer.study import Measurements, Study
+
+MOST_FAULTS = 100
+_SAME_PLACE_M = 1e-6
+_SAME_ROTATION = 1e-6
+
+
+def read_measured(study: Study) -> Measured:
+    """Return what was measured on the machine that the study describes.
+
+    Columns go by the names of `designer.measured.names`; the config's ``measurements.columns``
+    translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing.
+
+    Parameters
+    ----------
+    study : Study
+        With ``measurements``.
+
+    Raises
+    ------
+    InputError
+        If the config names no measurements or the file is not as it should be; carries every
+        fault, a hundred at most.
+    """
+    measurements = _measurements(study)
+    table = _table(study, measurements)
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers without bounds become faults
+        found = assign(table, study, measurements)
+        rows = usable_rows(found, study.robot.n_cables, settled=measurements.settled)
+        _refuse([*_head_and_cells(found), *rows.faults, *quaternion_faults(found, rows.kept)])
+    poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
+    _refuse(_one_pose(table, poses))
+    return _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
+
+
+def _refuse(faults: list[Fault]) -> None:
+    if faults:
+        raise InputError(faults[:MOST_FAULTS])
+
+
+def _head_and_cells(found: Assigned) -> list[Fault]:
+    return [*found.table.faults, *found.faults, *cell_faults(found)]
+
+
+def _measurements(study: Study) -> Measurements:
+    if study.measurements is None:
+        expected = "a mapping with the file of measured data and the cable on the machine"
+        raise InputError([study.source.fault("measurements", "is missing", expected)])
+    return study.measurements
+
+
+def _table(study: Study, measurements: Measurements) -> Table:
+    path = measurements.file
+    try:
+        file = path.open("rb")
+    except FileNotFoundError:
+        problem = f"there is no file {path}"
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "its name is not valid"
+        problem = f"{path} cannot be read: {reason.lower()}"
+    else:
+        with file:
+            return read_table(file, str(path))
+    expected = "a CSV file, relative to this file"
+    raise InputError([study.source.fault("measurements.file", problem, expected)])
+
+
+def _poses(found: Assigned, kept: BoolArray, *, is_point_mass: bool) -> Poses:
+    position = _stacked(found, POSITION, kept)
+    if is_point_mass:
+        return Poses.at(position)
+    values = _stacked(found, found.rotation, kept)
+    return Poses(frozen_array(position), frozen_array(orientation(found.rotation, values)))
+
+
+def _stacked(found: Assigned, names: tuple[str, ...], kept: BoolArray) -> FloatArray:
+    """Return columns side by side (n_kept, n_names), NaN for those that there are not."""
+    empty = np.full(found.table.n_rows, np.nan)
+    columns = [found.ours[name].values if name in found.ours else empty for name in names]
+    return np.stack(columns, axis=1)[kept]
+
+
+def _one_pose(table: Table, poses: Poses) -> list[Fault]:
+    has_moved = np.ptp(poses.position_m, axis=0).max() > _SAME_PLACE_M
+    has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > _SAME_ROTATION
+    if has_moved or has_turned:
+        return []
+    problem = "all rows are at one pose, so nothing can be told apart"
+    return [Fault(table.name, None, "", problem, "different poses")]
+
+
+def _measured(
+    found: Assigned, rows: Rows, poses: Poses, n_cables: int, *, settled: bool
+) -> Measured:
+    notes = [*found.notes, *rows.notes]
+    kept = rows.kept
+    lengths, tensions = (names(n_cables) for names in (length_names, tension_names))
+    notes += _empty_readings(found, kept, lengths + tensions)
+    row_numbers = np.flatnonzero(kept).astype(np.int64) + 1
+    row_numbers.setflags(write=False)
+    time = time_s(found, kept, notes)
+    return Measured(
+        poses=poses,
+        length_m=frozen_array(_stacked(found, lengths, kept)),
+        tension_N=frozen_array(_stacked(found, tensions, kept)),
+        settled=settled,
+        time_s=time,
+        temperature_C=temperature_C(found, kept, time, notes),
+        wind_m_per_s=wind_m_per_s(found, kept, time, notes),
+        covariates=covariates(found, kept, notes),
+        row_numbers=row_numbers,
+        notes=tuple(notes),
+    )
+
+
+def _empty_readings(found: Assigned, kept: BoolArray, names: tuple[str, ...]) -> list[str]:
+    return [
+        f"{column.name} has no reading"
+        for column in found.present(names)
+        if np.isnan(column.values[kept]).all()
+    ]

@@ -1,0 +1,171 @@
+"""Which rows of a table can be used, and what is wrong in the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, IntArray
+from designer.errors import Fault
+from designer.measured.assign import Assigned
+from designer.measured.faults import first_few, row_list
+from designer.measured.names import POSITION, TIME_NAME, length_names, tension_names
+from designer.measured.table import RawColumn
+from designer.units import describe
+
+FEWEST_ROWS = 8
+_NUMBER = "a number, or nothing where there is none"
+_FINITE = "a finite number, or nothing where there is none"
+_LARGEST_NUMBER = 1e30
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rows:
+    """The rows of a table that can be used.
+
+    Parameters
+    ----------
+    kept : array (n_rows,) of bool
+        Those with a pose and at least one reading.
+    faults : list of Fault
+        Rows with half a pose, without their time, or out of order; too few rows.
+    notes : list of str
+        Rows that were left out, and why.
+    """
+
+    kept: BoolArray
+    faults: list[Fault]
+    notes: list[str]
+
+
+def is_numeric(column: RawColumn) -> bool:
+    """Return whether a column holds numbers in the main."""
+    return column.n_numbers > 0 and column.n_numbers >= column.n_texts
+
+
+def cell_faults(found: Assigned) -> list[Fault]:
+    """Return what is wrong in single cells: texts and numbers beyond all bounds."""
+    columns = [*found.ours.values(), *(c for c in found.covariates.values() if is_numeric(c))]
+    return [*_text_faults(found, columns), *_boundless_faults(found, columns)]
+
+
+def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
+    """Return which rows have a pose and a reading.
+
+    Parameters
+    ----------
+    found : Assigned
+        The table with its columns assigned; some may be missing, which is not told again.
+    n_cables : int
+        Number of cables of the robot.
+    settled : bool
+        Whether the rows are poses at rest, which may have the same time.
+    """
+    has_pose, faults = _with_pose(found)
+    has_reading = _with_reading(found, n_cables)
+    kept = has_pose & has_reading
+    notes = [
+        f"{row_list((np.flatnonzero(left_out) + 1).tolist())} without {what} left out"
+        for left_out, what in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
+        if left_out.any()
+    ]
+    faults += [*_missing_times(found, kept), *_times_out_of_order(found, kept, settled=settled)]
+    if kept.sum() < FEWEST_ROWS:
+        faults.append(_too_few(found, int(kept.sum())))
+    return Rows(kept, faults, notes)
+
+
+def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
+    faults = (
+        found.table.fault(cell.row, column.name, f"has the text {describe(cell.text)}", _NUMBER)
+        for column in columns
+        for cell in column.texts
+    )
+    total = sum(column.n_texts for column in columns)
+    return first_few(faults, total, found.table.name, "cells with a text")
+
+
+def _boundless_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
+    places = [(one, np.flatnonzero(np.abs(one.values) > _LARGEST_NUMBER)) for one in columns]
+    faults = (
+        found.table.fault(int(row), column.name, f"has the value {column.values[row]:g}", _FINITE)
+        for column, rows in places
+        for row in rows
+    )
+    total = sum(len(rows) for _, rows in places)
+    return first_few(faults, total, found.table.name, "infinite values")
+
+
+def _row_faults(
+    found: Assigned, places: Iterable[tuple[RawColumn, IntArray]], problem: str, expected: str
+) -> Iterator[Fault]:
+    for column, rows in places:
+        for row in rows:
+            yield found.table.fault(int(row), column.name, problem, expected)
+
+
+def _with_reading(found: Assigned, n_cables: int) -> BoolArray:
+    readings = found.present(length_names(n_cables) + tension_names(n_cables))
+    if not readings:
+        return np.ones(found.table.n_rows, dtype=np.bool_)
+    missing = np.array([np.isnan(column.values) for column in readings])
+    return np.asarray(~missing.all(axis=0))
+
+
+def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
+    """Return which rows have a pose, and the faults of those that have half of one."""
+    columns = found.present((*POSITION, *found.rotation)) if found.table.n_rows else []
+    empty = [column for column in columns if column.is_empty]
+    faults = [found.table.fault(None, one.name, "is empty", "a pose in each row") for one in empty]
+    filled = [column for column in columns if not column.is_empty and not column.n_texts]
+    if not filled:
+        return np.ones(found.table.n_rows, dtype=np.bool_), faults
+    missing = np.array([np.isnan(column.values) for column in filled])
+    has_pose = np.asarray(~missing.all(axis=0))
+    places = [
+        (column, np.flatnonzero(is_missing & has_pose))
+        for column, is_missing in zip(filled, missing, strict=True)
+    ]
+    halves = _row_faults(found, places, "has half a pose, this is missing", "all of it, or nothing")
+    total = sum(len(rows) for _, rows in places)
+    return has_pose, faults + first_few(halves, total, found.table.name, "missing values")
+
+
+def _missing_times(found: Assigned, kept: BoolArray) -> list[Fault]:
+    time = found.ours.get(TIME_NAME)
+    if time is None or time.is_empty or time.n_texts:
+        return []
+    rows = np.flatnonzero(np.isnan(time.values) & kept)
+    faults = _row_faults(found, [(time, rows)], "has no time", "a time in each row, or in none")
+    return first_few(faults, len(rows), found.table.name, "rows without a time")
+
+
+def _times_out_of_order(found: Assigned, kept: BoolArray, *, settled: bool) -> list[Fault]:
+    time = found.ours.get(TIME_NAME)
+    if time is None:
+        return []
+    rows = np.flatnonzero(kept & np.isfinite(time.values))
+    if not settled and len(rows) and np.ptp(time.values[rows]) == 0.0:
+        expected = "a time that grows, or no such column"
+        return [found.table.fault(None, time.name, "is the same in all rows", expected)]
+    step = np.diff(time.values[rows])
+    places = np.flatnonzero(step < 0.0 if settled else step <= 0.0)
+    faults = (_out_of_order(found, time, *rows[place : place + 2]) for place in places)
+    return first_few(faults, len(places), found.table.name, "rows out of order")
+
+
+def _out_of_order(found: Assigned, time: RawColumn, before: int, row: int) -> Fault:
+    at, earlier = time.values[row], time.values[before]
+    how = "the same time as" if at == earlier else "before"
+    problem = f"has {at:.10g} s, {how} row {before + 1}"
+    if at != earlier:
+        problem += f" with {earlier:.10g} s"
+    return found.table.fault(int(row), time.name, problem, "rows in the order of their time")
+
+
+def _too_few(found: Assigned, count: int) -> Fault:
+    total = found.table.n_rows
+    problem = f"{count} of {total} rows have a pose and a reading" if total else "there are no rows"
+    return Fault(found.table.name, None, "", problem, f"at least {FEWEST_ROWS} rows")

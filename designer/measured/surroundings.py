@@ -1,0 +1,103 @@
+"""Time, temperature and wind from the columns of a log, and what else was recorded."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray, frozen_array
+from designer.measured.assign import Assigned
+from designer.measured.names import TEMPERATURE_NAME, TIME_NAME, WIND
+from designer.measured.rows import is_numeric
+
+
+def time_s(found: Assigned, kept: BoolArray, notes: list[str]) -> FloatArray | None:
+    """Return the time of each row [s]; None where it is not recorded or always the same."""
+    column = found.ours.get(TIME_NAME)
+    return None if column is None else _varying(column.values[kept], column.name, notes)
+
+
+def temperature_C(
+    found: Assigned, kept: BoolArray, time: FloatArray | None, notes: list[str]
+) -> FloatArray | None:
+    """Return the temperature in each row [°C]; None where not recorded or always the same."""
+    column = found.ours.get(TEMPERATURE_NAME)
+    if column is None:
+        return None
+    values = _varying(column.values[kept], column.name, notes)
+    return None if values is None else _filled(values, time, column.name, notes)
+
+
+def wind_m_per_s(
+    found: Assigned, kept: BoolArray, time: FloatArray | None, notes: list[str]
+) -> FloatArray | None:
+    """Return the wind in each row (n_rows, 3) [m/s]; None where not recorded or always the same."""
+    present = {name: found.ours[name] for name in WIND if name in found.ours}
+    if not present:
+        return None
+    wind = np.zeros((int(kept.sum()), 3))
+    for axis, name in enumerate(WIND):
+        if name in present:
+            wind[:, axis] = present[name].values[kept]
+        else:
+            notes.append(f"the wind is taken as horizontal: there is no {name}")
+    told = ", ".join(column.name for column in present.values())
+    is_empty = np.isnan(wind).all(axis=0).any()
+    if is_empty or all(_is_constant(component) for component in wind.T):
+        notes.append(f"{told} left out, {'one is empty' if is_empty else 'the same in all rows'}")
+        return None
+    filled = [_filled(wind[:, axis], time, name, notes) for axis, name in enumerate(WIND)]
+    return frozen_array(np.stack(filled, axis=1))
+
+
+def covariates(found: Assigned, kept: BoolArray, notes: list[str]) -> dict[str, FloatArray]:
+    """Return every other column of numbers that differ from row to row."""
+    reasons: dict[str, list[str]] = {}
+    used: dict[str, FloatArray] = {}
+    for name, column in found.covariates.items():
+        values = column.values[kept]
+        reason = _reason(values, is_text=not is_numeric(column) and not column.is_empty)
+        if reason:
+            reasons.setdefault(reason, []).append(name)
+        else:
+            used[name] = frozen_array(values)
+    notes += [f"left out, {reason}: {', '.join(names)}" for reason, names in reasons.items()]
+    return used
+
+
+def _reason(values: FloatArray, *, is_text: bool) -> str:
+    """Return why a column is of no use; empty where it is."""
+    if is_text:
+        return "since they hold text"
+    if np.isnan(values).all():
+        return "since they are empty"
+    return "since they are the same in all rows" if _is_constant(values) else ""
+
+
+def _is_constant(values: FloatArray) -> bool:
+    present = values[~np.isnan(values)]
+    return len(present) == 0 or bool(np.ptp(present) == 0.0)
+
+
+def _varying(values: FloatArray, name: str, notes: list[str]) -> FloatArray | None:
+    if _is_constant(values):
+        notes.append(_left_out(name, values))
+        return None
+    return frozen_array(values)
+
+
+def _left_out(name: str, values: FloatArray) -> str:
+    is_empty = np.isnan(values).all()
+    return f"{name} left out, {'empty' if is_empty else 'the same in all rows'}"
+
+
+def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[str]) -> FloatArray:
+    """Return the values with gaps bridged in proportion to the time, else to the row."""
+    missing = np.isnan(values)
+    if not missing.any():
+        return values
+    place = np.arange(float(len(values))) if time is None else time
+    known = ~missing
+    count = int(missing.sum())
+    rows = f"{count} row" + "s" * (count != 1)
+    notes.append(f"{name} is missing in {rows} and taken from those around")
+    return frozen_array(np.interp(place, place[known], values[known]))

@@ -1,0 +1,225 @@
+"""Reads a CSV file of any origin into columns of numbers, within bounds of size."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import BinaryIO, NoReturn
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.errors import Fault, InputError
+from designer.measured.cells import MOST_ALIKE, TextCell, is_number, read_cells
+from designer.measured.faults import first_few
+
+LARGEST_FILE_BYTES = 200_000_000
+_LONGEST_LINE_BYTES = 1_000_000
+_ROWS_AT_ONCE = 4096
+_CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
+_EXPECTED = "a CSV file: names of columns in its first line, numbers below"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawColumn:
+    """One column as the file has it.
+
+    Parameters
+    ----------
+    name : str
+        Its name; empty where the first line has none.
+    values : array (n_rows,)
+        Its numbers; NaN where there is nothing, or a text.
+    n_texts : int
+        How many cells hold a text.
+    texts : tuple of TextCell
+        The first few of those.
+    """
+
+    name: str
+    values: FloatArray
+    n_texts: int = 0
+    texts: tuple[TextCell, ...] = ()
+
+    @property
+    def n_numbers(self) -> int:
+        """How many cells hold a number."""
+        return int(np.count_nonzero(~np.isnan(self.values)))
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no cell holds anything."""
+        return self.n_texts == 0 and self.n_numbers == 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """A CSV file.
+
+    Parameters
+    ----------
+    name : str
+        The file, for messages.
+    columns : tuple of RawColumn
+        In the order of the file.
+    lines : array (n_rows,)
+        Line of each row in the file, from 1.
+    faults : tuple of Fault
+        Rows of another width, which are left out, and names that stand twice.
+    """
+
+    name: str
+    columns: tuple[RawColumn, ...]
+    lines: IntArray
+    faults: tuple[Fault, ...] = ()
+
+    @property
+    def n_rows(self) -> int:
+        """Number of rows below the head."""
+        return len(self.lines)
+
+    def fault(self, row: int | None, column: str, problem: str, expected: str = "") -> Fault:
+        """Return a fault in a row, counted from 0; in the head for None."""
+        line = 1 if row is None else int(self.lines[row])
+        where = "" if row is None else f"row {row + 1} "
+        return Fault(self.name, line, column, f"{where}{problem}", expected)
+
+
+def read_table(file: BinaryIO, name: str) -> Table:
+    """Return the table in an open file, which messages call ``name``.
+
+    Raises
+    ------
+    InputError
+        If it is too large, is no text in UTF-8, is empty, has no head, or is no CSV.
+    """
+    rows = _rows(_lines(file, name), name)
+    body = _Body(name, _head(rows, name))
+    while block := list(islice(rows, _ROWS_AT_ONCE)):
+        body.add(block)
+    return body.table()
+
+
+def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
+    raise InputError([Fault(name, line, "", problem, expected)])
+
+
+def _lines(file: BinaryIO, name: str) -> Iterator[str]:
+    """Yield the lines one by one, so that neither size nor an endless file fills the memory."""
+    size = 0
+    for number, raw in enumerate(iter(lambda: file.readline(_LONGEST_LINE_BYTES), b""), start=1):
+        size += len(raw)
+        if size > LARGEST_FILE_BYTES:
+            limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+            _refuse(name, None, "the file is too large", limit)
+        yield _decoded(raw, name, number)
+
+
+def _decoded(raw: bytes, name: str, number: int) -> str:
+    try:
+        text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
+    except UnicodeDecodeError:
+        _refuse(name, number, "this is not text in UTF-8")
+    if _CONTROL_CODE.search(text):
+        _refuse(name, number, "this is a binary file")
+    if len(raw) == _LONGEST_LINE_BYTES:
+        _refuse(name, number, "this line is too long")
+    return text
+
+
+def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield each row that is not blank, with the line where it starts."""
+    reader = csv.reader(lines)
+    while True:
+        line = reader.line_num + 1
+        try:
+            cells = next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            _refuse(name, line, f"this is not valid CSV: {error}")
+        if len(cells) > 1 or "".join(cells).strip():
+            yield line, cells
+
+
+def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
+    line, cells = next(rows, (1, []))
+    names = [cell.strip() for cell in cells]
+    if not names:
+        _refuse(name, None, "the file is empty")
+    if all(is_number(cell) for cell in names):
+        _refuse(name, line, "the first line holds numbers", "the names of the columns")
+    for mark, called in ((";", "semicolons"), ("\t", "tabs")):
+        if len(names) == 1 and mark in names[0]:
+            _refuse(name, line, f"the columns are separated by {called}", "by commas")
+    return names
+
+
+@dataclass(slots=True)
+class _Filling:
+    """A column that grows block by block."""
+
+    blocks: list[FloatArray] = field(default_factory=list)
+    n_texts: int = 0
+    texts: list[TextCell] = field(default_factory=list)
+
+    def add(self, cells: Sequence[str], first_row: int) -> None:
+        values, texts = read_cells(cells, first_row)
+        self.blocks.append(values)
+        self.n_texts += len(texts)
+        self.texts += texts[: MOST_ALIKE - len(self.texts)]
+
+    def column(self, name: str) -> RawColumn:
+        values = np.concatenate(self.blocks) if self.blocks else np.empty(0)
+        return RawColumn(name, values, self.n_texts, tuple(self.texts))
+
+
+class _Body:
+    """The rows below the head."""
+
+    def __init__(self, name: str, names: list[str]) -> None:
+        self._name = name
+        self._names = names
+        self._columns = [_Filling() for _ in names]
+        self._lines: list[int] = []
+        self._misfits: list[Fault] = []
+        self._n_misfits = 0
+
+    def add(self, block: list[tuple[int, list[str]]]) -> None:
+        """Take in rows; those of another width stay as rows without anything in them."""
+        width = len(self._names)
+        first_row = len(self._lines)
+        nothing = [""] * width
+        kept = [cells if len(cells) == width else nothing for _, cells in block]
+        for place, (line, cells) in enumerate(block, start=first_row):
+            if len(cells) != width:
+                self._take_misfit(place, line, len(cells))
+        self._lines += [line for line, _ in block]
+        for filling, column in zip(self._columns, zip(*kept, strict=True), strict=True):
+            filling.add(column, first_row)
+
+    def _take_misfit(self, row: int, line: int, width: int) -> None:
+        self._n_misfits += 1
+        if len(self._misfits) < MOST_ALIKE:
+            problem = f"row {row + 1} has {width} value" + "s" * (width != 1)
+            expected = f"{len(self._names)}, as the first line has names"
+            self._misfits.append(Fault(self._name, line, "", problem, expected))
+
+    def table(self) -> Table:
+        columns = tuple(
+            filling.column(name) for name, filling in zip(self._names, self._columns, strict=True)
+        )
+        lines = np.array(self._lines, dtype=np.int64)
+        misfits = first_few(self._misfits, self._n_misfits, self._name, "rows of another width")
+        return Table(self._name, columns, lines, (*self._repeated_names(), *misfits))
+
+    def _repeated_names(self) -> Iterator[Fault]:
+        places: dict[str, int] = {}
+        for place, name in enumerate(self._names, start=1):
+            if name and name in places:
+                problem = f"columns {places[name]} and {place} have the same name"
+                yield Fault(self._name, 1, name, problem, "a name for each column")
+            places.setdefault(name, place)

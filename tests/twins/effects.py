@@ -1,0 +1,275 @@
+"""Effects on a twin: changes of the machine, and changes of what its instruments read.
+
+Ids and parameters are those of the measured-data contract, cables counted from 1. Below them come
+effects that the contract does not know. Both dicts are applied in the order in which they stand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from twins.physics import Equilibrium, Machine, solve
+from twins.robots import TwinRobot
+
+AIR_KG_PER_M3 = 1.225
+
+Parameters = dict[str, float]
+Effects = dict[str, Parameters]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Where the platform is and what surrounds it, one value a row.
+
+    Parameters
+    ----------
+    time_s, temperature_C : array (rows,)
+    position_m, rotation_vector_rad, wind_m_per_s : array (rows, 3)
+    motion : function or None
+        Position and rotation vector at any times; None for settled poses.
+    """
+
+    time_s: np.ndarray
+    position_m: np.ndarray
+    rotation_vector_rad: np.ndarray
+    temperature_C: np.ndarray
+    wind_m_per_s: np.ndarray
+    motion: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
+
+    @property
+    def progress(self) -> np.ndarray:
+        """Time over the duration of the campaign (rows,)."""
+        return self.time_s / self.time_s[-1]
+
+    def earlier(self, offset_s: float) -> Scene:
+        """Return the poses of ``offset_s`` ago, in the surroundings of now."""
+        if self.motion is None:
+            return self
+        position, turn = self.motion(self.time_s - offset_s)
+        return replace(self, position_m=position, rotation_vector_rad=turn)
+
+
+def predict(robot: TwinRobot, effects: Effects, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return noise-free length [m] and tension [N] readings (rows, cables)."""
+    unknown = set(effects) - set(MACHINE) - set(READING)
+    if unknown:
+        raise KeyError(f"no such effect: {sorted(unknown)}")
+    now = _equilibrium(robot, effects, scene)
+    lagged = now
+    if "clock_offset" in effects:
+        lagged = _equilibrium(robot, effects, scene.earlier(effects["clock_offset"]["offset_s"]))
+    readings = Readings(lagged.length_m, now.exit_tension_N, now.length_m, robot)
+    for name, change in READING.items():
+        if name in effects:
+            readings = change(readings, scene, effects[name])
+    return readings.length_m, readings.tension_N
+
+
+def _equilibrium(robot: TwinRobot, effects: Effects, scene: Scene) -> Equilibrium:
+    machine = robot.machine()
+    for name, change in MACHINE.items():
+        if name in effects:
+            machine = change(machine, scene, effects[name])
+    turn = Rotation.from_rotvec(scene.rotation_vector_rad).as_matrix()
+    return solve(machine, scene.position_m, turn)
+
+
+# --- the machine ---------------------------------------------------------------------------------
+
+
+def _pulley_radius(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, pulley_radius_m=_each(machine, p["radius_m"]))
+
+
+def _elastic_modulus(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, stiffness_N=machine.stiffness_N * p["scale"])
+
+
+def _linear_mass(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, linear_mass=machine.linear_mass * p["scale"])
+
+
+def _platform_mass(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, mass_kg=machine.mass_kg + p["offset_kg"])
+
+
+def _centre_of_mass_offset(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, centre_m=machine.centre_m + _vector(p))
+
+
+def _anchor_offset(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    exit_m = machine.exit_m.copy()
+    exit_m[:, int(p["cable"]) - 1] += _vector(p)
+    return replace(machine, exit_m=exit_m)
+
+
+def _wind_drag(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    speed = np.linalg.norm(scene.wind_m_per_s, axis=1, keepdims=True)
+    drag = 0.5 * AIR_KG_PER_M3 * speed * scene.wind_m_per_s * p["drag_area_m2"]
+    return replace(machine, force_N=machine.force_N + drag)
+
+
+def _base_tilt(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    # A frame vector v is R v in the upright frame, so gravity in the frame is Rᵀ g.
+    upright = Rotation.from_rotvec([p["rx_rad"], p["ry_rad"], 0.0])
+    return replace(machine, gravity=upright.inv().apply(machine.gravity))
+
+
+def _bending_stiffness(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, bending_N_m2=_each(machine, p["flexural_rigidity_N_m2"]))
+
+
+def _tower_settles(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    """One exit point sinks: steadily, or with ``relaxation`` × duration as time constant."""
+    share = scene.progress
+    if p.get("relaxation"):
+        share = 1 - np.exp(-share / p["relaxation"])
+    exit_m = np.repeat(machine.exit_m[:1], len(share), axis=0)
+    exit_m[:, int(p["cable"]) - 1, 2] -= p["depth_m"] * share
+    return replace(machine, exit_m=exit_m)
+
+
+def _mast_bending(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, mast_m_per_N=_each(machine, p["compliance_m_per_N"]))
+
+
+def _cable_mass_drift(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    """Mass per length grows to 1 + gain times its value as cables soak; or swings with a period."""
+    share = scene.progress
+    if p.get("period_s"):
+        share = np.sin(2 * np.pi * scene.time_s / p["period_s"])
+    return replace(machine, linear_mass=machine.linear_mass * (1 + p["gain"] * share[:, None]))
+
+
+def _nonlinear_stiffness(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+    return replace(machine, toe_strain=p["toe_strain"], toe_tension_N=p["toe_tension_N"])
+
+
+MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
+    "pulley_radius": _pulley_radius,
+    "elastic_modulus": _elastic_modulus,
+    "linear_mass": _linear_mass,
+    "platform_mass": _platform_mass,
+    "centre_of_mass_offset": _centre_of_mass_offset,
+    "anchor_offset": _anchor_offset,
+    "wind_drag": _wind_drag,
+    "base_tilt": _base_tilt,
+    "bending_stiffness": _bending_stiffness,
+    "tower_settles": _tower_settles,
+    "mast_bending": _mast_bending,
+    "cable_mass_drift": _cable_mass_drift,
+    "nonlinear_stiffness": _nonlinear_stiffness,
+}
+
+
+# --- the instruments -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What the instruments read so far, beside the true lengths of now (rows, cables)."""
+
+    length_m: np.ndarray
+    tension_N: np.ndarray
+    true_length_m: np.ndarray
+    robot: TwinRobot
+
+
+def _thermal_expansion(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    growth = 1 + p["coefficient_per_K"] * (scene.temperature_C - 20.0)
+    return replace(readings, length_m=readings.length_m / growth[:, None])
+
+
+def _creep(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    growth = 1 + p["strain_per_decade"] * np.log10(1 + scene.time_s / p["onset_s"])
+    return replace(readings, length_m=readings.length_m / growth[:, None])
+
+
+def _drum_layering(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """The winch counts turns: d(wound) = (1 + gain × wound) d(reading), from the homing pose."""
+    gain = p["radius_gain_per_m"]
+    wound = readings.robot.reference_length_m - readings.length_m
+    counted = np.log1p(gain * wound) / gain if gain else wound
+    return replace(readings, length_m=readings.robot.reference_length_m - counted)
+
+
+def _drum_scale(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return replace(readings, length_m=readings.length_m * p["scale"])
+
+
+def _length_offset(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return replace(readings, length_m=readings.length_m + _per_cable(p, "m"))
+
+
+def _encoder_backlash(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    """The reading follows the length only at the end of a play of ``width_m``."""
+    lower = readings.length_m - p["width_m"] / 2
+    upper = readings.length_m + p["width_m"] / 2
+    reading = readings.length_m.copy()
+    for row in range(1, len(reading)):
+        reading[row] = np.clip(reading[row - 1], lower[row], upper[row])
+    return replace(readings, length_m=reading)
+
+
+def _pulley_friction(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    length = readings.true_length_m
+    direction = np.sign(np.diff(length, axis=0, prepend=length[:1]))
+    factor = np.exp(-p["coefficient"] * direction)
+    return replace(readings, tension_N=readings.tension_N * factor)
+
+
+def _tension_gain(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    tension = readings.tension_N.copy()
+    tension[:, int(p["cable"]) - 1] *= p["gain"]
+    return replace(readings, tension_N=tension)
+
+
+def _tension_bias(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return replace(readings, tension_N=readings.tension_N + _per_cable(p, "N"))
+
+
+def _clock_offset(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    return readings  # already in: `predict` takes the lengths from the earlier scene
+
+
+READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
+    "clock_offset": _clock_offset,
+    "thermal_expansion": _thermal_expansion,
+    "creep": _creep,
+    "drum_layering": _drum_layering,
+    "drum_scale": _drum_scale,
+    "length_offset": _length_offset,
+    "encoder_backlash": _encoder_backlash,
+    "pulley_friction": _pulley_friction,
+    "tension_gain": _tension_gain,
+    "tension_bias": _tension_bias,
+}
+
+UNLISTED = (
+    "tower_settles",
+    "mast_bending",
+    "cable_mass_drift",
+    "nonlinear_stiffness",
+    "encoder_backlash",
+)
+"""Effects that the contract does not know."""
+
+LISTED = tuple(name for name in [*MACHINE, *READING] if name not in UNLISTED)
+"""Effects of the contract."""
+
+
+def _vector(p: Parameters) -> np.ndarray:
+    return np.array([p["x_m"], p["y_m"], p["z_m"]])
+
+
+def _per_cable(p: Parameters, unit: str) -> np.ndarray:
+    """``offset_1_unit``, ``offset_2_unit`` … in order."""
+    return np.array([p[f"offset_{k}_{unit}"] for k in range(1, len(p) + 1)])
+
+
+def _each(machine: Machine, value: float) -> np.ndarray:
+    return np.full((1, machine.exit_m.shape[1]), value)
