@@ -94,15 +94,15 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
     yaml = YAML()
     yaml.width = 100
     document = yaml.load(source.read_text(encoding="utf-8-sig"))
-    document["effects"] = _effects(declared_by(diagnosis))
+    document["effects"] = effects_table(declared_by(diagnosis))
     _move_paths(document, source.parent, folder)
     text = io.StringIO()
     yaml.dump(document, text)
     return text.getvalue()
 
 
-def _effects(declared: tuple[DeclaredEffect, ...]) -> Json:
-    """Group effects by id; those of single cables become lists."""
+def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
+    """Return the table ``effects`` of a config: by id; those of single cables become lists."""
     answer: Json = {}
     for effect in declared:
         values: Json = {name: float(value) for name, value in effect.parameters.items()}

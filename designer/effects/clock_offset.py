@@ -13,9 +13,13 @@ from designer.measured.data import Measured
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     assert measured.time_s is not None
-    then = measured.time_s - values["offset_s"]
-    late = [np.interp(then, measured.time_s, column) for column in readings.length_m.T]
-    return replace(readings, length_m=np.stack(late, axis=1))
+    from scipy.interpolate import CubicSpline
+
+    if np.isnan(readings.length_m).any():  # a spline would spread the gap over all rows
+        return readings
+    first, last = measured.time_s[[0, -1]]
+    then = np.clip(measured.time_s - values["offset_s"], first, last)
+    return replace(readings, length_m=CubicSpline(measured.time_s, readings.length_m)(then))
 
 
 def build(machine: Machine) -> list[Effect]:

@@ -39,9 +39,7 @@ def build(machine: Machine) -> list[Effect]:
         "radius_gain_per_m", "1/m", 0.0, 1e-2 / size, (-0.3 / size, 0.3 / size), (0.0, 0.02)
     )
     references = tuple(
-        Parameter(
-            f"reference_{k}_m", "m", 0.5 * size, 0.1 * size, (-2 * size, 3 * size), (0.0, 2 * size)
-        )
+        Parameter(f"reference_{k}_m", "m", 0.0, 0.1 * size, (-2 * size, 3 * size), (0.0, 2 * size))
         for k in range(1, machine.robot.n_cables + 1)
     )
     return [

@@ -8,8 +8,8 @@ import pkgutil
 from collections.abc import Iterator
 
 import pytest
-from conftest import CASES
 from markupsafe import escape
+from report_cases import CASES
 
 from designer.analysis import Analysis
 from designer.report import sections

@@ -31,8 +31,9 @@ def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
     most : int
         How many rows to show; the figure says how many more there are.
     """
-    ranked = rank(selection.outcomes) + rank(selection.alternatives)
-    shown = ranked[:most]
+    others = rank(selection.alternatives)[: most // 2]
+    shown = rank(selection.outcomes)[: most - len(others)] + others
+    left_out = len(selection.outcomes) + len(selection.alternatives) - len(shown)
     with canvas.drawing():
         figure = canvas.sheet(20.0 + _ROW_MM * max(len(shown), 1))
         axes = figure.subplots()
@@ -43,7 +44,7 @@ def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
             if selection.chosen is not None and outcome.best is selection.chosen:
                 axes.axhspan(row - 0.5, row + 0.5, color=palette.SAG, alpha=0.12, linewidth=0)
         _names(axes, shown, selection)
-        _legend(axes, len(ranked) - len(shown))
+        _legend(axes, left_out)
         return canvas.svg(figure, "candidates", "Sizes of each grade and what it would need")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from designer.analysis import Analysis
 from designer.arrays import BoolArray, FloatArray
+from designer.effects.declared import as_built_by
 from designer.region import PointList, Region
 from designer.report.figures import grids
 from designer.report.figures.edge import EdgeProfile, edge_profile
@@ -91,7 +92,7 @@ class WorkspaceMaps:
     Parameters
     ----------
     study : Study
-        The problem.
+        The problem, with robot and cables as they were solved, see `as_built`.
     focus : Focus
         The worst pose, or what stands for it.
     section : Field
@@ -142,7 +143,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     ValueError
         If the analysis has no workspace.
     """
-    study, found = analysis.study, analysis.workspace
+    study, found = as_built(analysis.study), analysis.workspace
     if found is None or analysis.sweep_file is None:
         raise ValueError("the analysis has no workspace")
     region = _workspace(study).region
@@ -162,6 +163,12 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
         edge=edge_profile(study, focus.position_m),
         served=served(analysis.sweep_file, _workspace(study), found),
     )
+
+
+def as_built(study: Study) -> Study:
+    """Return the study with the robot and the cables that its declared effects make of them."""
+    built = as_built_by(study)
+    return replace(study, robot=built.robot, material=built.material(study.material), effects=())
 
 
 def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Served:

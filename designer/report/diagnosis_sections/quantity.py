@@ -1,0 +1,60 @@
+"""The two kinds of readings, and how the report shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from designer.diagnosis.result import Diagnosis, Error, Stage
+from designer.report import format as fmt
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A kind of reading.
+
+    Parameters
+    ----------
+    name : str
+        ``length`` or ``tension``.
+    unit : str
+        What it is shown in.
+    scale : float
+        From SI to that unit.
+    noise : float
+        Standard deviation of one reading, in SI units.
+    """
+
+    name: str
+    unit: str
+    scale: float
+    noise: float
+
+    def error_of(self, stage: Stage) -> Error | None:
+        """Return its error at a stage; None where it was not measured."""
+        return stage.length_m if self.name == "length" else stage.tension_N
+
+    def shown(self, value: float) -> str:
+        """Return a value in SI units as text, without its unit."""
+        return fmt.number(self.scale * value, 3)
+
+    def with_unit(self, value: float) -> str:
+        """Return a value in SI units as text."""
+        return f"{self.shown(value)}\u00a0{self.unit}"
+
+    def in_noise(self, value: float) -> str:
+        """Return a value in units of noise."""
+        return fmt.number(value / self.noise, 3)
+
+
+def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:
+    """Yield each kind that was measured, with its error before and after."""
+    noise = diagnosis.noise
+    for quantity in (
+        Quantity("length", "mm", 1e3, noise.length_m),
+        Quantity("tension", "N", 1.0, noise.tension_N),
+    ):
+        before = quantity.error_of(diagnosis.stages[0])
+        after = quantity.error_of(diagnosis.final)
+        if before is not None and after is not None:
+            yield quantity, before, after

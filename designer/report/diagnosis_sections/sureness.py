@@ -1,0 +1,108 @@
+"""How sure a diagnosis is, and what speaks against it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from designer.diagnosis.result import Diagnosis, Finding
+from designer.diagnosis.search import Trial
+from designer.report import format as fmt
+from designer.report.diagnosis_sections import words
+from designer.report.diagnosis_sections.quantity import quantities
+from designer.report.parts import Statement
+
+_MUCH = 1.5
+
+
+def sureness(diagnosis: Diagnosis) -> tuple[Statement, ...]:
+    """Return statements on significance, rivals, warnings, what was withdrawn, and noise."""
+    return tuple(_statements(diagnosis))
+
+
+def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
+    """Return the trial in which an effect was found; None where it came by exchange."""
+    key = finding.effect.key
+    for step in diagnosis.steps:
+        if step.added is not None and step.added.key == key:
+            return next(t for t in step.trials if t.effect.key == key)
+    return None
+
+
+def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
+    for finding in diagnosis.findings:
+        yield _significance(diagnosis, finding)
+    for finding in diagnosis.findings:
+        yield _rivals(finding)
+        for warning in finding.warnings:
+            yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
+    for gone in diagnosis.withdrawn:
+        yield Statement("Withdrawn", withdrawal(gone.effect, gone.covariate, gone.variation), "doubt")
+    yield _left(diagnosis)
+    yield _noise(diagnosis)
+
+
+def withdrawal(effect: str, covariate: str, variation: float) -> str:
+    """Say why an effect that fits was not kept."""
+    return (
+        f"{effect} fits as a constant, but would have to change with {covariate} by "
+        f"{fmt.percent(variation, 2)} of itself for each standard deviation of {covariate}."
+    )
+
+
+def _significance(diagnosis: Diagnosis, finding: Finding) -> Statement:
+    trial = trial_of(diagnosis, finding)
+    accident = (
+        "It took the place of another effect during the search."
+        if trial is None
+        else f"The chance of such a gain by accident is {words.chance(trial.chance)}."
+    )
+    gain = ""
+    if math.isfinite(finding.heldout_gain):
+        gain = (
+            f" Without it, the mean square on held-out rows would be "
+            f"{fmt.number(1.0 / max(1.0 - finding.heldout_gain, 1e-9), 3)} times as large."
+        )
+    return Statement(words.capital(finding.effect.key), accident + gain, "")
+
+
+def _rivals(finding: Finding) -> Statement:
+    if not finding.rivals:
+        text = f"No other single effect explains the data as well as {finding.effect.key}."
+        return Statement("No rivals", text, "good")
+    text = (
+        f"These data cannot tell {finding.effect.key} from {fmt.listing(finding.rivals, 'or')}. "
+        "Poses that would are proposed below."
+    )
+    return Statement("Rivals", text, "doubt")
+
+
+def _left(diagnosis: Diagnosis) -> Statement:
+    structure = diagnosis.structure_after
+    if not structure.carriers:
+        return Statement("Not tested", "There is nothing that the residual could go with.", "doubt")
+    strongest = structure.carriers[0]
+    if structure.is_present:
+        text = (
+            f"What is left goes with {strongest.name}; the chance of that by accident is "
+            f"{words.chance(strongest.chance)}."
+        )
+        return Statement("Structure is left", text, "bad")
+    text = (
+        f"The strongest of {fmt.plural(len(structure.carriers), 'covariate')} is {strongest.name}, "
+        f"and noise alone would look as strong with a chance of {words.chance(strongest.chance)}."
+    )
+    return Statement("No structure is left", text, "good")
+
+
+def _noise(diagnosis: Diagnosis) -> Statement:
+    noise = diagnosis.noise
+    shown = fmt.listing(f"{q.with_unit(q.noise)} of a {q.name}" for q, _, _ in quantities(diagnosis))
+    scatter = math.sqrt(diagnosis.structure_after.excess)
+    more = ""
+    if scatter > _MUCH:
+        more = f" What is left scatters {fmt.number(scatter, 2)} times as much."
+    if noise.source == "declared":
+        return Statement("Noise as declared", f"{shown}.{more}", "doubt" if more else "")
+    text = f"{shown}: {noise.source}, not declared. Multiples of noise rest on it.{more}"
+    return Statement("Noise estimated", text, "doubt")

@@ -1,0 +1,104 @@
+"""Effects, fitted values and chances in the words of the report."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+
+from designer.diagnosis.result import Estimate, Finding
+from designer.effects.effect import Effect, Parameter
+from designer.report import format as fmt
+
+NO_BREAK = "\u00a0"
+_UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_NEGLIGIBLE = 1e-12
+_DIRECTIONS = {
+    "elastic_modulus": ("scale", "the cable is stiffer than declared", "the cable is softer than declared"),
+    "linear_mass": ("scale", "the cable is heavier than declared", "the cable is lighter than declared"),
+    "platform_mass": (
+        "offset_kg",
+        "the platform with its payload is heavier than declared",
+        "the platform with its payload is lighter than declared",
+    ),
+}  # fmt: skip
+
+
+def plain(effect: Effect, values: Mapping[str, float]) -> str:
+    """Return what an effect is, in a few words, with its direction where it has one."""
+    if effect.id not in _DIRECTIONS:
+        return effect.summary
+    name, more, less = _DIRECTIONS[effect.id]
+    parameter = next(p for p in effect.parameters if p.name == name)
+    return more if values[name] > parameter.neutral else less
+
+
+def plain_finding(finding: Finding) -> str:
+    """Return what was found, in a few words."""
+    return plain(finding.effect, {name: e.value for name, e in finding.parameters.items()})
+
+
+def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
+    """Return all fitted values such as ``radius 119.8 ± 0.4 mm``."""
+    return ", ".join(
+        f"{label(p.name)}{NO_BREAK}{estimate(estimates[p.name], p.unit)}"
+        for p in effect.parameters
+    )
+
+
+def label(name: str) -> str:
+    """Return the name of a parameter without its unit: ``offset_1_m`` is ``offset 1``."""
+    return _UNIT_SUFFIX.sub("", name).replace("_", " ")
+
+
+def estimate(item: Estimate, unit: str) -> str:
+    """Return a value with its standard deviation, to two digits of the latter."""
+    value, std, unit = item.value, item.std, unit
+    if unit == "m" and abs(value) < 1.0:
+        value, std, unit = 1e3 * value, 1e3 * std, "mm"
+    size = max(abs(value), std if math.isfinite(std) else 0.0)
+    power = math.floor(math.log10(size)) if size > 0.0 else 0
+    power = power if not -4 < power < 6 else 0
+    value, std = value / 10.0**power, std / 10.0**power
+    text = _with_std(value, std)
+    if power:
+        text = f"({text}) × 10{str(power).translate(_SUPERSCRIPTS)}"
+    return f"{text} {unit}".strip().replace(" ", NO_BREAK)
+
+
+def plausible(parameter: Parameter) -> str:
+    """Return the range that an engineer would believe."""
+    scale, unit = (1e3, "mm") if _in_millimetres(parameter) else (1.0, parameter.unit)
+    ends = (_short(scale * end) for end in parameter.plausible)
+    return f"{' to '.join(ends)} {unit}".strip().replace(" ", NO_BREAK)
+
+
+def chance(value: float) -> str:
+    """Return a probability such as ``0.3 %`` or ``below 10⁻¹²``."""
+    if math.isnan(value):
+        return fmt.MISSING
+    if value < _NEGLIGIBLE:
+        return "below 10⁻¹²"
+    return fmt.power_of_ten(value) if value < 1e-4 else fmt.percent(value, 2)
+
+
+def capital(text: str) -> str:
+    """Return a text with a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
+def _with_std(value: float, std: float) -> str:
+    if not math.isfinite(std) or std <= 0.0:
+        return fmt.number(value)
+    places = min(max(1 - math.floor(math.log10(std)), 0), 9)
+    return f"{fmt.fixed(value, places)} ± {fmt.fixed(std, places)}"
+
+
+def _in_millimetres(parameter: Parameter) -> bool:
+    return parameter.unit == "m" and max(abs(end) for end in parameter.plausible) < 1.0
+
+
+def _short(value: float) -> str:
+    is_plain = value == 0.0 or 1e-3 <= abs(value) < 1e7
+    return fmt.trimmed(value, 3) if is_plain else fmt.power_of_ten(value)

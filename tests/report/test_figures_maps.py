@@ -1,0 +1,315 @@
+"""What the figures show: grids on regions, sizing on them, the way to the edge, shares."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
+
+from designer.analysis import analyse_pose
+from designer.region import Prism
+from designer.report.figures import grids
+from designer.report.figures.edge import edge_profile
+from designer.report.figures.field import (
+    cable_curves_m,
+    chords_m,
+    field_at,
+    largest_sag,
+)
+from designer.report.figures.maps import as_built, workspace_maps
+from designer.report.figures.names import names_of
+from designer.report.figures.quantity import DIAMETER, RATIO, TENSION
+from designer.robot import Poses
+from designer.sizing.limit import limit_ratio
+from designer.sizing.newton import size_poses
+from designer.statics.verdict import Verdict
+from designer.study import DeclaredEffect
+
+SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+
+
+def area_m2(grid_m: np.ndarray) -> float:
+    """Area of a grid of quadrilaterals (n, m, 3) in plan."""
+    first = (grid_m[1:, 1:] - grid_m[:-1, :-1])[..., :2]
+    second = (grid_m[:-1, 1:] - grid_m[1:, :-1])[..., :2]
+    return float(np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]).sum() / 2)
+
+
+class TestGrids:
+    def test_centroid_of_a_triangle_is_the_mean_of_its_corners(self) -> None:
+        corners = np.array([[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]]) + 1e6
+        assert grids.centroid_m(corners) == pytest.approx(corners.mean(axis=0), abs=1e-9)
+
+    def test_centroid_does_not_care_for_extra_corners_on_an_edge(self) -> None:
+        more = np.insert(SQUARE, 1, [1.0, 0.0], axis=0)
+        assert grids.centroid_m(more) == pytest.approx([2.0, 2.0])
+
+    @pytest.mark.parametrize(
+        ("azimuth", "reach"), [(0.0, 3.0), (np.pi / 2, 2.0), (np.pi, 1.0), (np.pi / 4, 8**0.5)]
+    )
+    def test_reach_within_a_square(self, azimuth: float, reach: float) -> None:
+        assert grids.reach_m(SQUARE, np.array([1.0, 2.0]), azimuth) == pytest.approx(reach)
+
+    def test_outline_is_closed_and_has_every_corner(self) -> None:
+        outline = grids.outline_m(SQUARE, 30)
+        assert (outline[0] == outline[-1]).all()
+        for corner in SQUARE:
+            assert np.linalg.norm(outline - corner, axis=1).min() == 0.0
+        assert np.linalg.norm(np.diff(outline, axis=0), axis=1).sum() == pytest.approx(16.0)
+
+    def test_disc_fills_the_region_to_its_boundary(self) -> None:
+        region = inset(10.35)
+        disc = grids.disc_m(region, -40.0, rings=40, spokes=60)
+        assert region.contains(disc).all()
+        assert area_m2(disc) == pytest.approx(region.area_m2, rel=1e-9)
+        assert np.ptp(disc[0], axis=0).max() == 0.0
+        assert (disc[..., 2] == -40.0).all()
+
+    def test_one_cut_runs_through_the_pose_it_is_given(self) -> None:
+        region, toward = inset(10.35), np.array([256.5, 10.35, -40.0])
+        cut = grids.cutaway_m(region, toward)["cut"]
+        assert np.linalg.norm(cut - toward, axis=-1).min() == pytest.approx(0.0, abs=1e-9)
+
+    @pytest.mark.parametrize("azimuth", np.radians([-170.0, -90.0, 0.0, 59.9, 60.0, 123.0]))
+    def test_a_piece_is_missing_and_nothing_else(self, azimuth: float) -> None:
+        region = Prism.box((0.0, 4.0), (0.0, 4.0), (0.0, 1.0))
+        centre = np.array([2.0, 2.0])
+        toward = centre + 0.5 * np.array([np.cos(azimuth), np.sin(azimuth)])
+        top = grids.cutaway_m(region, toward)["top"]
+        ends = azimuth, azimuth + np.radians(100.0)
+        corners = [a for a in np.radians([45, 135, -135, -45, 225, 315]) if ends[0] < a < ends[1]]
+        rays = [
+            grids.reach_m(region.polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
+            for a in sorted({*ends, *corners})
+        ]
+        missing = sum(
+            abs(a[0] * b[1] - a[1] * b[0]) / 2 for a, b in zip(rays[:-1], rays[1:], strict=True)
+        )
+        assert area_m2(top) == pytest.approx(16.0 - missing, rel=1e-9)
+        wall = grids.cutaway_m(region, toward)["wall"]
+        assert wall[0, 0, :2] - centre == pytest.approx(rays[0])
+        assert wall[0, -1, :2] - centre == pytest.approx(rays[-1])
+        middle = grids.opening_azimuth_rad(region, toward)
+        off = np.arctan2(*(wall[0, :, :2] - centre)[:, ::-1].T) - middle
+        assert np.cos(off).max() == pytest.approx(np.cos(np.radians(50.0)), abs=1e-9)
+
+
+class TestField:
+    # Along (250, y, -40) of the paper's robot: y, tension [kN], diameter [mm], massless [kN].
+    REFERENCE = (
+        (40.0, 265.779, 43.359, 114.111),
+        (20.0, 306.447, 46.558, 118.818),
+        (10.0, 376.520, 51.608, 121.411),
+        (8.0, 438.994, 55.725, 121.951),
+        (6.0, 711.721, 70.953, 122.498),
+    )
+
+    @pytest.mark.parametrize(("y", "tension", "diameter", "massless"), REFERENCE)
+    def test_reference_values(
+        self, y: float, tension: float, diameter: float, massless: float
+    ) -> None:
+        field = field_at(study_of("served"), np.array([250.0, y, -40.0]))
+        assert TENSION.of(field) == pytest.approx(tension, abs=6e-4)
+        assert DIAMETER.of(field) == pytest.approx(diameter, abs=6e-4)
+        assert RATIO.of(field) == pytest.approx(tension / massless, rel=2e-5)
+        assert not field.is_infeasible
+        assert not field.is_left_out
+
+    def test_no_value_beyond_the_limit(self) -> None:
+        field = field_at(study_of("served"), np.array([[250.0, 3.0, -40.0], [250.0, -9.0, -40.0]]))
+        assert np.isnan(DIAMETER.of(field)).all()
+        assert field.is_infeasible.all()
+        assert field.why_infeasible == "no cable holds the platform"
+        assert (
+            field_at(study_of("served"), field.position_m[:1]).why_infeasible == "no finite cable"
+        )
+
+    @pytest.mark.parametrize("name", ["exclude", "partly_exclude"])
+    def test_left_out_is_where_the_uplift_is(self, name: str) -> None:
+        section = maps_of(name).section
+        assert section.is_left_out.any()
+        assert not (section.is_left_out & section.is_infeasible).any()
+        held = section.is_solved
+        assert ((section.uplift > 0.0) == section.is_left_out)[held].all()
+        assert np.isnan(DIAMETER.of(section)[section.is_left_out]).all()
+        assert np.isfinite(DIAMETER.everywhere(section)[held]).all()
+
+    def test_thinning_keeps_the_rim(self) -> None:
+        top = maps_of("served").shell["top"]
+        thin = top.every_second()
+        assert thin.diameter_m[-1, -1] == top.diameter_m[-1, -1]
+        assert thin.diameter_m.shape == (top.diameter_m.shape[0] // 2 + 1, *thin.verdict.shape[1:])
+        assert thin.position_m.shape == (*thin.verdict.shape, 3)
+        assert maps_of("served").thinned().shell["top"].verdict.shape == thin.verdict.shape
+
+
+class TestCables:
+    @pytest.mark.parametrize("name", ["served", "six"])
+    def test_true_shape_joins_exit_points_and_platform(self, name: str) -> None:
+        analysis, _ = solved(name)
+        assert analysis.pose is not None
+        statics = analysis.pose.sizing.statics
+        curves, chords = cable_curves_m(statics), chords_m(statics)
+        assert curves[:, 0] == pytest.approx(statics.robot.exit_points_m, abs=1e-9)
+        assert curves[:, -1] == pytest.approx(chords[:, 1], abs=1e-6)
+        strain = statics.largest_tension_N / statics.axial_stiffness_N
+        arc = np.linalg.norm(np.diff(cable_curves_m(statics, 4001), axis=1), axis=2).sum(axis=1)
+        assert (arc >= statics.length_m * (1 - 1e-7)).all()
+        assert (arc <= statics.length_m * (1.0 + strain)).all()
+
+    def test_largest_sag_is_that_of_a_parabola_where_it_is_small(self) -> None:
+        statics = size_poses(THREE, Poses.at([250.0, 200.0, -120.0]), STEEL).statics
+        sag = largest_sag(statics)
+        geometry = statics.geometry()
+        span = geometry.horizontal_distance_m[sag.cable]
+        weight = statics.weight_N_per_m[0] * geometry.chord_m[sag.cable] / span
+        parabola = weight * span**2 / (8.0 * statics.force_x_N[sag.cable])
+        assert sag.depth_m == pytest.approx(parabola, rel=2e-2)
+        assert sag.on_chord_m[:2] == pytest.approx(sag.on_cable_m[:2])
+
+    def test_tilted_base_keeps_the_cables_on_its_exit_points(self) -> None:
+        tilted = replace(THREE, tilt_rad=np.array([0.02, -0.01]))
+        statics = size_poses(tilted, Poses.at([250.0, 200.0, -50.0]), STEEL).statics
+        curves = cable_curves_m(statics)
+        assert curves[:, 0] == pytest.approx(THREE.exit_points_m, abs=1e-9)
+        assert curves[:, -1] == pytest.approx(np.tile([250.0, 200.0, -50.0], (3, 1)), abs=1e-6)
+
+    def test_names_are_joined_where_exit_points_are_close(self) -> None:
+        assert [name for name, _ in names_of(SIX.exit_points_m, 20.0)] == [
+            "A1, A2",
+            "A3, A4",
+            "A5, A6",
+        ]
+        assert len(names_of(SIX.exit_points_m, 1.0)) == 6
+
+
+class TestEdge:
+    def test_limit_is_where_the_limit_ratio_is_one(self) -> None:
+        study = study_of("served")
+        profile = edge_profile(study, np.array([250.0, 10.35, -40.0]))
+        assert profile is not None
+        assert profile.limit_distance_m is not None
+        assert 4.0 < profile.limit_distance_m < 5.0
+        at = Poses.at([250.0, profile.limit_distance_m, -40.0])
+        assert float(limit_ratio(THREE, at, STEEL)) == pytest.approx(1.0, abs=1e-6)
+
+    def test_line_is_level_and_ends_on_the_hull(self) -> None:
+        profile = maps_of("served").edge
+        assert profile is not None
+        line = profile.field.position_m
+        assert np.ptp(line[:, 2]) == 0.0
+        assert line[-1, 1] == pytest.approx(0.0, abs=1e-9)
+        assert (np.diff(profile.distance_m) < 0.0).all()
+        steps = np.linalg.norm(line - line[-1], axis=1)
+        assert steps == pytest.approx(profile.distance_m, abs=1e-9)
+
+    def test_worst_pose_is_where_the_region_ends(self) -> None:
+        profile = maps_of("served").edge
+        assert profile is not None
+        assert profile.region_distance_m == pytest.approx(profile.focus_distance_m, abs=1e-9)
+        assert profile.region_distance_m == pytest.approx(10.35, abs=0.05)
+
+    def test_focus_in_the_centre_goes_to_the_nearest_edge(self) -> None:
+        profile = edge_profile(study_of("served"), np.array([250.0, 433.01 / 3.0, -60.0]))
+        assert profile is not None
+        assert profile.distance_m[0] == pytest.approx(433.01 / 3.0, rel=1e-4)
+
+    def test_none_where_the_region_lies_outside(self) -> None:
+        assert maps_of("outside").edge is None
+
+    def test_no_limit_where_nothing_can_be_held(self) -> None:
+        profile = edge_profile(study_of("served"), np.array([250.0, 10.35, 5.0]))
+        assert profile is not None
+        assert not profile.field.is_solved.any()
+        assert profile.limit_distance_m is None
+
+
+class TestServed:
+    def test_all_is_served_by_the_optimum(self) -> None:
+        served = maps_of("served").served
+        assert served.share[-1] == served.massless_share[-1] == 1.0
+        assert served.unserved == 0.0
+        assert (np.diff(served.share) > 0.0).all()
+        assert (np.diff(served.diameter_m) >= 0.0).all()
+        assert served.diameter_m[-1] <= served.needed_m == pytest.approx(51.230e-3, abs=1e-6)
+        assert served.massless_needed_m == pytest.approx(29.304e-3, abs=1e-6)
+
+    def test_share_that_no_cable_serves_is_that_of_the_census(self) -> None:
+        analysis, maps = solved("partly")
+        assert analysis.workspace is not None
+        fraction = analysis.workspace.census.fraction("no_finite_cable")
+        assert 0.02 < fraction < 0.06
+        assert maps.served.unserved == pytest.approx(fraction)
+        assert maps.served.share[-1] == pytest.approx(1.0 - fraction)
+        assert np.isnan(maps.served.needed_m)
+
+    def test_only_what_is_not_left_out_counts(self) -> None:
+        analysis, maps = solved("exclude")
+        assert analysis.workspace is not None
+        census = analysis.workspace.census
+        assert maps.served.samples == census.samples - census.excluded
+        assert maps.served.share[-1] == 1.0
+        assert maps_of("all_left_out").served.samples == 0
+
+
+class TestMaps:
+    @pytest.mark.parametrize("name", CASES)
+    def test_every_position_has_a_verdict_and_its_value(self, name: str) -> None:
+        maps = maps_of(name)
+        fields = [maps.section, *maps.shell.values()]
+        for field in fields:
+            solved_here = field.verdict == Verdict.SOLVED
+            assert (np.isfinite(field.diameter_m) == solved_here).all()
+            assert (field.counts | field.is_left_out | field.is_infeasible).all()
+        assert maps.has_area == isinstance(maps.region, Prism)
+
+    @pytest.mark.parametrize(
+        ("name", "label"),
+        [
+            ("served", "worst pose"),
+            ("exclude", "worst pose"),
+            ("partly", "no finite cable, for example here"),
+            ("found_by_search", "no finite cable, for example here"),
+            ("outside", "no positive tensions, for example here"),
+            ("all_left_out", "left out"),
+        ],
+    )
+    def test_what_the_figures_turn_to(self, name: str, label: str) -> None:
+        focus = maps_of(name).focus
+        assert focus.label == label
+        assert (focus.statics is None) == (not focus.field.is_solved)
+
+    def test_text_of_the_worst_pose(self) -> None:
+        focus = maps_of("served").focus
+        assert focus.text(DIAMETER) == "worst pose, 51.23 mm"
+        assert focus.text(TENSION) == "worst pose, 371.0 kN"
+        assert focus.text(RATIO) == "worst pose, 3.06"
+
+    def test_section_is_the_top(self) -> None:
+        section = maps_of("served").section
+        assert (section.position_m[..., 2] == -40.0).all()
+        assert np.nanmax(section.diameter_m) == pytest.approx(51.230e-3, rel=1e-4)
+
+    def test_declared_effects_act(self) -> None:
+        heavy = (DeclaredEffect("linear_mass", None, {"scale": 1.5}),)
+        study = replace(study_of("served"), effects=heavy)
+        built = as_built(study)
+        assert built.material.density_kg_per_m3 == pytest.approx(1.5 * 7800.0)
+        assert as_built(built).material == built.material
+        pose = analyse_pose(study)
+        assert pose is not None
+        field = field_at(built, np.array([250.0, 200.0, -50.0]))
+        assert field.diameter_m == pytest.approx(float(pose.sizing.diameter_m), rel=1e-12)
+
+    def test_a_study_without_a_workspace_has_no_maps(self) -> None:
+        analysis, _ = solved("served")
+        with pytest.raises(ValueError, match="no workspace"):
+            workspace_maps(replace(analysis, workspace=None))
+
+    def test_unsolved_pose_keeps_its_chords(self) -> None:
+        pose = analyse_pose(pose_at("served", [250.0, -20.0, -50.0]))
+        assert pose is not None
+        assert chords_m(pose.sizing.statics).shape == (3, 2, 3)
+        assert np.isfinite(chords_m(pose.sizing.statics)).all()
