@@ -12,8 +12,8 @@ from designer import __version__
 from designer.analysis import Analysis, PoseAnalysis
 from designer.report.files import write_whole
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
-from designer.statics.verdict import Verdict
 from designer.study import Study
+from designer.verdict import Verdict
 from designer.workspace.result import Extreme, WorkspaceMap
 
 Json = dict[str, Any]

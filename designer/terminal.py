@@ -227,7 +227,7 @@ def _print_cables(pose: PoseAnalysis) -> None:
 
 def statics_sentence(pose: PoseAnalysis) -> str:
     """Return the verdict of the configured pose in words."""
-    from designer.statics.verdict import Verdict
+    from designer.verdict import Verdict
 
     return Verdict(int(pose.sizing.statics.verdict)).sentence
 

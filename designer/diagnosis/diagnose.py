@@ -26,8 +26,8 @@ from designer.machine import Machine
 from designer.measured.data import Measured
 from designer.study import Measurements, Study
 
-_MOST_WITHDRAWN = 6
-_NOISE_ROUNDS = 3
+_MOST_WITHDRAWN = 2
+_NOISE_ROUNDS = 2
 _NOISE_CHANGE = 0.15
 
 

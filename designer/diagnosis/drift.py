@@ -14,7 +14,7 @@ from designer.diagnosis.structure import SIGNIFICANCE, Structure
 from designer.effects.effect import Effect
 
 _CHANCE = 1e-5
-_VARIATION = 0.2
+_VARIATION = 0.15
 _CLIP = 4.0
 _MOST_CARRIERS = 4
 
@@ -39,7 +39,9 @@ def drifting(
     found_keys = {effect.key for effect in found}
     worst: Withdrawn | None = None
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
-    residual = np.clip(problem.residual(model.settings), -_CLIP, _CLIP)
+    residual = problem.residual(model.settings)
+    limit = _CLIP * np.sqrt(model.variance)
+    residual = np.clip(residual, -limit, limit)
     taken = rows[:, None] & ~np.isnan(residual)
     for carrier in carriers:
         z = covariates[carrier]

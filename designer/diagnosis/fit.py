@@ -136,7 +136,7 @@ def _fit_from(
         f_scale=_HUBER,
         xtol=1e-8,
         ftol=1e-8,
-        max_nfev=30,
+        max_nfev=12,
     )
     loss, count = 2.0 * float(answer.cost), int(taken.sum())
     variance = max(1.0, loss / max(count - len(start), 1))

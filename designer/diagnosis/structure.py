@@ -165,7 +165,9 @@ def _surprise(basis: FloatArray, channels: FloatArray) -> tuple[float, float]:
     explained = np.sum((basis.T @ channels) ** 2, axis=0)
     share = explained / np.sum(channels**2, axis=0)
     best = int(np.argmax(share))
-    return float(-0.5 * len(channels) * np.log1p(-min(share[best], 1.0 - 1e-15))), float(share[best])
+    return float(-0.5 * len(channels) * np.log1p(-min(share[best], 1.0 - 1e-15))), float(
+        share[best]
+    )
 
 
 def _permutation(rng: np.random.Generator, count: int, settled: bool) -> IntArray:

@@ -54,9 +54,7 @@ def _loop(analysis: Analysis) -> Picture | None:
     from designer.report.figures.charts_loop import loop_chart
 
     caption = "Largest tension and diameter over the turns of the loop, and the optimum."
-    return _chart(
-        caption, "Two curves that rise from the massless start", loop_chart(analysis.pose)
-    )
+    return chart(caption, "Two curves that rise from the massless start", loop_chart(analysis.pose))
 
 
 def _verdicts(analysis: Analysis) -> Picture | None:
@@ -65,7 +63,7 @@ def _verdicts(analysis: Analysis) -> Picture | None:
     from designer.report.figures.charts_verdicts import verdict_chart
 
     caption = "All samples by verdict."
-    return _chart(
+    return chart(
         caption, "A bar with a part for each verdict", verdict_chart(analysis.workspace.census)
     )
 
@@ -87,18 +85,18 @@ def _workspace(maps: WorkspaceMaps) -> Iterator[Picture]:
         workspace_scene_html(maps),
     )
     place = "at the top of the region" if maps.has_area else "at each point, seen from above"
-    yield _chart(f"Needed diameter {place}.", "A map in plan", slice_chart(maps))
+    yield chart(f"Needed diameter {place}.", "A map in plan", slice_chart(maps))
     edge = edge_chart(maps)
     if edge is not None:
         caption = (
             "Needed diameter from the centre of the region outward, through the marked pose to the "
             "edge of the exit points' outline."
         )
-        yield _chart(caption, "A curve that climbs toward the edge", edge)
+        yield chart(caption, "A curve that climbs toward the edge", edge)
     caption = f"Largest tension, and its ratio to the tension without sag, {place}."
-    yield _chart(caption, "Two maps in plan", slice_panels(maps))
+    yield chart(caption, "Two maps in plan", slice_panels(maps))
     caption = "Share of the poses that a cable of the configured family serves."
-    yield _chart(caption, "Two staircases, with sag and without", served_chart(maps.served))
+    yield chart(caption, "Two staircases, with sag and without", served_chart(maps.served))
 
 
 def _candidates(analysis: Analysis) -> Picture | None:
@@ -112,7 +110,7 @@ def _candidates(analysis: Analysis) -> Picture | None:
     )
     if analysis.selection.alternatives:
         caption += " A star marks grades that the study does not allow."
-    return _chart(caption, "A row for each grade", candidates_chart(analysis.selection))
+    return chart(caption, "A row for each grade", candidates_chart(analysis.selection))
 
 
 def _scene(caption: str, alternative: str, png: bytes, page: str = "") -> Picture:
@@ -120,7 +118,7 @@ def _scene(caption: str, alternative: str, png: bytes, page: str = "") -> Pictur
     return Picture(caption, alternative, bitmap=address, scene=page)
 
 
-def _chart(caption: str, alternative: str, svg: str) -> Picture:
+def chart(caption: str, alternative: str, svg: str) -> Picture:
     """Return a chart, its half-transparent parts written so that they stay vector graphics.
 
     PlutoPrint composes an element with ``opacity`` and a clip as a bitmap; the same with

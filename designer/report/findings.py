@@ -21,8 +21,8 @@ from designer.selection.result import Candidate, GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging
-from designer.statics.verdict import Verdict
 from designer.study import HangsBelow
+from designer.verdict import Verdict
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.samples import positions_m

@@ -18,7 +18,7 @@ from designer.statics.geometry import (
     structure_matrix,
 )
 from designer.statics.task import PulleyRun, Task, solve_task, straight_run
-from designer.statics.verdict import Verdict, hangs_below
+from designer.verdict import Verdict, hangs_below
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution

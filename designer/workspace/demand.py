@@ -9,8 +9,8 @@ from designer.cable import Cable, Material
 from designer.robot import Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.statics.verdict import Verdict
 from designer.study import HangsBelow
+from designer.verdict import Verdict
 from designer.workspace.refine import Demand
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.sizing.newton import Sizing
-from designer.statics.verdict import Verdict
+from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray as xr

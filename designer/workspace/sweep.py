@@ -14,8 +14,8 @@ from designer.cable import Material
 from designer.robot import Poses, Robot
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import Sizing, size_poses
-from designer.statics.verdict import Verdict
 from designer.study import Workspace
+from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand
 from designer.workspace.refine import refine, spread_starts
 from designer.workspace.result import Census, Extreme, WorkspaceMap

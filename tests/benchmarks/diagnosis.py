@@ -72,7 +72,9 @@ def _one(job: tuple[str, tuple[str, ...], float, int]) -> tuple[object, ...]:
     settled = not any(effect in MOVING for effect in effects)
     try:
         sized = {
-            effect: robot.draw(effect, size_for(robot, effect, over_noise, seed, settled=settled), seed)
+            effect: robot.draw(
+                effect, size_for(robot, effect, over_noise, seed, settled=settled), seed
+            )
             for effect in effects
         }
     except (ValueError, KeyError) as error:
@@ -108,10 +110,14 @@ def main() -> None:
     blank = run([(names[k % len(names)], (), 0.0, k) for k in range(arguments.nothing)])
     false = sum(row[4] == "false" or bool(row[6]) for row in blank)
     print(f"nothing there: {false} of {len(blank)} with a false finding or structure")
-    other = run([(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds])
+    other = run(
+        [(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds]
+    )
     for row in other:
         told = "unexplained" if row[6] else "explained"
-        print(f"  not in the list: {row[0]} {row[1][0]} at {row[2]:g}: {told}: {', '.join(row[5]) or 'none'}")
+        print(
+            f"  not in the list: {row[0]} {row[1][0]} at {row[2]:g}: {told}: {', '.join(row[5]) or 'none'}"
+        )
 
 
 if __name__ == "__main__":

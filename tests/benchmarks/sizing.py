@@ -26,7 +26,7 @@ from designer.cable import Material
 from designer.region import Prism
 from designer.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
-from designer.statics.geometry import cable_geometry, structure_matrix, load_wrench_N
+from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless, solve_sagging
 from designer.study import Workspace
 from designer.workspace.samples import CHUNK

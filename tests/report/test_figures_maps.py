@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -24,8 +25,8 @@ from designer.report.figures.quantity import DIAMETER, RATIO, TENSION
 from designer.robot import Poses
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
-from designer.statics.verdict import Verdict
 from designer.study import DeclaredEffect
+from designer.verdict import Verdict
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 
@@ -84,9 +85,7 @@ class TestGrids:
             grids.reach_m(region.polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
             for a in sorted({*ends, *corners})
         ]
-        missing = sum(
-            abs(a[0] * b[1] - a[1] * b[0]) / 2 for a, b in zip(rays[:-1], rays[1:], strict=True)
-        )
+        missing = sum(abs(a[0] * b[1] - a[1] * b[0]) / 2 for a, b in pairwise(rays))
         assert area_m2(top) == pytest.approx(16.0 - missing, rel=1e-9)
         wall = grids.cutaway_m(region, toward)["wall"]
         assert wall[0, 0, :2] - centre == pytest.approx(rays[0])

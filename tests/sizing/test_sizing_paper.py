@@ -10,7 +10,7 @@ from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import size_by_loop
 from designer.sizing.newton import size_poses
 from designer.sizing.nlp import size_by_nlp
-from designer.statics.verdict import Verdict
+from designer.verdict import Verdict
 
 POSE = Poses.at([250.0, 200.0, -50.0])
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from designer.diagnosis.result import Choice, Diagnosis
 from designer.report import format as fmt
+from designer.report.diagnosis_sections import words
 from designer.report.parts import Column, Row, Table
 
 
@@ -20,6 +21,8 @@ class DesignSection:
     ----------
     sentence : str
         What it means for the cable.
+    numbers : str
+        Tension and diameter before and after, in a sentence; may be empty.
     table : Table or None
         The choice before and after; None where the study does not ask for one.
     remarks : tuple of str
@@ -31,6 +34,7 @@ class DesignSection:
     """
 
     sentence: str
+    numbers: str
     table: Table | None
     remarks: tuple[str, ...]
     effects: str
@@ -43,7 +47,8 @@ def design_section(diagnosis: Diagnosis) -> DesignSection:
     has_both = before is not None and after is not None
     return DesignSection(
         sentence=_sentence(diagnosis),
-        table=_table(before, after) if before is not None and after is not None else None,
+        numbers=_numbers(before, after) if before is not None and after is not None else "",
+        table=_design_table(diagnosis),
         remarks=_remarks(diagnosis) if has_both else (),
         effects=effects_text(diagnosis),
         config=f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
@@ -73,11 +78,28 @@ def _sentence(diagnosis: Diagnosis) -> str:
         return _why_not(diagnosis)
     if not any(s.effect.reaches_design for s in diagnosis.settings):
         if not diagnosis.findings:
-            return f"Nothing was found, so the design stays: {_named(before)}."
-        return f"Nothing that was found reaches the design, which stays: {_named(before)}."
+            return f"Nothing was found, so the design stays as it is: {_named(before)}."
+        return f"Nothing that was found reaches the design, which stays as it is: {_named(before)}."
     if (before.grade, before.size_id) == (after.grade, after.size_id):
         return f"The choice stays: {_named(after)}."
     return f"The choice changes from {_named(before)} to {_named(after)}."
+
+
+def _numbers(before: Choice, after: Choice) -> str:
+    parts = []
+    for what, was, now, shown in (
+        ("The largest tension in it", before.max_tension_N, after.max_tension_N, fmt.newtons),
+        ("The best diameter of the configured family", before.optimum_m, after.optimum_m,
+         fmt.millimetres),
+    ):  # fmt: skip
+        if not math.isfinite(now):
+            continue
+        if after is before or not math.isfinite(was):
+            parts.append(f"{what} is {shown(now)}.")
+        else:
+            change = fmt.signed_percent(now / was - 1.0)
+            parts.append(f"{what} goes from {shown(was)} to {shown(now)} ({change}).")
+    return " ".join(parts)
 
 
 def _why_not(diagnosis: Diagnosis) -> str:
@@ -98,34 +120,54 @@ def _remarks(diagnosis: Diagnosis) -> tuple[str, ...]:
     idle = [s.effect.key for s in diagnosis.settings if not s.effect.reaches_design]
     remarks = []
     if idle:
-        verb = "does" if len(idle) == 1 else "do"
-        what = "acts" if len(idle) == 1 else "act"
+        verb, it = ("does", "it changes") if len(idle) == 1 else ("do", "they change")
         remarks.append(
-            f"{fmt.listing(idle)} {verb} not change which cable the machine needs: "
-            f"{'it' if len(idle) == 1 else 'they'} {what} on readings, or on what the sizing "
-            "takes at its worst."
+            f"{words.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
+            "the sizing counts."
         )
     if diagnosis.is_unexplained:
         remarks.append("What is unexplained is not in the design.")
     return tuple(remarks)
 
 
-def _table(before: Choice, after: Choice) -> Table:
-    def row(title: str, value: Callable[[Choice], float], shown: Callable[[float], str]) -> Row:
-        was, now = value(before), value(after)
-        change = now / was - 1.0 if math.isfinite(was) and math.isfinite(now) and was else math.nan
-        text = fmt.signed_percent(change) if math.isfinite(change) else fmt.MISSING
-        return Row((title, shown(was), shown(now), text))
-
-    def name(choice: Choice) -> str:
-        return f"{choice.grade}, {choice.size_id}" if choice.grade else "none holds"
-
-    return Table.of(
-        "The chosen cable and the worst tension in the workspace, before and after.",
-        (Column("", is_number=False), Column("Before"), Column("After"), Column("Change")),
-        Row(("Product", name(before), name(after), "")),
-        row("Its diameter", lambda c: c.diameter_m, fmt.millimetres),
-        row("Its largest tension", lambda c: c.max_tension_N, fmt.newtons),
-        row("Diameter of the configured family", lambda c: c.optimum_m, fmt.millimetres),
-        row("Its largest tension", lambda c: c.optimum_tension_N, fmt.newtons),
+def _design_table(diagnosis: Diagnosis) -> Table | None:
+    before, after = diagnosis.design_before, diagnosis.design_after
+    if before is None or after is None:
+        return None
+    columns = (
+        Column("", is_number=False),
+        Column("Product", is_number=False),
+        Column("Its diameter"),
+        Column("Its largest tension"),
+        Column("Optimum of the configured family"),
+        Column("Its largest tension"),
     )
+    if after is before:
+        caption = "The chosen cable and the largest tension in the workspace."
+        return Table.of(caption, columns, _row("As declared", before))
+    return Table.of(
+        "The chosen cable and the largest tension in the workspace, before and after.",
+        columns,
+        _row("Before", before),
+        _row("After", after),
+        Row(("Change", "", *_changes(before, after)), "muted"),
+    )
+
+
+def _row(title: str, choice: Choice) -> Row:
+    return Row(
+        (
+            title,
+            _named(choice),
+            fmt.millimetres(choice.diameter_m),
+            fmt.newtons(choice.max_tension_N),
+            fmt.millimetres(choice.optimum_m),
+            fmt.newtons(choice.optimum_tension_N),
+        )
+    )
+
+
+def _changes(before: Choice, after: Choice) -> Iterator[str]:
+    for name in ("diameter_m", "max_tension_N", "optimum_m", "optimum_tension_N"):
+        was, now = getattr(before, name), getattr(after, name)
+        yield fmt.signed_percent(now / was - 1.0) if math.isfinite(now / was) else fmt.MISSING

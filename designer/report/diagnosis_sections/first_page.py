@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Finding
+from designer.diagnosis.result import Diagnosis, Error, Finding
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
 from designer.report.diagnosis_sections.design import DesignSection, design_section
-from designer.report.diagnosis_sections.quantity import quantities
+from designer.report.diagnosis_sections.quantity import Quantity, quantities
 from designer.report.diagnosis_sections.sureness import sureness
 from designer.report.parts import Column, Picture, Row, Statement, Table
 
@@ -78,24 +79,23 @@ def _left(diagnosis: Diagnosis) -> str:
         return ""
     carrier = diagnosis.structure_after.carriers[0]
     return (
-        f"A residual {'is left that' if diagnosis.findings else ''} goes with {carrier.name}, "
-        f"which accounts for {fmt.percent(carrier.fraction_of_variance, 2)} of the variance of "
-        "the readings that follow it most."
-    ).replace("residual  goes", "residual goes")
+        f"{'What is left' if diagnosis.findings else 'The residual'} goes with {carrier.name}, "
+        f"which accounts for {fmt.percent(carrier.fraction_of_variance, 2)} of the variance where "
+        "it shows most."
+    )
 
 
 def _drop(diagnosis: Diagnosis) -> str:
-    parts = []
+    """Say how far the error on held-out rows falls, or what it is where nothing was found."""
+    parts: list[str] = []
     for quantity, before, after in quantities(diagnosis):
         last = quantity.with_unit(after.heldout.value)
-        first = quantity.shown(before.heldout.value)
+        first = quantity.with_unit(before.heldout.value)
+        falls = "" if parts else "falls "
+        change = f"{falls}from {first} to {last}" if diagnosis.findings else f"is {last}"
         noise = f"{quantity.in_noise(after.heldout.value)} times the noise"
-        change = f"from {first} to {last}" if diagnosis.findings else last
-        verb = "falls " if diagnosis.findings else "is "
-        parts.append(f"{quantity.name} error {verb}{change}, {noise}")
-    if not parts:
-        return ""
-    return f"On rows that no fit has seen, the {fmt.listing(parts)}."
+        parts.append(f"of {quantity.name} {change} ({noise})")
+    return f"On rows that no fit has seen, the error {fmt.listing(parts, 'and that')}."
 
 
 def _finding(finding: Finding) -> Statement:
@@ -107,33 +107,29 @@ def _finding(finding: Finding) -> Statement:
 
 
 def _errors(diagnosis: Diagnosis) -> Table:
+    has_change = bool(diagnosis.findings)
+    ends = ("Before", "After") if has_change else ("Error",)
+    columns = [Column("Reading", is_number=False)]
+    for end in ends:
+        columns += [Column(end), Column("95 %")]
+    columns += [Column("Noise"), Column("In units of noise")]
     rows = []
     for quantity, before, after in quantities(diagnosis):
-        rows.append(
-            Row(
-                (
-                    f"{words.capital(quantity.name)}\u00a0[{quantity.unit}]",
-                    quantity.shown(before.heldout.value),
-                    f"{quantity.shown(before.heldout.low)} to {quantity.shown(before.heldout.high)}",
-                    quantity.shown(after.heldout.value),
-                    f"{quantity.shown(after.heldout.low)} to {quantity.shown(after.heldout.high)}",
-                    quantity.shown(quantity.noise),
-                    f"{quantity.in_noise(before.heldout.value)} → "
-                    f"{quantity.in_noise(after.heldout.value)}",
-                )
-            )
-        )
-    columns = (
-        Column("Reading", is_number=False),
-        Column("Before"),
-        Column("95 %"),
-        Column("After"),
-        Column("95 %"),
-        Column("Noise"),
-        Column("In units of noise"),
-    )
+        errors = (before, after) if has_change else (after,)
+        rows.append(Row(tuple(_cells(quantity, errors))))
+    when = ", before and after," if has_change else ""
     return Table.of(
-        "Root mean square error on held-out rows, before and after, with 95 % intervals.",
-        columns,
+        f"Root mean square error on held-out rows{when} with 95 % intervals.",
+        tuple(columns),
         *rows,
     )
+
+
+def _cells(quantity: Quantity, errors: Sequence[Error]) -> Iterator[str]:
+    yield f"{words.capital(quantity.name)}\u00a0[{quantity.unit}]"
+    for error in errors:
+        held = error.heldout
+        yield quantity.shown(held.value)
+        yield f"{quantity.shown(held.low)} to {quantity.shown(held.high)}"
+    yield quantity.shown(quantity.noise)
+    yield " → ".join(quantity.in_noise(error.heldout.value) for error in errors)

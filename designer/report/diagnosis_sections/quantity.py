@@ -44,7 +44,8 @@ class Quantity:
 
     def in_noise(self, value: float) -> str:
         """Return a value in units of noise."""
-        return fmt.number(value / self.noise, 3)
+        ratio = value / self.noise
+        return fmt.number(ratio, 2 if ratio < 10.0 else 3)
 
 
 def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:

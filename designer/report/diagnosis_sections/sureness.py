@@ -37,7 +37,8 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
         for warning in finding.warnings:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
     for gone in diagnosis.withdrawn:
-        yield Statement("Withdrawn", withdrawal(gone.effect, gone.covariate, gone.variation), "doubt")
+        why = withdrawal(gone.effect, gone.covariate, gone.variation)
+        yield Statement("Withdrawn", why, "doubt")
     yield _left(diagnosis)
     yield _noise(diagnosis)
 
@@ -63,7 +64,7 @@ def _significance(diagnosis: Diagnosis, finding: Finding) -> Statement:
             f" Without it, the mean square on held-out rows would be "
             f"{fmt.number(1.0 / max(1.0 - finding.heldout_gain, 1e-9), 3)} times as large."
         )
-    return Statement(words.capital(finding.effect.key), accident + gain, "")
+    return Statement(f"Significance of {finding.effect.key}", accident + gain)
 
 
 def _rivals(finding: Finding) -> Statement:
@@ -97,11 +98,12 @@ def _left(diagnosis: Diagnosis) -> Statement:
 
 def _noise(diagnosis: Diagnosis) -> Statement:
     noise = diagnosis.noise
-    shown = fmt.listing(f"{q.with_unit(q.noise)} of a {q.name}" for q, _, _ in quantities(diagnosis))
-    scatter = math.sqrt(diagnosis.structure_after.excess)
+    kinds = list(quantities(diagnosis))
+    shown = fmt.listing(f"{q.with_unit(q.noise)} of a {q.name}" for q, _, _ in kinds)
+    scatter = max(after.heldout.value / q.noise for q, _, after in kinds)
     more = ""
     if scatter > _MUCH:
-        more = f" What is left scatters {fmt.number(scatter, 2)} times as much."
+        more = f" On held-out rows, what is left is up to {fmt.number(scatter, 2)} times that."
     if noise.source == "declared":
         return Statement("Noise as declared", f"{shown}.{more}", "doubt" if more else "")
     text = f"{shown}: {noise.source}, not declared. Multiples of noise rest on it.{more}"

@@ -15,23 +15,19 @@ _UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NEGLIGIBLE = 1e-12
 _DIRECTIONS = {
-    "elastic_modulus": ("scale", "the cable is stiffer than declared", "the cable is softer than declared"),
-    "linear_mass": ("scale", "the cable is heavier than declared", "the cable is lighter than declared"),
-    "platform_mass": (
-        "offset_kg",
-        "the platform with its payload is heavier than declared",
-        "the platform with its payload is lighter than declared",
-    ),
-}  # fmt: skip
+    "elastic_modulus": ("scale", "the cable", "stiffer", "softer"),
+    "linear_mass": ("scale", "the cable", "heavier", "lighter"),
+    "platform_mass": ("offset_kg", "the platform with its payload", "heavier", "lighter"),
+}
 
 
 def plain(effect: Effect, values: Mapping[str, float]) -> str:
     """Return what an effect is, in a few words, with its direction where it has one."""
     if effect.id not in _DIRECTIONS:
         return effect.summary
-    name, more, less = _DIRECTIONS[effect.id]
-    parameter = next(p for p in effect.parameters if p.name == name)
-    return more if values[name] > parameter.neutral else less
+    name, what, more, less = _DIRECTIONS[effect.id]
+    neutral = effect.neutral[name]
+    return f"{what} is {more if values[name] > neutral else less} than declared"
 
 
 def plain_finding(finding: Finding) -> str:
@@ -42,8 +38,7 @@ def plain_finding(finding: Finding) -> str:
 def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
     """Return all fitted values such as ``radius 119.8 ± 0.4 mm``."""
     return ", ".join(
-        f"{label(p.name)}{NO_BREAK}{estimate(estimates[p.name], p.unit)}"
-        for p in effect.parameters
+        f"{label(p.name)}{NO_BREAK}{estimate(estimates[p.name], p.unit)}" for p in effect.parameters
     )
 
 
@@ -54,7 +49,7 @@ def label(name: str) -> str:
 
 def estimate(item: Estimate, unit: str) -> str:
     """Return a value with its standard deviation, to two digits of the latter."""
-    value, std, unit = item.value, item.std, unit
+    value, std = item.value, item.std
     if unit == "m" and abs(value) < 1.0:
         value, std, unit = 1e3 * value, 1e3 * std, "mm"
     size = max(abs(value), std if math.isfinite(std) else 0.0)
@@ -65,6 +60,15 @@ def estimate(item: Estimate, unit: str) -> str:
     if power:
         text = f"({text}) × 10{str(power).translate(_SUPERSCRIPTS)}"
     return f"{text} {unit}".strip().replace(" ", NO_BREAK)
+
+
+def interval(item: Estimate, unit: str, width: float) -> str:
+    """Return a value plus and minus so many standard deviations."""
+    if not math.isfinite(item.std):
+        return fmt.MISSING
+    scale, unit = (1e3, "mm") if unit == "m" and abs(item.value) < 1.0 else (1.0, unit)
+    ends = (scale * (item.value + sign * width * item.std) for sign in (-1, 1))
+    return f"{' to '.join(_short(end) for end in ends)} {unit}".strip().replace(" ", NO_BREAK)
 
 
 def plausible(parameter: Parameter) -> str:

@@ -48,16 +48,18 @@ _STYLE = {
     "axes.spines.right": False,
     "svg.fonttype": "path",
     "svg.hashsalt": "cdpr-designer",
-    "path.simplify": True,
+    "text.parse_math": False,  # names from files are shown as they are
 }
 
 
 @contextmanager
 def drawing() -> Iterator[None]:
-    """Open the style that every figure is made and saved in."""
+    """Open the style that every figure is made and saved in, whatever the user's own is."""
     import matplotlib
 
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_STYLE)
         yield
 
 
@@ -127,18 +129,29 @@ def svg(figure: Figure, key: str, title: str) -> str:
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     figure.savefig(stream, format="svg", transparent=True, metadata=nothing)
     text = stream.getvalue()
-    return _standalone(text[text.index("<svg") :].strip(), key, title)
+    return _standalone(text[text.index("<svg") :].strip(), key, title, _words(figure))
 
 
-def _standalone(text: str, key: str, title: str) -> str:
+def _words(figure: Figure) -> str:
+    """All that is written on a figure beside bare numbers, for those who cannot see it."""
+    from matplotlib.text import Text
+
+    found = [artist for artist in figure.findobj(Text) if artist.get_visible()]
+    words = dict.fromkeys(str(artist.get_text()) for artist in found if isinstance(artist, Text))
+    return "; ".join(word for word in words if not re.fullmatch(r"[−\d.]*", word))
+
+
+def _standalone(text: str, key: str, title: str, words: str) -> str:
     text = re.sub(r'\bid="', f'id="{key}-', text)
     text = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", text)
     text = re.sub(r' d="[^"]+"', lambda match: _rounded(match.group()), text)
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height)="[^"]*"', "", head)
-    return (
-        f'{head} role="img" aria-label={quoteattr(title)}>\n <title>{escape(title)}</title>{body}'
-    )
+    # Matplotlib has this as a style sheet, which would act on the whole page around the chart.
+    body = re.sub(r"<style.*?</style>", "", body, flags=re.DOTALL)
+    head += ' stroke-linejoin="round" stroke-linecap="butt"'
+    head += f' role="img" aria-label={quoteattr(title)}>'
+    return f"{head}\n <title>{escape(title)}</title>\n <desc>{escape(words)}</desc>{body}"
 
 
 def _rounded(path: str) -> str:

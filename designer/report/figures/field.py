@@ -11,8 +11,8 @@ from designer.physics import catenary
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.statics.verdict import Verdict
 from designer.study import Study
+from designer.verdict import Verdict
 from designer.workspace.demand import is_left_out
 
 _REASONS = {

@@ -19,8 +19,8 @@ from designer.report.figures.quantity import Quantity
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.statics.verdict import Verdict
 from designer.study import Study, Workspace
+from designer.verdict import Verdict
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep
 

@@ -13,7 +13,7 @@ from designer.report.figures.field import Sag, cable_curves_m, chords_m, largest
 from designer.report.figures.names import names_of
 from designer.report.figures.view import View, clear_azimuth_rad, fitting
 from designer.statics.inverse import Statics
-from designer.statics.verdict import Verdict
+from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,7 @@ from designer.analysis import Analysis
 from designer.report import format as fmt
 from designer.report.findings import Findings, Unserved
 from designer.report.parts import Statement
-from designer.statics.verdict import Verdict
+from designer.verdict import Verdict
 from designer.workspace.result import WorkspaceMap
 
 _MOST_NAMES = 4

@@ -10,7 +10,7 @@ from designer.analysis import Analysis, PoseAnalysis
 from designer.report import format as fmt
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.sizing.loop import LoopSizing
-from designer.statics.verdict import Verdict
+from designer.verdict import Verdict
 
 _MOST_TURNS = 16
 _LAST_TURNS = 3

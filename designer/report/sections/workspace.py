@@ -10,8 +10,8 @@ from designer.report import format as fmt
 from designer.report.findings import Findings, OtherPolicy
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.report.pictures import Pictures
-from designer.statics.verdict import Verdict
 from designer.study import HangsBelow, Workspace
+from designer.verdict import Verdict
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 

@@ -1,0 +1,74 @@
+"""The search, round by round."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.diagnosis.result import Diagnosis, Estimate
+from designer.diagnosis.search import Step, Trial
+from designer.report import format as fmt
+from designer.report.diagnosis_sections import words
+from designer.report.parts import Column, Group, Row, Table
+
+_MOST = 6
+
+
+@dataclass(frozen=True, slots=True)
+class SearchSection:
+    """The search.
+
+    Parameters
+    ----------
+    table : Table
+        The best candidates of each round, and what was added.
+    """
+
+    table: Table
+
+
+def search_section(diagnosis: Diagnosis) -> SearchSection:
+    """Return the search, round by round."""
+    groups = tuple(_group(k, step) for k, step in enumerate(diagnosis.steps, start=1))
+    columns = (
+        Column("Candidate", is_number=False),
+        Column("Gain"),
+        Column("Chance"),
+        Column("Gain unseen"),
+        Column("Its values", is_number=False),
+    )
+    caption = f"Each round: the {_MOST} best candidates in addition to what was found before."
+    return SearchSection(Table(caption, columns, groups))
+
+
+def _group(number: int, step: Step) -> Group:
+    added = step.added.key if step.added else ""
+    remark = f"{fmt.plural(len(step.trials), 'candidate')}; "
+    remark += f"added {added}" if added else "nothing earned its place"
+    rows = tuple(_row(trial, trial.effect.key == added) for trial in step.trials[:_MOST])
+    return Group(rows, f"Round {number}", remark, "good" if added else "")
+
+
+def _row(trial: Trial, is_added: bool) -> Row:
+    cells = (
+        trial.effect.key,
+        fmt.number(trial.gain, 3) if abs(trial.gain) >= 0.1 else "0",
+        words.chance(trial.chance),
+        fmt.number(trial.heldout_gain, 3),
+        _values(trial),
+    )
+    return Row(cells, "good" if is_added else "" if trial.earns_its_place else "muted")
+
+
+def _values(trial: Trial) -> str:
+    at = 0
+    for setting in trial.fit.settings:
+        names = list(setting.values)
+        if setting.effect.key == trial.effect.key:
+            std = trial.fit.std[at : at + len(names)]
+            estimates = {
+                name: Estimate(setting.values[name], float(s))
+                for name, s in zip(names, std, strict=True)
+            }
+            return words.values(trial.effect, estimates)
+        at += len(names)
+    return ""
