@@ -45,9 +45,12 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
 
 def withdrawal(effect: str, covariate: str, variation: float) -> str:
     """Say why an effect that fits was not kept."""
+    size = f"{fmt.percent(variation, 2)} of itself"
+    if variation > _MUCH:
+        size = f"{fmt.number(variation, 2)} times itself"
     return (
-        f"{effect} fits as a constant, but would have to change with {covariate} by "
-        f"{fmt.percent(variation, 2)} of itself for each standard deviation of {covariate}."
+        f"{effect} fits as a constant, but would have to change with {covariate} by {size} for "
+        f"each standard deviation of {covariate}."
     )
 
 

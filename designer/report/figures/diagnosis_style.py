@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 BEFORE = "#8A8A8A"
 AFTER = palette.SAG
 TREND = palette.WARNING
-HELDOUT = "#E9EDF1"
+HELDOUT = "#DFECF6"
 MOST_POINTS = 500
 """Points of a panel; more would only make the file heavy."""
 

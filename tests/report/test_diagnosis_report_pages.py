@@ -1,0 +1,223 @@
+"""The diagnosis report: what it says of data with a known effect, with none, and with a drift."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from designer.analysis import Provenance
+from designer.config import read_study
+from designer.diagnosis.case import case_of
+from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.result import Choice, Diagnosis, Proposal, Withdrawn
+from designer.effects.effect import Setting
+from designer.effects.registry import all_effects
+from designer.measured.read import read_measured
+from designer.report.diagnosis import (
+    DiagnosisContext,
+    build_diagnosis_context,
+    render_diagnosis_html,
+    write_diagnosis,
+)
+from designer.report.diagnosis_drawings import draw
+
+CONFIG = """
+name: {name}
+robot:
+  anchors: [[0, 0, 12], [30, 0, 12.5], [14, 26, 11.5]]
+  platform: {{mass: 180 kg}}
+cable: {{density: 7800 kg/m^3, youngs_modulus: 200 GPa, allowable_stress: 180 MPa}}
+pose: [14.5, 10, 5]
+measurements:
+  file: measured.csv
+  cable: {{linear_mass: 0.142 kg/m, axial_stiffness: 3.3 MN}}
+  noise: {{length: 1 mm, tension: 4 N}}
+"""
+COLUMN = "load <b>&$x_{"
+HEAD = (
+    "time_s,x_m,y_m,z_m,length_1_m,length_2_m,length_3_m,"
+    f"tension_1_N,tension_2_N,tension_3_N,{COLUMN}"
+)
+N_ROWS = 60
+RADIUS_M = 0.12
+
+
+def diagnosed(folder: Path, kind: str, name: str) -> Diagnosis:
+    """Diagnose synthetic readings: with pulleys, with nothing, or with a drift of tensions."""
+    rng = np.random.default_rng(3)
+    position = rng.uniform([9, 5, 2], [20, 15, 8], size=(N_ROWS, 3))
+    time = np.linspace(0.0, 6000.0, N_ROWS)
+    extra = rng.normal(size=N_ROWS)
+
+    def write(length: np.ndarray, tension: np.ndarray) -> None:
+        table = np.column_stack([time, position, length, tension, extra])
+        text = "\n".join(",".join(f"{x:.6f}" for x in row) for row in table)
+        (folder / "measured.csv").write_text(f"{HEAD}\n{text}\n", encoding="utf-8")
+
+    config = folder / "study.yaml"
+    config.write_text(CONFIG.format(name=name), encoding="utf-8")
+    study = read_study(config)
+    assert study.measurements is not None
+    write(np.full((N_ROWS, 3), 20.0), np.full((N_ROWS, 3), 1000.0))
+    case = case_of(study, study.measurements, read_measured(study))
+    pulley = next(e for e in all_effects(case.machine) if e.id == "pulley_radius")
+    settings = [Setting(pulley, {"radius_m": RADIUS_M})] if kind == "pulley" else []
+    readings = Predictor(case.machine, case.measured)(settings)
+    tension = readings.tension_N + rng.normal(scale=4.0, size=(N_ROWS, 3))
+    if kind == "drift":
+        wave = np.sin(2 * np.pi * time / 6000.0)[:, None]
+        tension = tension + 12.0 * wave * np.array([1.0, -1.0, 1.0])
+    write(readings.length_m + rng.normal(scale=1e-3, size=(N_ROWS, 3)), tension)
+    return diagnose(case_of(study, study.measurements, read_measured(study)))
+
+
+@pytest.fixture(scope="module")
+def diagnoses(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Diagnosis]:
+    return {
+        kind: diagnosed(tmp_path_factory.mktemp(kind), kind, name)
+        for kind, name in (
+            ("pulley", "Crane"),
+            ("nothing", "'<b>A</b> & <script>alert(1)</script>'"),
+            ("drift", "Crane"),
+        )
+    }
+
+
+def context_of(diagnosis: Diagnosis) -> DiagnosisContext:
+    return build_diagnosis_context(diagnosis, draw(diagnosis), Provenance.now())
+
+
+@pytest.fixture(scope="module")
+def pages(diagnoses: dict[str, Diagnosis]) -> Callable[[str], str]:
+    made = {kind: render_diagnosis_html(context_of(d)) for kind, d in diagnoses.items()}
+    return made.__getitem__
+
+
+def visible(html: str) -> str:
+    """The page's text without styles and drawings."""
+    bare = re.sub(r"<style>.*?</style>|<svg.*?</svg>", " ", html, flags=re.DOTALL)
+    return " ".join(re.sub(r"<[^>]+>", " ", bare).replace("\xa0", " ").split())
+
+
+def test_a_found_effect_is_named_with_its_value(diagnoses: dict[str, Diagnosis]) -> None:
+    page = context_of(diagnoses["pulley"]).first_page
+    assert page.verdict.title == "Found"
+    assert "pulleys" in page.verdict.text
+    value, std = re.search(r"([\d.]+)\s±\s([\d.]+)", page.findings[0].text).groups()  # type: ignore[union-attr]
+    assert abs(float(value) - 1e3 * RADIUS_M) < 4.0 * float(std) < 4.0
+    before, after = (float(page.errors.groups[0].rows[0].cells[k]) for k in (1, 3))
+    assert before > 50.0
+    assert after < 1.3
+
+
+def test_effects_are_shown_as_written(diagnoses: dict[str, Diagnosis]) -> None:
+    context = context_of(diagnoses["pulley"])
+    assert context.first_page.design.config == "study.diagnosed.yaml"
+    assert re.fullmatch(
+        r"effects:\n  pulley_radius:\n    radius_m: 0\.1[12]\d+\n",
+        context.first_page.design.effects,
+    )
+
+
+def test_nothing_to_find_says_so(
+    diagnoses: dict[str, Diagnosis], pages: Callable[[str], str]
+) -> None:
+    context = context_of(diagnoses["nothing"])
+    assert context.first_page.verdict.title == "Nothing to find"
+    assert context.found is None
+    assert context.unexplained is None
+    assert "Before" not in [column.title for column in context.first_page.errors.columns]
+    assert "holds no effects" in visible(pages("nothing"))
+
+
+def test_what_is_unexplained_names_its_carrier(pages: Callable[[str], str]) -> None:
+    text = visible(pages("drift"))
+    assert "Unexplained. The residual goes with time_s" in text
+    assert "An empirical correction: no physics, not used in the design" in text
+    assert "What is unexplained" in text
+
+
+@pytest.mark.parametrize("kind", ["pulley", "nothing", "drift"])
+def test_ids_are_unique_and_links_lead_somewhere(kind: str, pages: Callable[[str], str]) -> None:
+    html = pages(kind)
+    ids = re.findall(r'\bid="([^"]+)"', html)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+
+
+def test_text_of_the_user_is_escaped(pages: Callable[[str], str]) -> None:
+    assert "<script>alert" not in pages("nothing")
+    assert "load <b>" not in pages("nothing")
+    assert "load &lt;b&gt;" in pages("nothing")
+
+
+def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]) -> None:
+    found = diagnoses["pulley"]
+    finding = dataclasses.replace(
+        found.findings[0], rivals=("drum_scale",), warnings=("radius_m = 9 m is outside",)
+    )
+    proposal = Proposal(
+        "pulley_radius", "drum_scale", np.array([[9.0, 5.0, 2.0]]), np.array([41.5])
+    )
+    doubtful = dataclasses.replace(
+        found,
+        findings=(finding,),
+        proposals=(proposal,),
+        withdrawn=(Withdrawn("creep", "time_s", 0.4),),
+    )
+    context = context_of(doubtful)
+    assert context.first_page.verdict.tone == "doubt"
+    text = visible(render_diagnosis_html(context))
+    assert "cannot tell pulley_radius from drum_scale" in text
+    assert "(9.00, 5.00, 2.00) m 41.5" in text
+    assert "radius_m = 9 m is outside" in text
+    assert "creep fits as a constant, but would have to change with time_s by 40 %" in text
+
+
+def test_design_says_what_changes_and_what_does_not_reach_it(
+    diagnoses: dict[str, Diagnosis],
+) -> None:
+    before = Choice("grade", "5 mm", 0.005, 3500.0, 0.0050, 3520.0)
+    after = Choice("grade", "6 mm", 0.006, 3640.0, 0.0055, 3872.0)
+    changed = dataclasses.replace(diagnoses["pulley"], design_before=before, design_after=after)
+    design = context_of(changed).first_page.design
+    assert design.sentence == "The choice changes from grade, 5 mm to grade, 6 mm."
+    assert "(+4.0 %)" in design.numbers.replace("\xa0", " ")
+    kept = dataclasses.replace(diagnoses["nothing"], design_before=before, design_after=before)
+    assert "stays as it is: grade, 5 mm" in context_of(kept).first_page.design.sentence
+
+
+def test_every_table_is_rectangular(diagnoses: dict[str, Diagnosis]) -> None:
+    context = context_of(diagnoses["pulley"])
+    assert context.found is not None
+    tables = [
+        context.first_page.errors, context.errors.stages, *context.errors.cables,
+        context.search.table, context.residual.structure, context.found.parameters,
+        context.found.laws, context.data.skipped,
+    ]  # fmt: skip
+    for table in tables:
+        assert table is not None
+        for row in (row for group in table.groups for row in group.rows):
+            assert len(row.cells) == len(table.columns)
+
+
+def test_both_files_are_written_whole(diagnoses: dict[str, Diagnosis], tmp_path: Path) -> None:
+    from pypdf import PdfReader
+
+    write_diagnosis(diagnoses["pulley"], tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["diagnosis.html", "diagnosis.pdf"]
+    pdf = PdfReader(tmp_path / "diagnosis.pdf")
+    assert "What was wrong" in pdf.pages[0].extract_text()
+    assert len(pdf.outline) >= 8
+
+
+def test_the_context_is_documented() -> None:
+    documented = DiagnosisContext.__doc__ or ""
+    for field in dataclasses.fields(DiagnosisContext):
+        assert re.search(rf"^ +(.*, )?{field.name}(, .*)? : ", documented, re.MULTILINE), field.name

@@ -1,0 +1,78 @@
+"""Fitted values, chances and effects in words."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from designer.diagnosis.result import Estimate
+from designer.effects.effect import Effect, Parameter
+from designer.report.diagnosis_sections import words
+from designer.report.figures.diagnosis_carriers import running_median, strongest_channel
+from designer.report.figures.diagnosis_style import MOST_POINTS, thinned, window
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "unit", "text"),
+    [
+        (0.0900063, 0.000062, "m", "90.006 ± 0.062 mm"),
+        (1.5, 0.02, "m", "1.500 ± 0.020 m"),
+        (1.2482, 0.0031, "", "1.2482 ± 0.0031"),
+        (12.5e-6, 0.31e-6, "1/K", "(1.250 ± 0.031) × 10⁻⁵ 1/K"),
+        (-3.2, 14.0, "kg", "−3 ± 14 kg"),
+        (0.0, float("nan"), "N", "0 N"),
+    ],
+)
+def test_estimate(value: float, std: float, unit: str, text: str) -> None:
+    shown = words.estimate(Estimate(value, std), unit)
+    assert shown.replace("\u00a0", " ") == text
+
+
+def test_interval() -> None:
+    assert words.interval(Estimate(2.0, 0.5), "kg", 2.0).replace("\u00a0", " ") == "1 to 3 kg"
+    assert words.interval(Estimate(2.0, float("nan")), "kg", 2.0) == "–"
+
+
+@pytest.mark.parametrize(
+    ("value", "start"), [(0.0, "below"), (0.003, "0.30"), (2e-7, "2.0"), (float("nan"), "–")]
+)
+def test_chance(value: float, start: str) -> None:
+    assert words.chance(value).startswith(start)
+
+
+def test_label_drops_the_unit() -> None:
+    assert words.label("offset_1_m") == "offset 1"
+    assert words.label("flexural_rigidity_N_m2") == "flexural rigidity"
+    assert words.label("scale") == "scale"
+
+
+@pytest.mark.parametrize(("scale", "word"), [(0.9, "softer"), (1.1, "stiffer")])
+def test_plain_words_tell_the_direction(scale: float, word: str) -> None:
+    parameter = Parameter("scale", "", 1.0, 0.1, (0.1, 3.0), (0.5, 1.6))
+    effect = Effect("elastic_modulus", "softer or stiffer", "law", "source", (parameter,))
+    assert word in words.plain(effect, {"scale": scale})
+    other = Effect("of_a_plugin", "ice on the cable", "law", "source", (parameter,))
+    assert words.plain(other, {"scale": scale}) == "ice on the cable"
+
+
+def test_strongest_channel_and_its_trend() -> None:
+    rng = np.random.default_rng(0)
+    covariate = np.linspace(-1.0, 1.0, 200)
+    residual = rng.normal(size=(200, 4))
+    residual[:, 1] = np.nan
+    residual[:, 2] += 5.0 * covariate
+    assert strongest_channel(residual, covariate) == 2
+    x, trend = running_median(covariate, residual[:, 2])
+    assert np.max(np.abs(trend - 5.0 * x)) < 1.5
+    x, trend = running_median(np.sign(covariate), residual[:, 2])
+    assert x.tolist() == [-1.0, 1.0]
+    assert trend[0] < -1.5 < 1.5 < trend[1]
+
+
+def test_long_logs_are_thinned_and_wild_readings_do_not_flatten() -> None:
+    assert len(thinned(100_000)) <= MOST_POINTS
+    assert len(thinned(120)) == 120
+    values = np.random.default_rng(1).normal(size=1000)
+    values[0] = 1e6
+    low, high = window(values)
+    assert -10.0 < low < -3.0 < 3.0 < high < 10.0
