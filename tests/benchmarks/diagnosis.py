@@ -110,14 +110,11 @@ def main() -> None:
     blank = run([(names[k % len(names)], (), 0.0, k) for k in range(arguments.nothing)])
     false = sum(row[4] == "false" or bool(row[6]) for row in blank)
     print(f"nothing there: {false} of {len(blank)} with a false finding or structure")
-    other = run(
-        [(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds]
-    )
-    for row in other:
+    other = [(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds]
+    for row in run(other):
         told = "unexplained" if row[6] else "explained"
-        print(
-            f"  not in the list: {row[0]} {row[1][0]} at {row[2]:g}: {told}: {', '.join(row[5]) or 'none'}"
-        )
+        named = ", ".join(row[5]) or "none"
+        print(f"  not in the list: {row[0]} {row[1][0]} at {row[2]:g}: {told}: {named}")
 
 
 if __name__ == "__main__":
