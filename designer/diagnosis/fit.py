@@ -13,6 +13,7 @@ from designer.effects.effect import Effect, Setting, Values
 
 _HUBER = 3.0
 _STEP = 1e-3
+_TRIAL_TURNS, _ALL_TURNS = 12, 80
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,6 +79,8 @@ def fit(
     effects: Sequence[Effect],
     rows: BoolArray,
     known: Sequence[Setting] = (),
+    *,
+    thorough: bool = False,
 ) -> Fit:
     """Fit all parameters of the effects to the readings of some rows.
 
@@ -94,6 +97,8 @@ def fit(
         What may be seen.
     known : sequence of Setting
         Effects whose values are already near.
+    thorough : bool
+        Whether to go on until nothing moves; a trial need not, nor one part of a validation.
     """
     taken = rows[:, None] & ~np.isnan(problem.readings)
     if not effects:
@@ -101,7 +106,11 @@ def fit(
         return Fit((), np.empty(0), np.empty(0), loss, int(taken.sum()))
     fresh = [e for e in effects if e.key not in {s.effect.key for s in known}]
     starts = [s for e in fresh for s in e.starts] or [{}]
-    fits = [_fit_from(problem, effects, taken, starting_vector(effects, known, s)) for s in starts]
+    turns = _ALL_TURNS if thorough or not known else _TRIAL_TURNS
+    fits = [
+        _fit_from(problem, effects, taken, starting_vector(effects, known, s), turns)
+        for s in starts
+    ]
     return min(fits, key=lambda one: one.loss)
 
 
@@ -119,7 +128,11 @@ def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) ->
 
 
 def _fit_from(
-    problem: Problem, effects: Sequence[Effect], taken: BoolArray, start: FloatArray
+    problem: Problem,
+    effects: Sequence[Effect],
+    taken: BoolArray,
+    start: FloatArray,
+    turns: int,
 ) -> Fit:
     from scipy.optimize import least_squares
 
@@ -136,16 +149,18 @@ def _fit_from(
         f_scale=_HUBER,
         xtol=1e-8,
         ftol=1e-8,
-        max_nfev=12,
+        max_nfev=turns,
     )
     loss, count = 2.0 * float(answer.cost), int(taken.sum())
     variance = max(1.0, loss / max(count - len(start), 1))
     slopes = jacobian(problem, effects, answer.x)[taken]
-    covariance = np.linalg.pinv(slopes.T @ slopes, rcond=1e-14)
+    scale = np.linalg.norm(slopes, axis=0)
+    scale[scale == 0.0] = 1.0
+    covariance = np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-12)
     return Fit(
         settings=settings_at(effects, answer.x),
         vector=answer.x,
-        std=np.sqrt(variance * np.diag(covariance)),
+        std=np.sqrt(variance * np.diag(covariance)) / scale,
         loss=loss,
         n_data=count,
     )

@@ -139,12 +139,15 @@ class Searcher:
             found = self._exchanged([*found, best.effect], best.fit, outsiders)
             found = self._pruned(found)
             present = self.fit(found, best.fit)
-        return Search(tuple(steps), present, tuple(found))
+        return Search(tuple(steps), self.fit(found, present, thorough=True), tuple(found))
 
-    def fit(self, found: Sequence[Effect], near: Fit | None = None) -> Fit:
+    def fit(
+        self, found: Sequence[Effect], near: Fit | None = None, *, thorough: bool = False
+    ) -> Fit:
         """Fit the given effects and the found ones together."""
         effects = self._sorted([*self._given, *found])
-        return fit(self._problem, effects, self._rows, near.settings if near else ())
+        known = near.settings if near else ()
+        return fit(self._problem, effects, self._rows, known, thorough=thorough)
 
     def trials(self, found: Sequence[Effect], present: Fit) -> list[Trial]:
         """Try every other candidate in addition, best first."""

@@ -46,7 +46,7 @@ class Structure:
     carriers : tuple of Carrier
         All covariates, strongest first.
     excess : float
-        Robust mean square of the residual, in units of noise; 1 is noise alone.
+        Robust mean square of the residual about its median, in units of noise; 1 is noise alone.
     """
 
     carriers: tuple[Carrier, ...]
@@ -128,7 +128,7 @@ def find_structure(
         for name, (surprise, share) in observed.items()
     ]
     carriers.sort(key=lambda c: (c.chance, -observed[c.name][0]))
-    return Structure(tuple(carriers), float(np.mean(np.minimum(channels**2, _CUT**2))))
+    return Structure(tuple(carriers), float(np.mean(channels**2)))
 
 
 def _channels(residual: FloatArray) -> FloatArray:
@@ -138,7 +138,10 @@ def _channels(residual: FloatArray) -> FloatArray:
     for kind in (residual[:, :n], residual[:, n:]):
         if np.isnan(kind).all():
             continue
-        filled = np.clip(np.nan_to_num(kind, nan=0.0), -_CUT, _CUT)
+        known = kind[:, ~np.isnan(kind).all(axis=0)]
+        centred = known - np.nanmedian(known, axis=0)
+        limit = _CUT * np.maximum(1.4826 * np.nanmedian(np.abs(centred), axis=0), 1.0)
+        filled = np.clip(np.nan_to_num(centred, nan=0.0), -limit, limit)
         filled = filled - filled.mean(axis=0)
         mean = filled.sum(axis=1, keepdims=True) / np.sqrt(n)
         kinds += [filled, mean]

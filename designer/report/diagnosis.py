@@ -149,7 +149,7 @@ def _headings(diagnosis: Diagnosis) -> tuple[Heading, ...]:
     has_found = bool(diagnosis.findings or diagnosis.withdrawn)
     present = {
         "answer": ("What was wrong", True),
-        "found": ("What was found", has_found),
+        "found": ("What was found" if diagnosis.findings else "What was withdrawn", has_found),
         "errors": ("Errors before and after", True),
         "residual": ("The residual", True),
         "unexplained": ("What is unexplained", diagnosis.is_unexplained),

@@ -177,7 +177,10 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     assert "cannot tell pulley_radius from drum_scale" in text
     assert "(9.00, 5.00, 2.00) m 41.5" in text
     assert "radius_m = 9 m is outside" in text
-    assert "creep fits as a constant, but would have to change with time_s by 40 %" in text
+    assert (
+        "Creep withdrawn. It fits as a constant, but would have to change with time_s by 40 %"
+        in text
+    )
 
 
 def test_design_says_what_changes_and_what_does_not_reach_it(

@@ -50,8 +50,7 @@ def found_section(diagnosis: Diagnosis) -> FoundSection | None:
         rivals=tuple(_rivals(diagnosis)),
         proposals=tuple(_proposal(item) for item in diagnosis.proposals),
         withdrawn=tuple(
-            Statement(words.capital(w.effect), withdrawal(w.effect, w.covariate, w.variation))
-            for w in diagnosis.withdrawn
+            Statement(words.capital(w.effect), withdrawal(w)) for w in diagnosis.withdrawn
         ),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from designer.diagnosis.result import Diagnosis, Finding
+from designer.diagnosis.result import Diagnosis, Finding, Withdrawn
 from designer.diagnosis.search import Trial
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -37,20 +37,19 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
         for warning in finding.warnings:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
     for gone in diagnosis.withdrawn:
-        why = withdrawal(gone.effect, gone.covariate, gone.variation)
-        yield Statement("Withdrawn", why, "doubt")
+        yield Statement(f"{words.capital(gone.effect)} withdrawn", withdrawal(gone), "doubt")
     yield _left(diagnosis)
     yield _noise(diagnosis)
 
 
-def withdrawal(effect: str, covariate: str, variation: float) -> str:
+def withdrawal(gone: Withdrawn) -> str:
     """Say why an effect that fits was not kept."""
-    size = f"{fmt.percent(variation, 2)} of itself"
-    if variation > _MUCH:
-        size = f"{fmt.number(variation, 2)} times itself"
+    size = f"{fmt.percent(gone.variation, 2)} of itself"
+    if gone.variation > _MUCH:
+        size = f"{fmt.number(gone.variation, 2)} times itself"
     return (
-        f"{effect} fits as a constant, but would have to change with {covariate} by {size} for "
-        f"each standard deviation of {covariate}."
+        f"It fits as a constant, but would have to change with {gone.covariate} by {size} for "
+        f"each standard deviation of {gone.covariate}."
     )
 
 

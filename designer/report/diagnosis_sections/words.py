@@ -36,10 +36,9 @@ def plain_finding(finding: Finding) -> str:
 
 
 def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
-    """Return all fitted values such as ``radius 119.8 ± 0.4 mm``."""
-    return ", ".join(
-        f"{label(p.name)}{NO_BREAK}{estimate(estimates[p.name], p.unit)}" for p in effect.parameters
-    )
+    """Return all fitted values such as ``radius = 119.8 ± 0.4 mm``."""
+    shown = (f"{label(p.name)} = {estimate(estimates[p.name], p.unit)}" for p in effect.parameters)
+    return ", ".join(text.replace(" ", NO_BREAK) for text in shown)
 
 
 def label(name: str) -> str:

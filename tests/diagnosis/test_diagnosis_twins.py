@@ -1,0 +1,232 @@
+"""The closed loop on data whose physics shares nothing with the model."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from twins import physics
+from twins.dataset import DataSet, make, size_for
+from twins.robots import HALL6, YARD3, TwinRobot
+
+from designer.catalogue.registry import load_catalogue
+from designer.config import read_study
+from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.case import case_of
+from designer.diagnosis.design import choice, with_design
+from designer.diagnosis.diagnose import Case, diagnose
+from designer.diagnosis.result import Diagnosis
+from designer.diagnosis_files import diagnosed_config, diagnosis_dict
+from designer.effects.declared import as_built_by
+from designer.errors import InputError
+from designer.measured.read import read_measured
+from designer.robot import Poses
+from designer.statics.inverse import solve_sagging
+from designer.study import Study
+
+SHARED = Path(__file__).parents[3] / "shared" / "measured" / "simulated-twins"
+
+
+def study_of(dataset: DataSet, folder: Path) -> Study:
+    dataset.write(folder)
+    return read_study(folder / "config.yaml")
+
+
+def case_in(study: Study) -> Case:
+    assert study.measurements is not None
+    return case_of(study, study.measurements, read_measured(study))
+
+
+def twin(robot: TwinRobot, effect: str, over_noise: float, seed: int = 0) -> DataSet:
+    settled = effect != "clock_offset"
+    size = size_for(robot, effect, over_noise, seed, settled=settled)
+    return make(robot, {effect: robot.draw(effect, size, seed)}, seed=seed, settled=settled)
+
+
+@pytest.mark.parametrize(
+    ("robot", "effect"),
+    [
+        (YARD3, "pulley_radius"),
+        (YARD3, "elastic_modulus"),
+        (YARD3, "linear_mass"),
+        (YARD3, "platform_mass"),
+        (YARD3, "anchor_offset"),
+        (YARD3, "length_offset"),
+        (YARD3, "creep"),
+        (YARD3, "pulley_friction"),
+        (YARD3, "wind_drag"),
+        (YARD3, "base_tilt"),
+        (YARD3, "tension_gain"),
+        (HALL6, "centre_of_mass_offset"),
+        (HALL6, "tension_bias"),
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_a_single_effect_is_found_first_with_its_size(robot, effect, tmp_path) -> None:
+    dataset = twin(robot, effect, 10.0)
+    found = diagnose(case_in(study_of(dataset, tmp_path)))
+    assert [finding.effect.id for finding in found.findings] == [effect]
+    assert not found.is_unexplained
+    truth = dict(dataset.effects[effect])
+    assert found.findings[0].effect.cable == truth.pop("cable", None)
+    for name, value in truth.items():
+        estimate = found.findings[0].parameters[name]
+        assert abs(estimate.value - value) < 4.0 * estimate.std
+    before, after = found.stages[0], found.final
+    assert after.length_m is not None
+    assert after.tension_N is not None
+    assert before.length_m is not None
+    assert after.length_m.heldout.value < 1.2 * found.noise.length_m
+    assert after.tension_N.heldout.value < 1.2 * found.noise.tension_N
+    assert after.length_m.heldout.low < after.length_m.heldout.value < after.length_m.heldout.high
+
+
+def test_two_effects_are_found_together(tmp_path) -> None:
+    sizes = {
+        e: YARD3.draw(e, size_for(YARD3, e, 10.0), 0) for e in ("pulley_radius", "platform_mass")
+    }
+    found = diagnose(case_in(study_of(make(YARD3, sizes), tmp_path)))
+    assert {finding.effect.id for finding in found.findings} == set(sizes)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nothing_is_found_where_nothing_is(seed, tmp_path) -> None:
+    found = diagnose(case_in(study_of(make(YARD3, seed=seed), tmp_path)))
+    assert found.findings == ()
+    assert not found.is_unexplained
+    assert len(found.stages) == 1
+
+
+def test_mass_that_drifts_is_unexplained_and_goes_with_time(tmp_path) -> None:
+    drift = {"cable_mass_drift": {"gain": 0.15, "period_s": 40000.0}}
+    found = diagnose(case_in(study_of(make(YARD3, drift, seed=1), tmp_path)))
+    assert found.is_unexplained
+    # The day's temperature goes with time as well, so either may come first.
+    strong = {c.name for c in found.structure_after.carriers if c.chance < 0.01}
+    assert "time_s" in strong
+    assert "linear_mass" not in {finding.effect.id for finding in found.findings}
+    assert found.correction is not None
+
+
+def test_rows_held_out_change_no_finding(tmp_path) -> None:
+    """Spoiling what no fit may see leaves every fitted number as it is."""
+    case = case_in(study_of(twin(YARD3, "elastic_modulus", 10.0), tmp_path))
+    clean = diagnose(case)
+    unseen = heldout_rows(case.measured.n_rows)
+    length = np.array(case.measured.length_m)
+    length[unseen] += np.random.default_rng(0).normal(0, 0.05, length[unseen].shape)
+    spoilt = diagnose(replace(case, measured=replace(case.measured, length_m=length)))
+    assert clean.findings[0].parameters == spoilt.findings[0].parameters
+    assert spoilt.final.length_m.heldout.value > 3 * clean.final.length_m.heldout.value
+
+
+def test_outliers_are_shown_and_do_little_harm(tmp_path) -> None:
+    effect = {"platform_mass": YARD3.draw("platform_mass", size_for(YARD3, "platform_mass", 10.0))}
+    dataset = make(YARD3, effect, outliers=0.03, missing=0.05, seed=2)
+    found = diagnose(case_in(study_of(dataset, tmp_path)))
+    assert [finding.effect.id for finding in found.findings] == ["platform_mass"]
+    planted = int(dataset.outlier_length.sum() + dataset.outlier_tension.sum())
+    assert 0.6 * planted <= len(found.outliers) <= planted
+    true = effect["platform_mass"]["offset_kg"]
+    assert found.findings[0].parameters["offset_kg"].value == pytest.approx(true, rel=0.05)
+
+
+def test_lengths_in_millimetres_are_told_by_their_scale(tmp_path) -> None:
+    case = case_in(study_of(make(YARD3), tmp_path))
+    scaled = replace(case.measured, length_m=1e3 * case.measured.length_m)
+    with pytest.raises(InputError, match="millimetres"):
+        diagnose(replace(case, measured=scaled))
+
+
+def test_effects_without_their_columns_are_skipped_and_said(tmp_path) -> None:
+    case = case_in(study_of(make(YARD3), tmp_path))
+    assert case.study.measurements is not None
+    bare = replace(case.measured, temperature_C=None, wind_m_per_s=None)
+    skipped = dict(case_of(case.study, case.study.measurements, bare).skipped)
+    assert "temperature_C" in skipped["thermal_expansion"]
+    assert "wind" in skipped["wind_drag"]
+    assert "settled: false" in skipped["clock_offset"]
+
+
+def test_unknowns_from_the_start_are_fitted_and_no_finding(tmp_path) -> None:
+    offsets = YARD3.draw("length_offset", 0.05)
+    study = study_of(make(YARD3, {"length_offset": offsets}), tmp_path)
+    assert study.measurements is not None
+    study = replace(study, measurements=replace(study.measurements, unknown=("length_offset",)))
+    found = diagnose(case_in(study))
+    assert found.findings == ()
+    values = {name: value for setting in found.given for name, value in setting.values.items()}
+    assert values == pytest.approx(offsets, abs=1e-3)
+
+
+def diagnosed(effect: str, folder: Path) -> tuple[Diagnosis, Study]:
+    """Return the diagnosis, and the study read back from the config that it writes."""
+    found = diagnose(case_in(study_of(twin(YARD3, effect, 10.0), folder)))
+    better = folder / "elsewhere" / "config.diagnosed.yaml"
+    better.parent.mkdir()
+    better.write_text(diagnosed_config(found, better.parent))
+    return found, read_study(better)
+
+
+@pytest.mark.parametrize("effect", ["pulley_radius", "elastic_modulus", "linear_mass"])
+def test_the_design_follows_what_was_found(effect, tmp_path) -> None:
+    """The diagnosed config gives the tensions that the other physics gives with the effect."""
+    found, better = diagnosed(effect, tmp_path)
+    assert [one.id for one in better.effects] == [effect]
+    assert read_measured(better).n_rows == found.measured.n_rows
+    built = as_built_by(better)
+    grade = load_catalogue(with_plugins=False).grade("unirope-7x19-galvanised")
+    cable = built.cable(grade.cable(grade.sizes[4], 5.0))
+    pose = np.array([[13.0, 9.0, 6.0]])
+    ours = solve_sagging(built.robot, Poses.at(pose), cable)
+    values = found.settings[0].values
+    machine = replace(
+        YARD3.machine(),
+        linear_mass=np.full((1, 3), grade.sizes[4].linear_density_kg_per_m),
+        stiffness_N=np.full((1, 3), grade.axial_stiffness_N(grade.sizes[4])),
+    )
+    if effect == "pulley_radius":
+        machine = replace(machine, pulley_radius_m=values["radius_m"])
+    elif effect == "elastic_modulus":
+        machine = replace(machine, stiffness_N=machine.stiffness_N * values["scale"])
+    else:
+        machine = replace(machine, linear_mass=machine.linear_mass * values["scale"])
+    other = physics.solve(machine, pose, np.eye(3)[None])
+    assert ours.exit_tension_N == pytest.approx(other.exit_tension_N, rel=1e-6)
+    assert ours.length_m == pytest.approx(other.length_m, rel=1e-6)
+
+
+def test_heavier_cables_change_the_choice(tmp_path) -> None:
+    found, better = diagnosed("linear_mass", tmp_path)
+    grades = load_catalogue(with_plugins=False).grades[:3]
+    told = with_design(found, grades)
+    assert told.design_before is not None
+    assert told.design_after is not None
+    assert told.design_after.optimum_m > told.design_before.optimum_m
+    assert told.design_after == choice(better, grades)
+    assert json.dumps(diagnosis_dict(told), allow_nan=False)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared twins are not here")
+@pytest.mark.parametrize(
+    "folder", sorted(SHARED.glob("*/truth.json")), ids=lambda path: path.parent.name
+)
+def test_shared_twins(folder) -> None:
+    folder = folder.parent
+    truth = json.loads((folder / "truth.json").read_text())
+    found = diagnose(case_in(read_study(folder / "config.yaml")))
+    wanted = [effect for effect in truth["effects"] if not effect.startswith("unexplained")]
+    assert [finding.effect.id for finding in found.findings] == wanted
+    assert found.is_unexplained == (len(wanted) < len(truth["effects"]))
+    if found.is_unexplained:
+        assert truth["effects"] == [f"unexplained:{found.structure_after.carriers[0].name}"]
+    for finding in found.findings:
+        for parameter, value in truth["parameters"].items():
+            estimate = finding.parameters[parameter]
+            assert abs(estimate.value - value) < 3.0 * estimate.std
+            assert estimate.value == pytest.approx(value, rel=0.05)
+    assert found.final.length_m.heldout.value < 1.2 * found.noise.length_m
+    assert found.final.tension_N.heldout.value < 1.2 * found.noise.tension_N
