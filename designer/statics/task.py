@@ -103,7 +103,8 @@ def _solve_over_pulleys(robot: Robot, flat: Poses, task: Task) -> tuple[Solution
     for _ in range(_MOST_TURNS):
         run = _run(robot, geometry.outward, slope)
         solution = _solve(robot, flat, task, run)
-        downward = solution.weight_N_per_m[:, None] * solution.length_m - solution.force_z_N
+        with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
+            downward = solution.weight_N_per_m[:, None] * solution.length_m - solution.force_z_N
         found = np.arctan2(downward, solution.force_x_N)
         new = np.where(np.isfinite(found), found, straight)
         if np.nanmax(np.abs(new - slope), initial=0.0) <= _STILL_RAD:
