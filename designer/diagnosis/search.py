@@ -94,6 +94,13 @@ class Search:
 Progress = Callable[[str], None]
 
 
+def _simplest(trials: Sequence[Trial]) -> Trial | None:
+    """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
+    good = [t for t in trials if t.earns_its_place]
+    near = [t for t in good if t.score > good[0].score - RIVAL_MARGIN]
+    return min(near, key=lambda t: (len(t.effect.parameters), -t.score), default=None)
+
+
 class Searcher:
     """Searches one data set.
 
@@ -130,7 +137,7 @@ class Searcher:
         present = self.fit(found)
         while len(found) <= _MOST_EFFECTS:
             trials = self.trials(found, present)
-            best = next((t for t in trials if t.earns_its_place), None)
+            best = _simplest(trials)
             steps.append(Step(tuple(trials), best.effect if best else None))
             if best is None or len(found) == _MOST_EFFECTS:
                 break
