@@ -126,7 +126,9 @@ def _with_settled_noise(
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
         outcome = _search(problem, case, rows, progress)
-        if noise.source == "declared":
+        # The fast part of a motion's residual is the sensors' own; that of poses at rest still
+        # holds what neighbours do not share, and is taken again from the better model.
+        if noise.source == "declared" or not measured.settled:
             break
         better = rescaled(noise, case.measurements, problem.residual(outcome.search.fit.settings))
         change = max(

@@ -16,7 +16,7 @@ SIGNIFICANCE = 0.01
 RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
-_MOST_EFFECTS = 6
+_MOST_EFFECTS = 5
 _ALWAYS_VALIDATED = 3
 _EXCHANGED = 8
 
