@@ -28,9 +28,9 @@ def stage(problem: Problem, label: str, settings: tuple[Setting, ...], heldout: 
 
 def without_outliers(residual: FloatArray) -> FloatArray:
     """Blank readings that stand off by more than five times the spread of their channel."""
-    spread = 1.4826 * np.nanmedian(np.abs(residual - _median(residual)), axis=0)
-    limit = _OUTLYING * np.maximum(np.nan_to_num(spread, nan=1.0), 1.0)
-    return np.where(np.abs(residual - _median(residual)) > limit, np.nan, residual)
+    apart = np.abs(residual - _median(residual))
+    limit = _OUTLYING * np.maximum(1.4826 * _median(apart), 1.0)
+    return np.where(apart > limit, np.nan, residual)
 
 
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:
