@@ -74,10 +74,7 @@ def worst_of(
 ) -> Worst:
     """Return the largest demand over the samples, then over the region from the best of them.
 
-    Raises
-    ------
-    ValueError
-        If no sample counts.
+    Where every sample is left out, nothing is served: infinite, at no position.
     """
     kept = np.empty((0, 3))
     values = np.empty(0)
@@ -88,5 +85,5 @@ def worst_of(
         at = [int(np.argmin(np.abs(pool - start).sum(axis=1))) for start in kept]
         values = asked[at]
     if len(kept) == 0:
-        raise ValueError("every pose of the workspace is left out")
+        return Worst(np.full(3, np.nan), np.inf)
     return refine(workspace.region, refined_demand, kept)

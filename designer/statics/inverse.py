@@ -198,14 +198,16 @@ def statics_of(
     free = solution.length_m.reshape(*shape, -1)
     force_x = solution.force_x_N.reshape(*shape, -1)
     force_z = solution.force_z_N.reshape(*shape, -1)
-    run = run.unstrained(catenary.end_tensions_N(free, force_x, force_z, weight)[0] / stiffness)
+    if run.has_wrap:
+        exit_N, _ = catenary.end_tensions_N(free, force_x, force_z, weight)
+        run = run.unstrained(exit_N / stiffness)
     return Statics(
         robot=robot,
         poses=poses,
         verdict=solution.verdict.reshape(shape),
         weight_N_per_m=weight,
         axial_stiffness_N=stiffness,
-        length_m=free + run.wrap_m,
+        length_m=free + run.wrap_m if run.has_wrap else free,
         force_x_N=force_x,
         force_z_N=force_z,
         run=run,

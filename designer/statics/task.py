@@ -34,9 +34,14 @@ class PulleyRun:
     exit_points_m: FloatArray
     wrap_m: FloatArray
 
+    @property
+    def has_wrap(self) -> bool:
+        """Whether there are pulleys at all."""
+        return bool(self.wrap_m.any())
+
     def unstrained(self, strain: FloatArray) -> PulleyRun:
         """Return the run with the wrapped length taken back to no tension."""
-        if not self.wrap_m.any():
+        if not self.has_wrap:
             return self
         return replace(self, wrap_m=self.wrap_m / (1.0 + strain))
 

@@ -129,3 +129,11 @@ def test_no_grade_at_all(fast_robot, workspace) -> None:
     found = select(fast_robot, workspace, ALL, [])
     assert found.chosen is None
     assert found.reason
+
+
+def test_workspace_whose_every_pose_is_left_out_is_served_by_nothing(fast_robot) -> None:
+    edge = Prism.over([[200, 8], [300, 8], [250, 12]], 0.0, (-60.0, -50.0))
+    outside = Workspace(edge, samples=50, hangs_below="exclude")
+    found = select(fast_robot, outside, ALL, [rope("a", [20.0, 40.0])])
+    assert found.chosen is None
+    assert found.reason
