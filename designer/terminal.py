@@ -120,7 +120,9 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
                     f"{count} of {workspace.census.samples} ({share:.1%})",
                 )
         if not workspace.is_feasible:
-            yield "worst pose", "[bold red]none: part of the workspace has no finite cable[/]"
+            left_out = workspace.census.excluded == workspace.census.samples
+            why = "every pose is left out" if left_out else "part of it has no finite cable"
+            yield "worst pose", f"[bold red]none: {why}[/]"
     if analysis.selection is not None:
         chosen = analysis.selection.chosen
         if chosen is None:
