@@ -1,6 +1,7 @@
 """How well the diagnosis names an effect that nobody declared, on simulated twins.
 
     python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,hall6]
+                                         [--sizes 2,5,10,30] [--unlisted]
 
 The twins come from physics that shares nothing with the product (`tests/twins`). Prints, for each
 size over noise, how often the effect was found first, found among the rivals of a finding, missed,
@@ -31,6 +32,12 @@ LISTED = (
     "clock_offset", "bending_stiffness",
 )  # fmt: skip
 UNLISTED = ("tower_settles", "mast_bending", "cable_mass_drift", "nonlinear_stiffness")
+PAIRS = (
+    ("pulley_radius", "platform_mass"), ("elastic_modulus", "linear_mass"),
+    ("length_offset", "elastic_modulus"), ("thermal_expansion", "tension_bias"),
+    ("anchor_offset", "pulley_friction"), ("creep", "drum_scale"),
+    ("wind_drag", "tension_gain"), ("base_tilt", "platform_mass"),
+)  # fmt: skip
 SIZES = (2.0, 5.0, 10.0, 30.0)
 MOVING = ("clock_offset",)
 
@@ -94,6 +101,7 @@ def main() -> None:
     parser.add_argument("--nothing", type=int, default=200)
     parser.add_argument("--robots", default="yard3,fast3,hall6")
     parser.add_argument("--sizes", default=",".join(map(str, SIZES)))
+    parser.add_argument("--unlisted", action="store_true", help="minutes more")
     arguments = parser.parse_args()
     names = arguments.robots.split(",")
     sizes = [float(size) for size in arguments.sizes.split(",")]
@@ -110,6 +118,13 @@ def main() -> None:
     blank = run([(names[k % len(names)], (), 0.0, k) for k in range(arguments.nothing)])
     false = sum(row[4] == "false" or bool(row[6]) for row in blank)
     print(f"nothing there: {false} of {len(blank)} with a false finding or structure")
+    pairs = run([(n, pair, 10.0, k) for n in names for pair in PAIRS for k in seeds])
+    print(f"pairs at 10: {dict(Counter(str(row[4]) for row in pairs))}")
+    for row in pairs:
+        if row[4] not in ("first", "impossible"):
+            print(f"  {row[0]} {' + '.join(row[1])}: {row[4]}: {', '.join(row[5]) or 'none'}")
+    if not arguments.unlisted:
+        return
     other = [(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds]
     for row in run(other):
         told = "unexplained" if row[6] else "explained"
