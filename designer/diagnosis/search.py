@@ -45,10 +45,12 @@ class Trial:
     chance: float
     heldout_gain: float
 
-    @property
-    def score(self) -> float:
-        """Gain less a penalty for each parameter."""
-        return self.gain - _PENALTY * len(self.effect.parameters)
+    def score(self, variance: float) -> float:
+        """Return how good the model is against others of its round, in one unit for all.
+
+        Minus the loss over the variance of the best, less a penalty for each parameter.
+        """
+        return -self.fit.loss / variance - _PENALTY * len(self.effect.parameters)
 
     @property
     def earns_its_place(self) -> bool:
@@ -97,8 +99,13 @@ Progress = Callable[[str], None]
 def _simplest(trials: Sequence[Trial]) -> Trial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
     good = [t for t in trials if t.earns_its_place]
-    near = [t for t in good if t.score > good[0].score - RIVAL_MARGIN]
-    return min(near, key=lambda t: (len(t.effect.parameters), -t.score), default=None)
+    scores = [t.score(_best_variance(good)) for t in good]
+    near = [t for t, score in zip(good, scores, strict=True) if score > max(scores) - RIVAL_MARGIN]
+    return min(near, key=lambda t: len(t.effect.parameters), default=None)
+
+
+def _best_variance(trials: Sequence[Trial]) -> float:
+    return min((t.fit.variance for t in trials), default=1.0)
 
 
 class Searcher:
@@ -161,7 +168,8 @@ class Searcher:
         taken = {e.key for e in (*found, *self._given)}
         others = [e for e in self._candidates if e.key not in taken]
         tried = [self._trial(found, present, effect, len(others)) for effect in others]
-        tried.sort(key=lambda trial: -trial.score)
+        variance = _best_variance(tried)
+        tried.sort(key=lambda trial: -trial.score(variance))
         return self._validated_best(found, tried)
 
     def rivals(self, found: Sequence[Effect], effect: Effect, present: Fit) -> list[Effect]:
