@@ -14,6 +14,7 @@ from typing import Protocol
 from designer import __version__
 from designer.catalogue.registry import Catalogue
 from designer.effects.declared import as_built_by
+from designer.effects.design import AsBuilt
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
@@ -119,6 +120,11 @@ class Analysis:
     workspace: WorkspaceMap | None
     sweep_file: Path | None
     selection: SelectionResult | None
+
+    @property
+    def built(self) -> AsBuilt:
+        """Robot and cables with the declared effects, as everything here was solved."""
+        return as_built_by(self.study)
 
     @property
     def is_positive(self) -> bool:

@@ -133,7 +133,7 @@ def find(analysis: Analysis) -> Findings:
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
-    robot = analysis.study.robot
+    robot = analysis.built.robot
     worst = Poses.at(chosen.verification.worst_position_m)
     return replace(
         findings,
@@ -170,7 +170,9 @@ def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoic
         return None
     tried = {c.size: c.verification for c in outcome.candidates}
     verification = tried.get(enough[0]) or verify(
-        study.robot, study.workspace, outcome.grade.cable(enough[0], factor)
+        analysis.built.robot,
+        study.workspace,
+        analysis.built.cable(outcome.grade.cable(enough[0], factor)),
     )
     return MasslessChoice(enough[0], verification)
 
@@ -179,10 +181,11 @@ def _other_policy(analysis: Analysis) -> OtherPolicy | None:
     study, workspace = analysis.study, analysis.workspace
     if study.workspace is None or workspace is None or workspace.census.hangs_below == 0:
         return None
+    built = analysis.built
     other: HangsBelow = "exclude" if study.workspace.hangs_below == "include" else "include"
     samples = min(study.workspace.samples, _MOST_SAMPLES)
     changed = replace(study.workspace, hangs_below=other, samples=samples)
-    return OtherPolicy(other, map_workspace(study.robot, changed, study.material))
+    return OtherPolicy(other, map_workspace(built.robot, changed, built.material(study.material)))
 
 
 def _hanging(analysis: Analysis) -> float | None:
@@ -192,11 +195,10 @@ def _hanging(analysis: Analysis) -> float | None:
     chosen = analysis.selection.chosen if analysis.selection else None
     if chosen is None:
         return found.census.hangs_below / found.census.samples
+    robot = analysis.built.robot
     few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
     hangs = [
-        is_left_out(
-            solve_sagging(analysis.study.robot, Poses.at(positions), chosen.cable), "exclude"
-        )
+        is_left_out(solve_sagging(robot, Poses.at(positions), chosen.cable), "exclude")
         for positions in positions_m(few)
     ]
     return float(np.concatenate(hangs).mean())

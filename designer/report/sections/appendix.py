@@ -38,11 +38,17 @@ class AssumptionsSection:
         What the safety factor is and what it is applied to; empty without a selection.
     platform : str
         A point mass, or a platform that can turn.
+    exits : str
+        Whether the cables leave from points or over pulleys.
+    effects : str
+        Ids of the declared effects, which all results include; empty without any.
     """
 
     gravity: str
     safety: str
     platform: str
+    exits: str
+    effects: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +80,7 @@ def left_out_section(analysis: Analysis) -> LeftOutSection | None:
 def assumptions_section(analysis: Analysis) -> AssumptionsSection:
     """Return the figures within the text of the assumptions."""
     study = analysis.study
-    robot, selection = study.robot, study.selection
+    robot, selection = analysis.built.robot, study.selection
     safety = ""
     if selection is not None:
         factor = fmt.trimmed(selection.safety_factor)
@@ -83,7 +89,18 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
     return AssumptionsSection(
         gravity=f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s²",
         safety=safety,
+        exits=_exits(robot.pulley_radius_m),
+        effects=", ".join(dict.fromkeys(effect.id for effect in study.effects)),
         platform=f"{kind} of {fmt.kilograms(robot.platform.mass_kg)} on {robot.n_cables} cables",
+    )
+
+
+def _exits(pulley_radius_m: float) -> str:
+    if pulley_radius_m == 0.0:
+        return "Exit points are fixed points, without pulleys."
+    radius = fmt.trimmed(1e3 * pulley_radius_m)
+    return (
+        f"The cables leave over swivelling pulleys of {radius}\u00a0mm radius at the exit points."
     )
 
 

@@ -45,7 +45,11 @@ def compare(analysis: Analysis, outcome: GradeOutcome) -> Comparison:
 
 
 def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
-    families = (analysis.study.material, outcome.family, _material_of(best))
+    families = (
+        analysis.built.material(analysis.study.material),
+        outcome.family,
+        _material_of(best),
+    )
     sagging = analysis.workspace.sagging if analysis.workspace else None
     diameters = (
         sagging.diameter_m if sagging else math.nan,
@@ -94,7 +98,7 @@ def _material_of(candidate: Candidate) -> Material:
 
 def _reasons(analysis: Analysis, real: Material) -> tuple[str, ...]:
     assert analysis.study.selection is not None
-    ideal = analysis.study.material
+    ideal = analysis.built.material(analysis.study.material)
     safety = fmt.trimmed(analysis.study.selection.safety_factor)
     stress = real.allowable_stress_Pa / ideal.allowable_stress_Pa
     density = real.density_kg_per_m3 / ideal.density_kg_per_m3
