@@ -232,7 +232,9 @@ def test_a_robot_that_is_not_square_can_be_read_but_not_sized(
 
 @pytest.mark.parametrize("is_body", [True, False])
 def test_a_square_robot_can_be_sized(valid: str, study_of: StudyOf, is_body: bool) -> None:
-    require_square(study_of(SIX if is_body else valid))
+    study = study_of(SIX if is_body else valid)
+    require_square(study)
+    assert study.robot.n_cables == study.robot.degrees_of_freedom == (6 if is_body else 3)
 
 
 @pytest.mark.parametrize(

@@ -116,3 +116,20 @@ def test_hanging_share_is_that_of_the_chosen_rope(
     assert 0.0 < included < census.hangs_below / census.samples
     assert find(yard).hanging == 0.0
     assert find(pose_only).hanging is None
+
+
+def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
+    from designer.report.sections.appendix import assumptions_section
+    from designer.resources import example_file
+
+    text = example_file("yard").read_text(encoding="utf-8")
+    built = solve(text + "\neffects: {pulley_radius: {radius_m: 0.3}, linear_mass: {scale: 2}}\n")
+    assumptions = assumptions_section(built)
+    assert "300\u00a0mm radius" in assumptions.exits
+    assert assumptions.effects == "pulley_radius, linear_mass"
+    assert "without pulleys" in assumptions_section(yard).exits
+    assert built.selection is not None
+    outcome = built.selection.outcomes[0]
+    assert outcome.family.density_kg_per_m3 == pytest.approx(
+        2 * outcome.grade.family(5.0).density_kg_per_m3
+    )
