@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Protocol
 
 from designer import __version__
 from designer.catalogue.registry import Catalogue
 from designer.effects.declared import as_built_by
 from designer.effects.design import AsBuilt
+from designer.progress import Reporter
+from designer.qualities import Qualities, qualities_of
+from designer.selection.groups import choose_groups_of
+from designer.selection.groups_result import GroupChoice
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
@@ -25,15 +26,6 @@ from designer.study import Study
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.samples import sample_count
 from designer.workspace.sweep import map_workspace
-
-Advance = Callable[[int], None]
-
-
-class Reporter(Protocol):
-    """Shows progress: a context for each long task, which hands out a function to advance it."""
-
-    def task(self, name: str, total: int) -> AbstractContextManager[Advance]:
-        """Open a task of ``total`` steps."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,9 +72,11 @@ class Provenance:
     created: datetime
 
     @classmethod
-    def now(cls) -> Provenance:
-        """Return the provenance of an analysis that starts now."""
-        names = ("numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint")
+    def now(cls, study: Study | None = None) -> Provenance:
+        """Return the provenance of an analysis that starts now, with what the study asks for."""
+        names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
+        if study is not None and _needs_programmes(study):
+            names += ["cvxpy", "highspy"]
         return cls(
             version=__version__,
             libraries=tuple((name, version(name)) for name in names),
@@ -111,6 +105,10 @@ class Analysis:
         NetCDF file with every sample.
     selection : SelectionResult or None
         If the study has a workspace and a selection.
+    groups : GroupChoice or None
+        If the selection has groups of cables.
+    qualities : Qualities or None
+        Stiffness and clearances, if the study has a workspace and a cable holds in all of it.
     """
 
     study: Study
@@ -120,11 +118,19 @@ class Analysis:
     workspace: WorkspaceMap | None
     sweep_file: Path | None
     selection: SelectionResult | None
+    groups: GroupChoice | None = None
+    qualities: Qualities | None = None
 
     @property
     def built(self) -> AsBuilt:
         """Robot and cables with the declared effects, as everything here was solved."""
         return as_built_by(self.study)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What plugins and grade files gave that could not be used, one line each."""
+        problems = (*self.study.known_effects.problems, *self.catalogue.problems)
+        return tuple(dict.fromkeys(problems))
 
     @property
     def is_positive(self) -> bool:
@@ -133,6 +139,12 @@ class Analysis:
         workspace_ok = self.workspace is None or self.workspace.is_feasible
         product_ok = self.selection is None or self.selection.chosen is not None
         return pose_ok and workspace_ok and product_ok
+
+
+def _needs_programmes(study: Study) -> bool:
+    """Tell whether tensions or products are chosen by mathematical programmes."""
+    has_groups = study.selection is not None and bool(study.selection.groups)
+    return has_groups or study.robot.is_redundant
 
 
 def analyse_pose(study: Study) -> PoseAnalysis | None:
@@ -163,10 +175,10 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
     reporter : Reporter
         Shows progress.
     """
-    provenance = Provenance.now()
+    provenance = Provenance.now(study)
     pose = analyse_pose(study)
     built = as_built_by(study)
-    workspace = sweep_file = chosen = None
+    workspace = sweep_file = chosen = groups = None
     if study.workspace is not None:
         sweep_file = folder / "workspace.nc"
         with reporter.task("workspace", sample_count(study.workspace)) as advance:
@@ -179,17 +191,29 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
                 progress=advance,
             )
     if study.workspace is not None and study.selection is not None:
-        names = study.selection.grades
-        with reporter.task("grades", len(names or catalogue.grades)) as advance:
-            chosen = select(
-                built.robot,
+        chosen = select(
+            built.robot,
+            study.workspace,
+            study.selection,
+            catalogue.grades,
+            built=built,
+            reporter=reporter,
+        )
+        if study.selection.groups:
+            groups = choose_groups_of(
                 study.workspace,
                 study.selection,
                 catalogue.grades,
-                built=built,
-                progress=lambda: advance(1),
+                built,
+                chosen.chosen,
+                reporter,
             )
-    return Analysis(study, catalogue, provenance, pose, workspace, sweep_file, chosen)
+    qualities = None
+    if study.workspace is not None and workspace is not None:
+        qualities = qualities_of(study.workspace, workspace, chosen, groups, built, study.material)
+    return Analysis(
+        study, catalogue, provenance, pose, workspace, sweep_file, chosen, groups, qualities
+    )
 
 
 def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:

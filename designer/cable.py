@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from designer.arrays import FloatArray, frozen_array
+
 STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
 
@@ -34,6 +36,36 @@ class Cable:
     def weight_N_per_m(self) -> float:
         """Weight per unstrained length [N/m]."""
         return self.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2
+
+
+@dataclass(frozen=True, slots=True)
+class Cables:
+    """The cables of a robot where they differ; one for each exit point, in that order.
+
+    Its figures have the names of those of a `Cable`, as arrays (n_cables,).
+    """
+
+    each: tuple[Cable, ...]
+
+    @property
+    def linear_density_kg_per_m(self) -> FloatArray:
+        """Mass per unstrained length (n_cables,) [kg/m]."""
+        return frozen_array([cable.linear_density_kg_per_m for cable in self.each])
+
+    @property
+    def weight_N_per_m(self) -> FloatArray:
+        """Weight per unstrained length (n_cables,) [N/m]."""
+        return frozen_array([cable.weight_N_per_m for cable in self.each])
+
+    @property
+    def axial_stiffness_N(self) -> FloatArray:
+        """EA (n_cables,) [N]."""
+        return frozen_array([cable.axial_stiffness_N for cable in self.each])
+
+    @property
+    def allowable_tension_N(self) -> FloatArray:
+        """Largest tension the design may use (n_cables,) [N]."""
+        return frozen_array([cable.allowable_tension_N for cable in self.each])
 
 
 @dataclass(frozen=True, slots=True)

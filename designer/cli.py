@@ -16,6 +16,7 @@ from designer.errors import DesignerError, Fault, InputError
 
 if TYPE_CHECKING:
     from designer.catalogue.registry import Catalogue
+    from designer.plugins.find import Plugins
     from designer.study import Study
 
 NEGATIVE_ANSWER = 1
@@ -34,7 +35,10 @@ app.add_typer(catalog, name="catalog")
 
 Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="The study, a YAML file.")]
 NoPlugins = Annotated[
-    bool, typer.Option("--no-plugins", help="Use the shipped grades only, for repeatable studies.")
+    bool,
+    typer.Option(
+        "--no-plugins", help="Use shipped grades and effects only, for repeatable studies."
+    ),
 ]
 
 
@@ -81,7 +85,7 @@ def report(
 ) -> None:
     """Size, sweep the workspace, choose a rope, and write the report.
 
-    Writes report.html, report.pdf, result.json and workspace.nc.
+    Writes report.html, report.pdf, result.json, candidates.csv and workspace.nc.
 
     Example:  designer report fast.yaml -o fast-report
 
@@ -89,25 +93,27 @@ def report(
     wrong, and nothing is written.
     """
     from designer.output import output_folder
+    from designer.plugins.find import find_plugins
     from designer.report.figures.opengl import require_opengl
-    from designer.study import require_square
-    from designer.terminal import ProgressBars, announce_compiling, print_faults_of, print_summary
+    from designer.study import require_enough_cables
+    from designer.terminal import ProgressBars, announce_compiling, print_summary
 
-    study = _study(config)
-    require_square(study)
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
+    require_enough_cables(study)
     if study.workspace is None and study.pose is None:
         raise InputError(
             [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
         )
     folder = output or Path(f"{config.stem}-report")
     require_opengl()
-    catalogue = _catalogue(study, with_plugins=not no_plugins)
-    print_faults_of(catalogue)
+    catalogue = _catalogue(study, plugins)
     announce_compiling()
 
     from designer.analysis import analyse
     from designer.report.render import write_report
     from designer.result_json import write_result
+    from designer.selection_json import write_candidates
 
     with output_folder(folder) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
@@ -115,6 +121,8 @@ def report(
             write_report(analysis, building)
             advance(1)
         write_result(analysis, building / "result.json")
+        if analysis.selection is not None:
+            write_candidates(analysis.selection, building / "candidates.csv")
     print_summary(analysis, folder)
     if not analysis.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
@@ -124,17 +132,19 @@ def report(
 def size(
     config: Config,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    no_plugins: NoPlugins = False,
 ) -> None:
     """Size the configured pose alone: massless, loop with its iterates, optimum.
 
     Example:  designer size fast.yaml
     """
+    from designer.plugins.find import find_plugins
     from designer.result_json import size_text
-    from designer.study import require_square
+    from designer.study import require_enough_cables
     from designer.terminal import announce_compiling, print_pose
 
-    study = _study(config)
-    require_square(study)
+    study = _study(config, find_plugins(with_plugins=not no_plugins))
+    require_enough_cables(study)
     announce_compiling()
     from designer.analysis import analyse_pose
 
@@ -173,25 +183,25 @@ def diagnose(
     """
     from designer.measured.read import read_measured
     from designer.output import output_folder
-    from designer.terminal import Spinner, announce_compiling, print_diagnosis, print_faults_of
+    from designer.plugins.find import find_plugins
+    from designer.terminal import Spinner, announce_compiling, print_diagnosis, print_left_out
 
-    study = _study(config)
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
     if study.measurements is None:
         raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
     measured = read_measured(study)
-    catalogue = _catalogue(study, with_plugins=not no_plugins)
-    print_faults_of(catalogue)
+    catalogue = _catalogue(study, plugins)
     announce_compiling()
     folder = output or Path(f"{config.stem}-diagnosis")
 
-    from designer.diagnosis.case import case_of
     from designer.diagnosis.design import with_design
-    from designer.diagnosis.diagnose import diagnose as run
+    from designer.diagnosis.plugin_effects import diagnose_study
     from designer.diagnosis_files import diagnosed_config, diagnosis_text
     from designer.report.diagnosis import write_diagnosis
 
     with output_folder(folder) as building, Spinner("searching") as spinner:
-        diagnosis = run(case_of(study, study.measurements, measured), spinner)
+        diagnosis = diagnose_study(study, study.measurements, measured, spinner)
         spinner("the design with and without")
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
@@ -199,6 +209,8 @@ def diagnose(
         (building / "diagnosis.json").write_text(diagnosis_text(diagnosis), encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
+    n_known = len(study.known_effects.problems)
+    print_left_out(diagnosis.study.known_effects.problems[n_known:])
     print_diagnosis(diagnosis, folder)
     if diagnosis.is_unexplained:
         raise typer.Exit(NEGATIVE_ANSWER)
@@ -210,16 +222,24 @@ def init(
         Path | None, typer.Argument(metavar="PATH", help="File to write, EXAMPLE.yaml if left out.")
     ] = None,
     example: Annotated[
-        str, typer.Option("--example", metavar="NAME", help="Which study to copy.")
+        str, typer.Option("--example", metavar="NAME", help="Which study to copy; see --list.")
     ] = "fast",
+    lists: Annotated[
+        bool, typer.Option("--list", help="Tell what studies there are, and stop.")
+    ] = False,
 ) -> None:
     """Write a commented study to start from.
 
     Example:  designer init --example yard my-crane.yaml
     """
     from designer.output import write_new_file
-    from designer.resources import example_file, example_names
+    from designer.resources import example_file, example_names, example_summary
 
+    if lists:
+        width = max(len(name) for name in example_names())
+        for name in example_names():
+            typer.echo(f"{name:{width}}  {example_summary(name)}")
+        return
     if example not in example_names():
         names = ", ".join(example_names())
         raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
@@ -229,18 +249,68 @@ def init(
 
 
 @catalog.command("list")
-def catalog_list(no_plugins: NoPlugins = False) -> None:
-    """List all grades with their source.
+def catalog_list(
+    construction: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only these, such as 7x19 or braid.")
+    ] = None,
+    material: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only these, such as steel or HMPE.")
+    ] = None,
+    maker: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only makers or publishers named so.")
+    ] = None,
+    diameter: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Only sizes of this, such as 12mm.")
+    ] = None,
+    nominal: Annotated[
+        bool, typer.Option("--nominal", help="Those computed by a standard's factors instead.")
+    ] = False,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """List the grades with their source.
 
-    Example:  designer catalog list
+    Example:  designer catalog list --construction 7x19 --diameter 6mm
     """
-    from designer.catalogue.listing import list_rows
+    from designer.catalogue.listing import Wanted, list_rows, split_nominal
     from designer.catalogue.registry import load_catalogue
-    from designer.terminal import print_faults_of, print_grades
+    from designer.terminal import print_grades, print_left_out
 
     catalogue = load_catalogue(with_plugins=not no_plugins)
-    print_faults_of(catalogue)
-    print_grades(list_rows(catalogue))
+    print_left_out(catalogue.problems)
+    wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    products, computed = split_nominal(wanted.among(catalogue.grades))
+    shown, others = (computed, products) if nominal else (products, computed)
+    if shown:
+        print_grades(list_rows(shown))
+    if others and not nominal:
+        typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
+    if not shown:
+        typer.echo("no grade is like that", err=True)
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _material(name: str | None, catalogue: Catalogue) -> str | None:
+    from designer.catalogue.listing import materials
+
+    known = materials(catalogue.grades)
+    if name is not None and name.casefold() not in (one.casefold() for one in known):
+        problem = f"no grade is of {name!r}"
+        raise InputError([Fault("--material", None, "", problem, ", ".join(known))])
+    return name
+
+
+def _diameter_m(text: str | None) -> float | None:
+    from designer.units import LENGTH, QuantityError, read_quantity
+
+    if text is None:
+        return None
+    try:
+        diameter_m = read_quantity(text, LENGTH)
+    except QuantityError as error:
+        raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
+    if diameter_m <= 0.0:
+        raise InputError([Fault("--diameter", None, "", f"{text!r} is no diameter", "more than 0")])
+    return diameter_m
 
 
 @catalog.command("show")
@@ -253,37 +323,81 @@ def catalog_show(
     Example:  designer catalog show unirope-7x19-galvanised
     """
     from designer.catalogue.registry import load_catalogue
-    from designer.terminal import print_grade
+    from designer.terminal import print_grade, print_left_out
 
-    print_grade(load_catalogue(with_plugins=not no_plugins).grade(grade))
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    print_grade(catalogue.grade(grade))
 
 
 @catalog.command("check")
 def catalog_check(
-    path: Annotated[Path, typer.Argument(metavar="PATH", help="Grade file, or a folder of them.")],
+    path: Annotated[
+        Path | None,
+        typer.Argument(metavar="PATH", help="Grade file, or a folder of them; else all that load."),
+    ] = None,
+    no_plugins: NoPlugins = False,
 ) -> None:
-    """Check grade files: units, figures, unknown fields.
+    """Check grades: units, proportions, unknown fields.
 
     Example:  designer catalog check my-ropes/
     """
-    from designer.catalogue.listing import check_path
-
-    faults = check_path(path)
-    if faults:
-        raise InputError(faults)
-    typer.echo(f"{path}: no fault found")
-
-
-def _study(config: Path) -> Study:
-    from designer.config import read_study
-
-    return read_study(config)
-
-
-def _catalogue(study: Study, *, with_plugins: bool) -> Catalogue:
+    from designer.catalogue.listing import check_path, summary
     from designer.catalogue.registry import load_catalogue
+    from designer.terminal import print_left_out
 
-    catalogue = load_catalogue(study.catalogues, with_plugins=with_plugins)
+    if path is not None:
+        faults = check_path(path)
+        if faults:
+            raise InputError(faults)
+        typer.echo(f"{path}: no fault found")
+        return
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
+    if catalogue.problems:
+        raise typer.Exit(WRONG_INPUT)
+
+
+@catalog.command("new-plugin")
+def catalog_new_plugin(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as acme-ropes.")],
+    path: Annotated[
+        Path | None,
+        typer.Argument(metavar="PATH", help="New folder to write, NAME if left out."),
+    ] = None,
+) -> None:
+    """Write a plugin project with one commented grade file, ready to install.
+
+    Example:  designer catalog new-plugin acme-ropes
+    """
+    from designer.plugins.new_plugin import module_name, write_plugin
+
+    folder = path or Path(name)
+    write_plugin(name, folder)
+    typer.echo(f"{folder} written. Next:")
+    typer.echo(f"  pip install -e {folder}")
+    typer.echo("  designer catalog list")
+    typer.echo(f"then put your own figures into {folder / module_name(name) / 'grades'}")
+
+
+def _study(config: Path, plugins: Plugins) -> Study:
+    from designer.config import read_study
+    from designer.effects.load import load_effects
+    from designer.terminal import print_left_out
+
+    effects = load_effects(plugins)
+    print_left_out(effects.problems)
+    return read_study(config, effects)
+
+
+def _catalogue(study: Study, plugins: Plugins) -> Catalogue:
+    from designer.catalogue.registry import load_catalogue
+    from designer.terminal import print_left_out
+
+    catalogue = load_catalogue(study.catalogues, plugins=plugins)
+    told = study.known_effects.problems
+    print_left_out(problem for problem in catalogue.problems if problem not in told)
     known = {grade.id for grade in catalogue.grades}
     wanted = study.selection.grades if study.selection else None
     faults = [

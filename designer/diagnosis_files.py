@@ -35,9 +35,15 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         },
         "effects": [_finding(finding) for finding in diagnosis.findings],
         "withdrawn": [
-            {"id": w.effect, "covariate": w.covariate, "variation": _number(w.variation)}
+            {
+                "id": w.effect,
+                "reason": w.reason.name.lower(),
+                "covariate": w.covariate or None,
+                "variation": _number(w.variation),
+            }
             for w in diagnosis.withdrawn
         ],
+        "left_out": list(diagnosis.study.known_effects.problems),
         "skipped": [{"id": key, "reason": reason} for key, reason in diagnosis.skipped],
         "unknown": [
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}

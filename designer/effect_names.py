@@ -1,20 +1,10 @@
-"""Ids and parameters of the effects, as config and result files spell them."""
+"""How config and result files spell an effect: its id and its parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from designer.units import (
-    ANGLE,
-    AREA,
-    FORCE,
-    LENGTH,
-    MASS,
-    NUMBER,
-    PER_TEMPERATURE,
-    Dimension,
-)
+from designer.units import Dimension
 
 TIME = Dimension("a time", "s", "10 s")
 PER_LENGTH = Dimension("a change per length", "1/m", "2e-4 /m")
@@ -74,44 +64,3 @@ def _expanded(parameter: ParameterName, n_cables: int) -> list[ParameterName]:
         replace(parameter, name=parameter.name.format(cable=cable))
         for cable in range(1, n_cables + 1)
     ]
-
-
-_SCALE = ParameterName("scale", NUMBER, above=0.0)
-_SHIFT = tuple(ParameterName(name, LENGTH, neutral=0.0) for name in ("x_m", "y_m", "z_m"))
-_TILT = tuple(ParameterName(name, ANGLE, neutral=0.0) for name in ("rx_rad", "ry_rad"))
-
-_ALL = (
-    EffectName("pulley_radius", (ParameterName("radius_m", LENGTH, at_least=0.0),)),
-    EffectName("thermal_expansion", (ParameterName("coefficient_per_K", PER_TEMPERATURE),)),
-    EffectName("elastic_modulus", (_SCALE,)),
-    EffectName("linear_mass", (_SCALE,)),
-    EffectName("platform_mass", (ParameterName("offset_kg", MASS),)),
-    EffectName("centre_of_mass_offset", _SHIFT),
-    EffectName("anchor_offset", _SHIFT, takes_cable=True),
-    EffectName("length_offset", (ParameterName("offset_{cable}_m", LENGTH, neutral=0.0),)),
-    EffectName("drum_scale", (_SCALE,)),
-    EffectName(
-        "drum_layering",
-        (
-            ParameterName("radius_gain_per_m", PER_LENGTH),
-            ParameterName("reference_{cable}_m", LENGTH, neutral=0.0),
-        ),
-    ),
-    EffectName(
-        "creep",
-        (ParameterName("strain_per_decade", NUMBER), ParameterName("onset_s", TIME, above=0.0)),
-    ),
-    EffectName("pulley_friction", (ParameterName("coefficient", NUMBER),)),
-    EffectName("tension_gain", (ParameterName("gain", NUMBER, above=0.0),), takes_cable=True),
-    EffectName("tension_bias", (ParameterName("offset_{cable}_N", FORCE, neutral=0.0),)),
-    EffectName("wind_drag", (ParameterName("drag_area_m2", AREA),)),
-    EffectName("base_tilt", _TILT),
-    EffectName("clock_offset", (ParameterName("offset_s", TIME),)),
-    EffectName(
-        "bending_stiffness",
-        (ParameterName("flexural_rigidity_N_m2", FLEXURAL_RIGIDITY, at_least=0.0),),
-    ),
-)
-
-EFFECTS: Mapping[str, EffectName] = {effect.id: effect for effect in _ALL}
-"""Every effect by its id."""

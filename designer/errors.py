@@ -5,7 +5,8 @@
     DesignerError
     ├── InputError          the user's files or arguments are wrong (exit status 2)
     ├── OutputError         the results cannot be written where asked (exit status 2)
-    └── MissingLibraryError the machine lacks a system library (exit status 2)
+    ├── MissingLibraryError the machine lacks a system library (exit status 2)
+    └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
 
 from __future__ import annotations
@@ -63,3 +64,19 @@ class OutputError(DesignerError):
 
 class MissingLibraryError(DesignerError):
     """A library of the operating system is missing; the message names its package."""
+
+
+class EffectError(DesignerError):
+    """An effect that a plugin brought in fails at work.
+
+    Parameters
+    ----------
+    effect_id : str
+        Which one.
+    message : str
+        Whose it is, and what happened.
+    """
+
+    def __init__(self, effect_id: str, message: str) -> None:
+        super().__init__(message)
+        self.effect_id = effect_id

@@ -1,4 +1,4 @@
-"""Where the platform shall be able to go: an upright prism, or a list of points."""
+"""Where the platform shall be able to go: an upright prism or rectangle, or a list of points."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError, cKDTree
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
+
+_OFF_LINE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,6 +58,11 @@ class Prism:
         return cls(frozen_array(corners), z_m)
 
     @property
+    def is_discrete(self) -> bool:
+        """Whether there is nothing between its points."""
+        return False
+
+    @property
     def bounds_m(self) -> FloatArray:
         """Smallest box around the region, (2, 3): lower corner, upper corner [m]."""
         low, high = self.polygon_m.min(axis=0), self.polygon_m.max(axis=0)
@@ -101,6 +108,87 @@ class Prism:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Rectangle:
+    """An upright rectangle.
+
+    Parameters
+    ----------
+    ends_m : array (2, 2)
+        Where its lower edge begins and ends, world x and y [m].
+    z_m : tuple of float
+        Lowest and highest z [m].
+    """
+
+    ends_m: FloatArray
+    z_m: tuple[float, float]
+
+    @classmethod
+    def over(cls, points_m: ArrayLike, inset_m: float, z_m: tuple[float, float]) -> Rectangle:
+        """Return the rectangle over points (n, 2 or 3) on a line, its ends moved inward.
+
+        Raises
+        ------
+        ValueError
+            If the points are one point or not on a line, or nothing is left inside the inset.
+        """
+        points = np.asarray(points_m, dtype=np.float64)[:, :2]
+        middle = points.mean(axis=0)
+        _, spread, axes = np.linalg.svd(points - middle)
+        if spread[0] == 0.0 or (len(spread) > 1 and spread[1] > _OFF_LINE * spread[0]):
+            raise ValueError("the points do not lie on one line, seen from above")
+        along = (points - middle) @ axes[0]
+        low, high = along.min() + inset_m, along.max() - inset_m
+        if low >= high:
+            raise ValueError(f"nothing is left inside an inset of {inset_m:g} m")
+        return cls(frozen_array(middle + np.array([[low], [high]]) * axes[0]), z_m)
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether there is nothing between its points."""
+        return False
+
+    @property
+    def bounds_m(self) -> FloatArray:
+        """Smallest box around the rectangle, (2, 3) [m]."""
+        low, high = self.ends_m.min(axis=0), self.ends_m.max(axis=0)
+        return np.array([[*low, self.z_m[0]], [*high, self.z_m[1]]])
+
+    @property
+    def size_m(self) -> FloatArray:
+        """Width and height (2,) [m]."""
+        return np.array([np.linalg.norm(np.ptp(self.ends_m, axis=0)), np.ptp(self.z_m)])
+
+    @property
+    def along(self) -> FloatArray:
+        """Unit vector along its width, world x and y (2,), toward larger x."""
+        edge = self.ends_m[1] - self.ends_m[0]
+        edge = -edge if tuple(edge) < (0.0, 0.0) else edge
+        return np.asarray(edge / np.linalg.norm(edge))
+
+    def at(self, share: FloatArray) -> FloatArray:
+        """Return the points (..., 3) at shares (..., 2) of width and height, from 0 to 1 [m]."""
+        plan = self.ends_m[0] + share[..., :1] * (self.ends_m[1] - self.ends_m[0])
+        z = self.z_m[0] + share[..., 1:] * (self.z_m[1] - self.z_m[0])
+        return np.concatenate([plan, z], axis=-1)
+
+    def shares(self, points_m: FloatArray) -> FloatArray:
+        """Return shares (..., 2) of width and height of the feet of points (..., 3)."""
+        edge = self.ends_m[1] - self.ends_m[0]
+        along = (points_m[..., :2] - self.ends_m[0]) @ edge / (edge @ edge)
+        up = (points_m[..., 2] - self.z_m[0]) / (self.z_m[1] - self.z_m[0])
+        return np.stack([along, up], axis=-1)
+
+    def contains(self, points_m: FloatArray) -> BoolArray:
+        """Tell which of the points (..., 3) lie in it."""
+        gap = np.linalg.norm(points_m - self.nearest(points_m), axis=-1)
+        return np.asarray(gap <= 1e-12 * np.linalg.norm(self.size_m))
+
+    def nearest(self, points_m: FloatArray) -> FloatArray:
+        """Return the point of the rectangle nearest to each of the points (..., 3) [m]."""
+        return self.at(np.clip(self.shares(points_m), 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PointList:
     """A finite set of positions, each of which is visited.
 
@@ -113,12 +201,21 @@ class PointList:
     points_m: FloatArray
 
     @property
+    def is_discrete(self) -> bool:
+        """Whether there is nothing between its points."""
+        return True
+
+    @property
     def bounds_m(self) -> FloatArray:
         """Smallest box around the points, (2, 3) [m]."""
         return np.array([self.points_m.min(axis=0), self.points_m.max(axis=0)])
 
+    def nearest(self, points_m: FloatArray) -> FloatArray:
+        """Return the position nearest to each of the points (..., 3) [m]."""
+        return np.asarray(self.points_m[cKDTree(self.points_m).query(points_m)[1]])
 
-Region = Prism | PointList
+
+Region = Prism | Rectangle | PointList
 """Any region."""
 
 

@@ -8,7 +8,7 @@ _PACKAGE = Path(__file__).parent
 
 
 def data_folder(name: str) -> Path:
-    """Return the folder ``catalog`` or ``reports``.
+    """Return the folder ``catalog``, ``reports`` or ``plugins``.
 
     A wheel carries them in ``designer/_data``; a checkout has them beside ``designer``.
 
@@ -31,3 +31,10 @@ def example_file(name: str) -> Path:
 def example_names() -> tuple[str, ...]:
     """Return the names of all shipped example studies."""
     return tuple(sorted(path.stem for path in (_PACKAGE / "examples").glob("*.yaml")))
+
+
+def example_summary(name: str) -> str:
+    """Return the first sentence of a shipped example study."""
+    lines = example_file(name).read_text(encoding="utf-8").splitlines()
+    comment = " ".join(line.removeprefix("#").strip() for line in lines if line.startswith("#"))
+    return comment.split(". ", 1)[0].rstrip(".")

@@ -10,11 +10,16 @@ from typing import Any
 
 from designer import __version__
 from designer.analysis import Analysis, PoseAnalysis
+from designer.arrays import FloatArray
+from designer.groups_json import groups_dict
+from designer.interference.survey import Interference
+from designer.qualities import Qualities
 from designer.report.files import write_whole
-from designer.selection.result import Candidate, GradeOutcome, SelectionResult
+from designer.selection_json import selection_dict
 from designer.study import Study
 from designer.verdict import Verdict
 from designer.workspace.result import Extreme, WorkspaceMap
+from designer.workspace.stiffness import StiffnessSurvey
 
 Json = dict[str, Any]
 
@@ -26,15 +31,19 @@ def result_dict(analysis: Analysis) -> Json:
         "name": study.name,
         "positive": analysis.is_positive,
         "pose": None if analysis.pose is None else _pose(analysis.pose),
-        "workspace": None if analysis.workspace is None else _workspace(analysis.workspace),
-        "selection": None if analysis.selection is None else _selection(analysis.selection),
+        "workspace": (
+            None
+            if analysis.workspace is None
+            else {**_workspace(analysis.workspace), **_qualities(analysis.qualities)}
+        ),
+        "selection": None if analysis.selection is None else _selection(analysis),
         "provenance": {
             **_origin(study),
             "catalogues": [
                 {"name": source.name, "source": source.source, "grades": source.n_grades}
                 for source in analysis.catalogue.sources
             ],
-            "problems": list(analysis.catalogue.problems),
+            "problems": list(analysis.left_out),
             "libraries": dict(analysis.provenance.libraries),
             "system": analysis.provenance.system,
             "created": analysis.provenance.created.isoformat(timespec="seconds"),
@@ -111,10 +120,44 @@ def _workspace(found: WorkspaceMap) -> Json:
         "excluded": census.excluded,
         "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
         "infeasible_example_m": None if example is None else _numbers(example),
+        **_turn(found.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
         "limit_ratio": _number(found.limit_ratio),
         "sagging": _extreme(found.sagging),
         "sampled": _extreme(found.sampled),
         "massless": _extreme(found.massless),
+    }
+
+
+def _qualities(found: Qualities | None) -> Json:
+    """Return stiffness and clearances; None where they were not looked at."""
+    stiffness = None if found is None else found.stiffness
+    interference = None if found is None else found.interference
+    return {
+        "stiffness": None if stiffness is None else _stiffness(stiffness),
+        "interference": None if interference is None else _interference(interference),
+    }
+
+
+def _stiffness(found: StiffnessSurvey) -> Json:
+    return {
+        "samples": found.samples,
+        "unstable": found.unstable,
+        "largest_displacement_m_per_N": _number(found.softest_m_per_N),
+        "pose": _numbers(found.softest_position_m),
+    }
+
+
+def _interference(found: Interference) -> Json:
+    worst = found.worst
+    return {
+        "clearance_m": found.clearance_m,
+        "min_distance_m": None if worst is None else _number(worst.distance_m),
+        "error_m": None if worst is None else _number(worst.error_m),
+        "pair": None if worst is None else list(worst.names),
+        "pose": None if worst is None else _numbers(worst.position_m),
+        "samples": found.samples,
+        "violating": found.violating,
+        "violated": found.is_violated,
     }
 
 
@@ -128,6 +171,11 @@ def _why_infeasible(found: WorkspaceMap) -> str:
     return "The search between the samples met a pose without a finite cable."
 
 
+def _selection(analysis: Analysis) -> Json:
+    assert analysis.selection is not None
+    return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
+
+
 def _extreme(extreme: Extreme | None) -> Json | None:
     if extreme is None:
         return None
@@ -135,53 +183,15 @@ def _extreme(extreme: Extreme | None) -> Json | None:
         "diameter_m": _number(extreme.diameter_m),
         "max_tension_N": _number(extreme.max_tension_N),
         "pose": _numbers(extreme.position_m),
+        **_turn(extreme.rotation_vector_rad),
     }
 
 
-def _selection(selection: SelectionResult) -> Json:
-    fitting = [(o.best, o) for o in selection.alternatives]
-    return {
-        "chosen": next(
-            (_candidate(c, o) for o in selection.outcomes for c in _chosen_of(selection, o)), None
-        ),
-        "reason": selection.reason,
-        "candidates": [_candidate(c, o) for o in selection.outcomes for c in o.candidates],
-        "grades": [
-            {
-                "grade": o.grade.id,
-                "outcome": o.outcome,
-                "sentence": o.sentence,
-                "continuous_diameter_m": _number(o.continuous_diameter_m),
-            }
-            for o in selection.outcomes
-        ],
-        "alternatives": [_candidate(c, o) for c, o in fitting if c is not None],
-    }
-
-
-def _chosen_of(selection: SelectionResult, outcome: GradeOutcome) -> Iterable[Candidate]:
-    return (c for c in outcome.candidates if c is selection.chosen)
-
-
-def _candidate(candidate: Candidate, outcome: GradeOutcome) -> Json:
-    size, found = candidate.size, candidate.verification
-    return {
-        "grade": candidate.grade.id,
-        "size_id": size.id,
-        "diameter_m": size.diameter_m,
-        "continuous_diameter_m": _number(candidate.continuous_diameter_m),
-        "max_tension_N": _number(found.max_tension_N),
-        "utilisation": _number(found.utilisation),
-        "minimum_breaking_load_N": size.minimum_breaking_load_N,
-        "linear_mass_kg_per_m": size.linear_density_kg_per_m,
-        "total_mass_kg": _number(candidate.total_mass_kg),
-        "longest_m": _numbers(found.longest_m),
-        "worst_pose": _numbers(found.worst_position_m),
-        "verified": candidate.verified,
-        "outcome": outcome.outcome,
-        "trust": candidate.grade.trust,
-        "doubt": size.doubt,
-    }
+def _turn(rotation_vector_rad: FloatArray | None, name: str = "rotation_vector") -> Json:
+    """Return the orientation; nothing where the platform is not turned."""
+    if rotation_vector_rad is None or not rotation_vector_rad.any():
+        return {}
+    return {name: _numbers(rotation_vector_rad)}
 
 
 def _number(value: Any) -> float | None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import FloatArray, IntArray, frozen_array
 from designer.cable import STANDARD_GRAVITY_M_PER_S2
 
 
@@ -24,11 +24,18 @@ class Platform:
         Attachment points in the body frame [m]; None for a point mass with 3 degrees of freedom.
     centre_of_mass_m : array (3,)
         Centre of mass in the body frame [m].
+    hull_m : array (n_corners, 3) or None
+        Corners of the body's convex hull in the body frame [m]; None for that of the attachments.
+    wrench_N : array (6,)
+        Constant force on the body at the origin of its frame and moment about it, beside gravity,
+        along the axes of the world frame [N, N·m].
     """
 
     mass_kg: float
     attachments_m: FloatArray | None = None
     centre_of_mass_m: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
+    hull_m: FloatArray | None = None
+    wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,19 +45,30 @@ class Robot:
     Parameters
     ----------
     exit_points_m : array (n_cables, 3)
-        Points where the cables leave the base, world frame, z upward [m].
+        Points where the cables leave the base, world frame [m].
     platform : Platform
         The load.
     pulley_radius_m : float
         Radius of the swivelling pulleys at the exit points [m]; see `designer.physics.pulley`.
     tilt_rad : array (2,)
-        The base is turned by the rotation vector (rx, ry, 0) against the vertical [rad].
+        The base is turned by the rotation vector (rx, ry, 0) against the vertical, x and y of the
+        upright frame [rad].
+    tension_min_N : float
+        Smallest tension of every cable, where there are more cables than degrees of freedom, taken
+        where the cable runs parallel to its chord [N].
+    gravity_direction : array (3,)
+        Where things fall, world frame; its length does not count.
+    is_planar : bool
+        Whether everything lies in one vertical plane, in which the platform moves and turns.
     """
 
     exit_points_m: FloatArray
     platform: Platform
     pulley_radius_m: float = 0.0
     tilt_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(2)))
+    tension_min_N: float = 0.0
+    gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
+    is_planar: bool = False
 
     @property
     def n_cables(self) -> int:
@@ -64,8 +82,15 @@ class Robot:
 
     @property
     def degrees_of_freedom(self) -> int:
-        """3 for a point mass, 6 otherwise."""
-        return 3 if self.is_point_mass else 6
+        """3 for a point mass, 6 otherwise; in a plane 2 and 3."""
+        return len(self.balance_rows)
+
+    @property
+    def balance_rows(self) -> IntArray:
+        """Which of force x, y, z and moment x, y, z the cables balance, in the upright frame."""
+        if self.is_planar:
+            return np.array([0, 2] if self.is_point_mass else [0, 2, 4])
+        return np.arange(3 if self.is_point_mass else 6)
 
     @property
     def is_square(self) -> bool:
@@ -73,9 +98,33 @@ class Robot:
         return self.n_cables == self.degrees_of_freedom
 
     @property
+    def has_enough_cables(self) -> bool:
+        """Whether there are at least as many cables as degrees of freedom."""
+        return self.n_cables >= self.degrees_of_freedom
+
+    @property
+    def is_redundant(self) -> bool:
+        """Whether there are more cables than degrees of freedom, so that tensions can be chosen."""
+        return self.n_cables > self.degrees_of_freedom
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the base frame surely is the upright frame, so that nothing has to be turned."""
+        down = self.gravity_direction
+        falls_down = not down[:2].any() and down[2] < 0.0
+        return falls_down and not self.is_planar and not self.tilt_rad.any()
+
+    @property
     def upright(self) -> FloatArray:
-        """Rotation (3, 3) from the base frame to a frame whose z axis is the true vertical."""
-        return np.asarray(Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix())
+        """Rotation (3, 3) from the base frame to the upright frame.
+
+        Its z axis is the true vertical; a planar robot lies in its x-z plane.
+        """
+        vertical = vertical_frame(self.gravity_direction)
+        if self.is_planar:
+            vertical = _heading_frame(self.exit_points_m @ vertical.T) @ vertical
+        tilt = Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix()
+        return np.asarray(tilt @ vertical)
 
     @property
     def attachments_m(self) -> FloatArray:
@@ -88,6 +137,37 @@ class Robot:
     def weight_N(self) -> float:
         """Weight of the platform [N]."""
         return self.platform.mass_kg * STANDARD_GRAVITY_M_PER_S2
+
+    @property
+    def pull_N(self) -> FloatArray:
+        """What the cables have to pull with, force and moment (6,), upright frame [N, N·m].
+
+        Against weight and wrench, about the origin of the body frame; without the moment of the
+        weight, which turns with the platform.
+        """
+        applied = self.platform.wrench_N.reshape(2, 3) @ self.upright.T
+        pull = -applied.ravel()
+        pull[2] += self.weight_N
+        return np.asarray(pull)
+
+
+def vertical_frame(gravity_direction: FloatArray) -> FloatArray:
+    """Return the rotation (3, 3) to a frame whose z axis is the vertical, by the shortest way."""
+    up = -np.asarray(gravity_direction) / np.linalg.norm(gravity_direction)
+    axis = np.cross(up, [0.0, 0.0, 1.0])
+    sine, cosine = float(np.linalg.norm(axis)), float(up[2])
+    if sine == 0.0:
+        return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
+    return np.asarray(Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix())
+
+
+def _heading_frame(points_m: FloatArray) -> FloatArray:
+    """Return the rotation about z that turns the line of the points, seen from above, into x."""
+    plan = points_m[:, :2] - points_m[:, :2].mean(axis=0)
+    x, y = np.linalg.svd(plan)[2][0]
+    if (x, y) < (0.0, 0.0):
+        x, y = -x, -y
+    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,13 +187,25 @@ class Poses:
 
     @classmethod
     def at(cls, position_m: ArrayLike, rotation_vector_rad: ArrayLike | None = None) -> Poses:
-        """Return poses from positions (..., 3) [m] and rotation vectors (..., 3) [rad]."""
+        """Return poses from positions (..., 3) [m] and rotation vectors (..., 3) [rad].
+
+        Both may stand in one array (..., 6).
+        """
         position = frozen_array(position_m)
+        if position.shape[-1] == 6:
+            return cls.at(position[..., :3], position[..., 3:])
         if rotation_vector_rad is None:
             return cls(position, frozen_array(np.eye(3)))
-        vectors = np.asarray(rotation_vector_rad, dtype=np.float64)
+        vectors = np.array(rotation_vector_rad, dtype=np.float64)  # SciPy refuses read-only ones
         matrices = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
         return cls(position, frozen_array(matrices.reshape(*vectors.shape[:-1], 3, 3)))
+
+    @property
+    def place(self) -> FloatArray:
+        """Position and rotation vector in one array (..., 6) [m, rad]; see `at`."""
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3)).as_rotvec()
+        turn = np.broadcast_to(turn.reshape(*self.rotation.shape[:-2], 3), self.position_m.shape)
+        return np.concatenate([self.position_m, turn], axis=-1)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import Literal
 
 from designer.cable import Material
+from designer.effects.known import KnownEffects
+from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.region import Region
 from designer.robot import Poses, Robot
+from designer.space import Orientations, Space
 
 Sampling = Literal["low_discrepancy", "grid"]
 HangsBelow = Literal["include", "exclude"]
+Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +36,11 @@ class Workspace:
         Seed of the Sobol scrambling.
     hangs_below : str
         ``include`` or ``exclude`` poses in which a cable hangs below the platform.
+    clearance_m : float or None
+        Least distance that cables shall keep from each other and from the platform [m]; None asks
+        for none.
+    orientations : Orientations
+        How the platform shall be turned at every position.
     """
 
     region: Region
@@ -39,6 +48,21 @@ class Workspace:
     sampling: Sampling = "low_discrepancy"
     seed: int = 0
     hangs_below: HangsBelow = "include"
+    clearance_m: float | None = None
+    orientations: Orientations = field(default_factory=Orientations)
+
+    @property
+    def space(self) -> Space:
+        """All poses, as places: positions in every orientation."""
+        return Space(self.region, self.orientations)
+
+
+@dataclass(frozen=True, slots=True)
+class CableGroup:
+    """Cables that get the same product: a name, and their numbers from 1."""
+
+    name: str
+    cables: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +74,26 @@ class Selection:
     grades : tuple of str or None
         Grade ids to consider; None for every grade in the catalogue.
     safety_factor : float
-        Minimum breaking load over allowable tension.
+        What is left of the minimum breaking load over the allowable tension.
+    objectives : tuple of str
+        What candidates are compared by; the first decides.
+    termination_efficiency : float
+        Share of the breaking load that the end fittings keep.
+    sheave_diameter_m : float or None
+        Diameter that the rope is bent over [m]; None leaves bending out.
+    groups : tuple of CableGroup
+        Groups of cables that may each get a product of their own; empty for none.
+    max_distinct_products : int or None
+        How many products the groups may have between them; None for one each.
     """
 
     grades: tuple[str, ...] | None = None
     safety_factor: float = 5.0
+    objectives: tuple[Objective, ...] = ("mass", "drum_diameter", "max_tension")
+    termination_efficiency: float = 1.0
+    sheave_diameter_m: float | None = None
+    groups: tuple[CableGroup, ...] = ()
+    max_distinct_products: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +208,7 @@ class DeclaredEffect:
     Parameters
     ----------
     id : str
-        As in `designer.effect_names`.
+        As in `known_effects` of the study.
     cable : int or None
         The one cable that it concerns, from 1; None for all.
     parameters : mapping of str to float
@@ -183,7 +222,10 @@ class DeclaredEffect:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A robot, its load, where it works, and how its cable is to be chosen."""
+    """A robot, its load, where it works, and how its cable is to be chosen.
+
+    ``known_effects`` are those that ``effects`` may declare and a diagnosis may find.
+    """
 
     name: str
     robot: Robot
@@ -195,12 +237,13 @@ class Study:
     catalogues: tuple[Path, ...] = ()
     measurements: Measurements | None = None
     effects: tuple[DeclaredEffect, ...] = ()
+    known_effects: KnownEffects = SHIPPED
 
 
-def require_square(study: Study) -> None:
-    """Refuse a robot that has not as many cables as degrees of freedom.
+def require_enough_cables(study: Study) -> None:
+    """Refuse a robot that has fewer cables than degrees of freedom.
 
-    Sizing needs a square robot; measured data may come from any.
+    Nothing holds such a robot in a pose that one chooses; measured data may come from any.
 
     Raises
     ------
@@ -208,13 +251,12 @@ def require_square(study: Study) -> None:
         With one fault, at the anchors.
     """
     robot = study.robot
-    if robot.is_square:
+    if robot.has_enough_cables:
         return
     load = "a point mass" if robot.is_point_mass else "a platform with attachments"
     problem = (
-        f"{robot.n_cables} cables on {load}; "
-        "this version solves as many cables as degrees of freedom"
+        f"{robot.n_cables} cables on {load} are fewer than its "
+        f"{robot.degrees_of_freedom} degrees of freedom"
     )
-    alternative = ", or 6 and as many attachments" if robot.is_point_mass else ""
-    expected = f"{robot.degrees_of_freedom}{alternative}"
+    expected = f"{robot.degrees_of_freedom} or more"
     raise InputError([study.source.fault("robot.anchors", problem, expected)])

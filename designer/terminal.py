@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,20 +12,24 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
+from rich.table import Column, Table
 
-from designer.catalogue.grade import Grade
+from designer.catalogue.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.catalogue.listing import GradeRow, facts, size_rows
-from designer.catalogue.registry import Catalogue
 
 if TYPE_CHECKING:
     from designer.analysis import Analysis, PoseAnalysis
     from designer.diagnosis.result import Diagnosis
+    from designer.interference.survey import Interference, Nearest
+    from designer.selection.groups_result import GroupChoice
+    from designer.selection.result import SelectionResult
     from designer.study import Study
+    from designer.workspace.result import Extreme, WorkspaceMap
 
 # A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns.
 _out = Console(highlight=False, width=None if sys.stdout.isatty() else 240)
 _notes = Console(stderr=True, highlight=False)
+_SMALLEST_SAVING_KG = 1e-6
 
 
 class ProgressBars:
@@ -75,18 +79,21 @@ class Spinner:
 
 
 def announce_compiling() -> None:
-    """Say that the first run on a machine compiles, so that its seconds are no surprise."""
-    from designer.kernel.compiling import is_cached
-    from designer.kernel.square import solve_range
+    """Say when the solver has to be compiled, so that the seconds of a first run are no surprise.
 
-    if not is_cached(solve_range):
-        _notes.print("Compiling the solver: once on this machine, some seconds …")
+    Which parts of it a study needs shows only as it runs, so the note comes when one is compiled.
+    """
+    from designer.kernel.compiling import tell_of_compiling
+
+    tell_of_compiling(
+        lambda: _notes.print("Compiling the solver: once on this machine, up to a minute …")
+    )
 
 
-def print_faults_of(catalogue: Catalogue) -> None:
-    """Name every plugin or file that was left out of the catalogue."""
-    for problem in catalogue.problems:
-        _notes.print(f"catalogue: {problem}", markup=False)
+def print_left_out(problems: Iterable[str]) -> None:
+    """Name every plugin, grade or effect that was left out, one line each."""
+    for problem in problems:
+        _notes.print(problem, markup=False, soft_wrap=True)
 
 
 def print_summary(analysis: Analysis, folder: Path) -> None:
@@ -104,40 +111,78 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
         sizing = analysis.pose.sizing
         yield "pose", _extreme(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
     if analysis.workspace is not None:
-        workspace = analysis.workspace
-        for label, extreme in (
-            ("worst pose", workspace.sagging),
-            ("  massless", workspace.massless),
-        ):
-            if extreme is not None:
-                at = ", ".join(f"{x:.4g}" for x in extreme.position_m)
-                yield label, f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
-        for name, count in workspace.census.statuses.items():
-            if count > 0:
-                share = workspace.census.fraction(name)
-                yield (
-                    f"  {name.replace('_', ' ')}",
-                    f"{count} of {workspace.census.samples} ({share:.1%})",
-                )
-        if not workspace.is_feasible:
-            left_out = workspace.census.excluded == workspace.census.samples
-            why = "every pose is left out" if left_out else "part of it has no finite cable"
-            yield "worst pose", f"[bold red]none: {why}[/]"
+        yield from _summary_of_workspace(analysis.workspace)
     if analysis.selection is not None:
-        chosen = analysis.selection.chosen
-        if chosen is None:
-            yield "cable", f"[bold red]none[/]: {escape(analysis.selection.reason or '')}"
-        else:
-            yield "cable", f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
-            yield (
-                "  utilisation",
-                f"{chosen.verification.utilisation:.1%} at safety factor {_factor(analysis)}",
-            )
-            yield (
-                "  mass",
-                f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, "
-                f"{chosen.total_mass_kg:.4g} kg in all",
-            )
+        yield from _summary_of_selection(analysis.selection, _factor(analysis))
+    if analysis.groups is not None:
+        yield from _summary_of_groups(analysis.groups)
+    interference = None if analysis.qualities is None else analysis.qualities.interference
+    if interference is not None and interference.worst is not None:
+        yield "clearance", _clearance(interference, interference.worst)
+
+
+def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[tuple[str, str]]:
+    for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
+        if extreme is not None:
+            yield label, _placed(extreme)
+    for name, count in workspace.census.statuses.items():
+        if count > 0:
+            share = workspace.census.fraction(name)
+            text = f"{count} of {workspace.census.samples} ({share:.1%})"
+            yield f"  {name.replace('_', ' ')}", text
+    if not workspace.is_feasible:
+        left_out = workspace.census.excluded == workspace.census.samples
+        why = "every pose is left out" if left_out else "part of it has no finite cable"
+        yield "worst pose", f"[bold red]none: {why}[/]"
+
+
+def _placed(extreme: Extreme) -> str:
+    at = ", ".join(f"{x:.4g}" for x in extreme.position_m)
+    text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
+    turn_deg = np.degrees(extreme.rotation_vector_rad)
+    if turn_deg.any():
+        text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
+    return text
+
+
+def _summary_of_selection(
+    selection: SelectionResult, safety_factor: str
+) -> Iterator[tuple[str, str]]:
+    chosen = selection.chosen
+    if chosen is None:
+        yield "cable", f"[bold red]none[/]: {escape(selection.reason or '')}"
+        return
+    yield "cable", f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
+    used = chosen.verification.utilisation
+    yield "  utilisation", f"{used:.1%} at safety factor {safety_factor}"
+    mass = f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+    yield "  mass", mass
+
+
+def _clearance(found: Interference, worst: Nearest) -> str:
+    nearest = f"{1e3 * worst.distance_m:.4g} mm between {' and '.join(worst.names)}"
+    if not found.is_violated:
+        return f"kept, {nearest}"
+    return f"[bold red]not kept[/]: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
+
+
+def _summary_of_groups(choice: GroupChoice) -> Iterator[tuple[str, str]]:
+    if choice.chosen is None:
+        yield "groups", f"[bold red]none[/]: {escape(choice.proof_sentence)}"
+        return
+    found = zip(choice.groups, choice.chosen.products, strict=True)
+    for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
+        yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
+    saving = "" if choice.saving_kg is None else _saving(choice.saving_kg)
+    gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
+    yield "  groups' mass", f"{choice.chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
+
+
+def _saving(saving_kg: float) -> str:
+    """Return what the groups save over one product for all, as it ends a sentence."""
+    if abs(saving_kg) < _SMALLEST_SAVING_KG:
+        return ", as with one product for all"
+    return f", {abs(saving_kg):.4g} kg {'less' if saving_kg > 0.0 else 'more'}"
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
@@ -235,27 +280,39 @@ def statics_sentence(pose: PoseAnalysis) -> str:
 
 
 def print_grades(rows: Sequence[GradeRow]) -> None:
-    """Print the list of grades."""
+    """Print the list of grades, those of one publisher together."""
     table = Table(
-        "grade", "construction", "finish", "sizes", "d [mm]", "MBL [kN]", "trust", "from", "source"
+        "grade", "construction", "material", "sizes", "d [mm]", "MBL [kN]", "trust", "from"
     )
-    for row in rows:
-        table.add_row(
-            escape(row.id),
-            escape(f"{row.construction} {row.core}"),
-            escape(row.finish),
-            f"{row.n_sizes}" + (f" ({row.n_doubtful}?)" if row.n_doubtful else ""),
-            _range(row.diameter_m, 1e3),
-            _range(row.minimum_breaking_load_N, 1e-3),
-            row.trust,
-            escape(row.origin),
-            escape(row.source),
-        )
+    for publisher in sorted({row.publisher for row in rows}, key=str.casefold):
+        table.add_section()
+        table.add_row(f"[bold]{escape(publisher)}[/]")
+        for row in rows:
+            if row.publisher == publisher:
+                table.add_row(*_grade_cells(row))
     _out.print(table)
     _out.print(
-        "trust: A maker's or standard's table, B seller's transcript, C third hand; "
-        "(n?) doubtful rows"
+        "trust: A maker's or standard's table, B seller's transcript, C third hand; (n?) doubtful "
+        "sizes; for document and address: designer catalog show GRADE"
     )
+
+
+def _grade_cells(row: GradeRow) -> tuple[str, ...]:
+    return (
+        f"  {escape(row.id)}",
+        escape(_known(row.construction, row.core)),
+        escape(_known(row.material, row.finish.removeprefix("stainless, "))),
+        f"{row.n_sizes}" + (f" ({row.n_doubtful}?)" if row.n_doubtful else ""),
+        _range(row.diameter_m, 1e3),
+        _range(row.minimum_breaking_load_N, 1e-3),
+        row.trust,
+        escape(row.origin),
+    )
+
+
+def _known(*texts: str) -> str:
+    """Join what a source states; catalogue files say "not stated" where it does not."""
+    return ", ".join(text for text in texts if text not in ("", "not stated")) or "not stated"
 
 
 def print_grade(grade: Grade) -> None:
@@ -264,18 +321,32 @@ def print_grade(grade: Grade) -> None:
     for name, text in facts(grade):
         known.add_row(name, escape(text))
     _out.print(known)
-    sizes = Table("size", "d [mm]", "MBL [kN]", "mass [kg/m]", "EA [MN]", "doubt")
+    names = ("size", "d [mm]", "MBL [kN]", "mass [kg/m]", "A [mm²]", "EA [MN]", "price", "doubt")
+    prices = f"price [{grade.currency}/m]"
+    sizes = Table(*(escape(prices if name == "price" else name) for name in names))
     for row in size_rows(grade):
+        area_m2 = row.metallic_area_m2
         sizes.add_row(
             escape(row.id),
             f"{1e3 * row.diameter_m:.4g}",
             f"{row.minimum_breaking_load_N / 1e3:.4g}",
             f"{row.linear_density_kg_per_m:.4g}",
+            "" if area_m2 is None else f"{1e6 * area_m2:.4g}",
             f"{row.axial_stiffness_N / 1e6:.4g}",
+            "" if row.price_per_m is None else f"{row.price_per_m:.4g}",
             escape(row.doubt),
         )
+    for column in _empty_columns(sizes):
+        sizes.columns.remove(column)
     _out.print(sizes)
+    if grade.stiffness is not None and len(grade.stiffness.load_fraction) > 1:
+        _out.print(f"EA at {TYPICAL_LOAD_FRACTION:g} of the breaking load")
+
+
+def _empty_columns(table: Table) -> list[Column]:
+    return [column for column in table.columns if not any(column.cells)]
 
 
 def _range(ends: tuple[float, float], scale: float) -> str:
-    return f"{scale * ends[0]:.4g}–{scale * ends[1]:.4g}"
+    first, last = f"{scale * ends[0]:.4g}", f"{scale * ends[1]:.4g}"
+    return first if first == last else f"{first}–{last}"

@@ -16,6 +16,7 @@ class Verdict(IntEnum):
     OUTSIDE_HULL = 1
     NO_FINITE_CABLE = 2
     NOT_CONVERGED = 3
+    RANK_DEFICIENT = 4
 
     @property
     def label(self) -> str:
@@ -33,6 +34,9 @@ _SENTENCES = {
     Verdict.OUTSIDE_HULL: "No positive cable tensions can hold the platform here.",
     Verdict.NO_FINITE_CABLE: (
         "No section is thick enough: the cable's own weight alone exceeds the allowable stress."
+    ),
+    Verdict.RANK_DEFICIENT: (
+        "The cables' directions leave a force or moment that no tensions can take up."
     ),
     Verdict.NOT_CONVERGED: "The solver found no solution and no proof that there is none.",
 }

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -35,3 +39,15 @@ def six_cable_robot() -> Robot:
     attachments = ring(5.0, [60, -60, 180, 60, 300, 180])
     centre = frozen_array([0.1, -0.2, -1.0])
     return Robot(frozen_array(exits), Platform(4000.0, frozen_array(attachments), centre))
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder on Python's path, to install plugins into; they are forgotten afterwards."""
+    folder = tmp_path / "site"
+    folder.mkdir()
+    monkeypatch.syspath_prepend(folder)
+    yield folder
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(str(folder)):
+            del sys.modules[name]

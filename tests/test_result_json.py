@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,10 +11,12 @@ from typing import Any
 
 import pytest
 
-from designer.analysis import Advance, Analysis, analyse, analyse_pose
+from designer.analysis import Analysis, analyse, analyse_pose
 from designer.catalogue.registry import load_catalogue
 from designer.config import read_study
+from designer.progress import Advance
 from designer.result_json import result_dict, size_text, write_result
+from designer.selection_json import write_candidates
 
 CONFIG = """
 name: Crane
@@ -99,6 +102,37 @@ def test_values_are_the_papers(result: Any) -> None:
     assert workspace["feasible"] is True
     assert workspace["sagging"]["diameter_m"] == pytest.approx(51.23e-3, abs=1e-5)
     assert workspace["statuses"]["solved"] == workspace["samples"] == 200
+
+
+def test_selection_has_its_parts(result: Any) -> None:
+    selection = result["selection"]
+    assert selection["objectives"] == ["mass", "drum_diameter", "max_tension"]
+    assert selection["chosen"] == selection["pareto"][0]
+    for usable in selection["usable"]:
+        assert usable.keys() == {"grade", "size_id", "diameter_m", "volume_m3", "fraction"}
+        assert usable["grade"] == selection["chosen"]["grade"]
+    shares = [usable["fraction"] for usable in selection["usable"]]
+    assert shares == sorted(shares)
+    for candidate in selection["candidates"]:
+        load, share = candidate["minimum_breaking_load_N"], candidate["efficiency"]
+        assert candidate["allowable_tension_N"] == pytest.approx(load * share / 2.0)
+        assert candidate["why"]
+        assert candidate["verified"] == (candidate["refined"] and candidate["utilisation"] <= 1.0)
+
+
+def test_every_candidate_is_in_the_table(analysis: Analysis, result: Any, tmp_path: Path) -> None:
+    assert analysis.selection is not None
+    path = tmp_path / "candidates.csv"
+    write_candidates(analysis.selection, path)
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(result["selection"]["candidates"]) > 20
+    for row, candidate in zip(rows, result["selection"]["candidates"], strict=True):
+        assert row["grade"] == candidate["grade"]
+        assert float(row["utilisation"]) == candidate["utilisation"]
+        assert float(row["longest_2_m"]) == candidate["longest_m"][1]
+        assert float(row["worst_pose_3_m"]) == candidate["worst_pose"][2]
+        assert row["standing"] == candidate["standing"]
 
 
 def test_chosen_is_one_of_the_candidates(result: Any) -> None:

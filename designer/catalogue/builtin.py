@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from designer.catalogue.hookspecs import hookimpl
+from designer.catalogue.grade import Grade
+from designer.catalogue.standard_rope import standard_ropes
+from designer.plugins import hookimpl
 from designer.resources import data_folder
 
 
 @hookimpl
-def register_grades() -> list[Path]:
-    """Return the folder of the grades that are shipped."""
-    return [data_folder("catalog")]
+def register_grades() -> list[Path | Grade]:
+    """Return the folder of the grades that are shipped, and those computed by a standard."""
+    return [data_folder("catalog"), *standard_ropes()]

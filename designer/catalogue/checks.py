@@ -1,8 +1,7 @@
-"""Checks of a grade's figures that hold for every rope, so that slips of typing and unit show.
+"""Checks of a grade's fields: texts, choices, signs, order.
 
-Breaking load over d² and mass over d² hardly change within a grade, and lie within known bounds
-for every rope there is. A figure in the wrong unit (lb/ft for kg/m, lbf for N) breaks one of the
-two rules.
+What is known of every rope of a material is checked in `designer.catalogue.proportions`, and only
+where each figure makes sense by itself.
 """
 
 from __future__ import annotations
@@ -10,25 +9,27 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from statistics import median
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import get_args
 
-from designer.catalogue.grade import Basis, Grade, ReferenceArea, Size, Trust
-
-LARGEST_FACTOR_FROM_MEDIAN = 1.4
-"""A size may be this much stronger or heavier for its d² than the median of its grade.
-
-Real tables stay within 1.25; pound for kilogram per length is 1.49.
-"""
+from designer.catalogue.flaw import Flaw, Keys, within
+from designer.catalogue.grade import (
+    ComputedColumn,
+    Grade,
+    ReferenceArea,
+    RopeMaterial,
+    Trust,
+)
+from designer.catalogue.proportions import proportion_flaws
+from designer.catalogue.stiffness import Basis
 
 _ID = re.compile(r"[a-z0-9][a-z0-9._-]{0,79}")
 _LONGEST_TEXT = 1000
 _DIAMETER_M = (1e-4, 0.5)
 _MODULUS_PA = (1e8, 2.5e11)  # a wet nylon rope; a single steel wire has 2.1e11
-_DENSITY_KG_PER_M3 = (200.0, 9000.0)  # a floating rope; solid steel with grease
-_BREAKING_STRESS_PA = (2e7, 3e9)
+_EA_OVER_MBL = (0.5, 1000.0)
+_CURRENCY = re.compile(r"[A-Z]{3}")
 _LARGEST_AREA_FACTOR = math.pi / 4.0
 _TEXTS = ("manufacturer", "product", "construction", "core", "finish")
 _FIGURES = {
@@ -36,37 +37,14 @@ _FIGURES = {
     "minimum_breaking_load": "minimum_breaking_load_N",
     "linear_mass": "linear_density_kg_per_m",
     "metallic_area": "metallic_area_m2",
+    "price_per_m": "price_per_m",
 }
 
 
-Keys = tuple[str | int, ...]
-"""A path in a grade file, such as ``("sizes", 3, "linear_mass")``."""
-
-
-@dataclass(frozen=True, slots=True)
-class Flaw:
-    """One thing that is wrong with a grade.
-
-    Parameters
-    ----------
-    keys : tuple of str or int
-        Path in a grade file.
-    problem, expected : str
-        What was found, and what was expected instead.
-    """
-
-    keys: Keys
-    problem: str
-    expected: str = ""
-
-
 def find_flaws(grade: Grade) -> list[Flaw]:
-    """Return everything that is wrong with a grade, in the order of its fields.
-
-    Proportions are looked at only where each figure makes sense by itself.
-    """
-    flaws = [flaw for check in _CHECKS_OF_FIELDS for flaw in check(grade)]
-    return flaws or [flaw for check in _CHECKS_OF_PROPORTION for flaw in check(grade)]
+    """Return everything that is wrong with a grade, in the order of its fields."""
+    flaws = [flaw for check in _CHECKS for flaw in check(grade)]
+    return flaws or list(proportion_flaws(grade))
 
 
 def _identity(grade: Grade) -> Iterator[Flaw]:
@@ -96,24 +74,56 @@ def _texts(value: object, keys: Keys) -> Iterator[tuple[Keys, str]]:
 
 
 def _choices(grade: Grade) -> Iterator[Flaw]:
-    modulus = grade.modulus
-    given: list[tuple[tuple[str, ...], str, object]] = [
-        (("trust",), grade.trust, Trust),
-        (("modulus", "reference_area"), modulus.reference_area, ReferenceArea),
-        (("modulus", "basis"), modulus.basis, Basis),
-    ]
+    given: list[tuple[Keys, object, object]] = [(("trust",), grade.trust, Trust)]
+    if grade.material is not None:
+        given.append((("material",), grade.material, RopeMaterial))
+    if grade.modulus is not None:
+        given.append((("modulus", "reference_area"), grade.modulus.reference_area, ReferenceArea))
+    for name in ("modulus", "stiffness", "area_factor", "thermal_expansion"):
+        part = getattr(grade, name)
+        if part is not None:
+            given.append(((name, "basis"), part.basis, Basis))
+    given += [(("computed",), column.figure, ComputedColumn) for column in grade.computed]
     for keys, value, choice in given:
         if value not in get_args(choice):
             yield Flaw(keys, f"{value!r} is not known", "one of " + ", ".join(get_args(choice)))
 
 
+def _elasticity(grade: Grade) -> Iterator[Flaw]:
+    if grade.modulus is None and grade.stiffness is None:
+        yield Flaw(("modulus",), "is missing", "a modulus, or the stiffness of a fibre rope")
+    elif grade.modulus is not None and grade.stiffness is not None:
+        yield Flaw(("stiffness",), "is given beside a modulus", "one of the two")
+    else:
+        name = "modulus" if grade.modulus is not None else "stiffness"
+        if not 0.0 <= grade.elasticity.uncertainty < 1.0:
+            problem = f"is {grade.elasticity.uncertainty:g}"
+            yield Flaw((name, "uncertainty"), problem, "a fraction from 0 to below 1")
+
+
 def _modulus(grade: Grade) -> Iterator[Flaw]:
-    value_GPa = grade.modulus.value_Pa / 1e9
-    if not _within(grade.modulus.value_Pa, _MODULUS_PA):
-        yield Flaw(("modulus", "value"), f"{value_GPa:.4g} GPa is no rope's", "0.1 to 250 GPa")
-    if not 0.0 <= grade.modulus.uncertainty < 1.0:
-        problem = f"is {grade.modulus.uncertainty:g}"
-        yield Flaw(("modulus", "uncertainty"), problem, "a fraction from 0 to below 1")
+    modulus = grade.modulus
+    if modulus is not None and not within(modulus.value_Pa, _MODULUS_PA):
+        problem = f"{modulus.value_Pa / 1e9:.4g} GPa is no rope's"
+        yield Flaw(("modulus", "value"), problem, "0.1 to 250 GPa")
+
+
+def _stiffness(grade: Grade) -> Iterator[Flaw]:
+    if grade.stiffness is None:
+        return
+    loads, ratios = grade.stiffness.load_fraction, grade.stiffness.ea_over_breaking_load
+    if len(ratios) != max(len(loads), 1) or not all(within(r, _EA_OVER_MBL) for r in ratios):
+        lowest, highest = _EA_OVER_MBL
+        expected = f"{lowest:g} to {highest:g}, for each load fraction"
+        yield Flaw(("stiffness",), f"has the ratios {_list(ratios)}", expected)
+    is_ascending = all(low < high for low, high in pairwise(loads))
+    if not (is_ascending and all(0.0 < load <= 1.0 for load in loads)):
+        problem = f"has the load fractions {_list(loads)}"
+        yield Flaw(("stiffness",), problem, "ascending ones, above 0 and up to 1")
+
+
+def _list(values: tuple[float, ...]) -> str:
+    return ", ".join(f"{value:g}" for value in values) or "(none)"
 
 
 def _extras(grade: Grade) -> Iterator[Flaw]:
@@ -129,6 +139,28 @@ def _extras(grade: Grade) -> Iterator[Flaw]:
         yield Flaw(("area_factor", "value"), problem, "more than 0, at most pi/4")
 
 
+def _limits(grade: Grade) -> Iterator[Flaw]:
+    limits = grade.limits
+    if limits is None:
+        return
+    if limits.temperature_C is None and limits.creep is None:
+        yield Flaw(("limits",), "sets no limit", "temperature_C or creep")
+    if limits.temperature_C is not None:
+        lowest, highest = limits.temperature_C
+        if not -273.15 <= lowest < highest <= 2000.0:
+            problem = f"is {lowest:g} to {highest:g}"
+            yield Flaw(("limits", "temperature_C"), problem, "[lowest, highest] in °C")
+
+
+def _prices(grade: Grade) -> Iterator[Flaw]:
+    if grade.currency is not None and not _CURRENCY.fullmatch(grade.currency):
+        yield Flaw(("currency",), f"{grade.currency!r} is no currency", "such as 'EUR'")
+    for index, size in enumerate(grade.sizes):
+        if size.price_per_m is not None and grade.currency is None:
+            problem = "there is no currency to it"
+            yield Flaw(("sizes", index, "price_per_m"), problem, "the field 'currency'")
+
+
 def _figures(grade: Grade) -> Iterator[Flaw]:
     if not grade.sizes:
         yield Flaw(("sizes",), "there is no size", "at least one")
@@ -137,7 +169,7 @@ def _figures(grade: Grade) -> Iterator[Flaw]:
             value = getattr(size, attribute)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 yield Flaw(("sizes", index, name), f"is {value:g}", "a positive number")
-        if size.diameter_m > 0.0 and not _within(size.diameter_m, _DIAMETER_M):
+        if size.diameter_m > 0.0 and not within(size.diameter_m, _DIAMETER_M):
             problem = f"{size.diameter_m:g} m is no rope's"
             yield Flaw(("sizes", index, "diameter"), problem, "0.1 mm to 500 mm; check the unit")
 
@@ -156,7 +188,7 @@ def _order(grade: Grade) -> Iterator[Flaw]:
 
 def _areas(grade: Grade) -> Iterator[Flaw]:
     missing = [size for size in grade.sizes if grade.metallic_area_m2(size) is None]
-    if missing and grade.modulus.reference_area == "metallic":
+    if missing and grade.modulus and grade.modulus.reference_area == "metallic":
         problem = f"is metallic, but {len(missing)} of {len(grade.sizes)} sizes give no such area"
         expected = "metallic_area for each size, or an area_factor"
         yield Flaw(("modulus", "reference_area"), problem, expected)
@@ -167,45 +199,16 @@ def _areas(grade: Grade) -> Iterator[Flaw]:
             yield Flaw(("sizes", index, "metallic_area"), problem, "0.2 to 1 of it; check the unit")
 
 
-def _densities(grade: Grade) -> Iterator[Flaw]:
-    yield from _proportion(
-        grade, "linear_mass", lambda size: size.density_kg_per_m3, _DENSITY_KG_PER_M3, "kg/m³"
-    )
-
-
-def _stresses(grade: Grade) -> Iterator[Flaw]:
-    yield from _proportion(
-        grade,
-        "minimum_breaking_load",
-        lambda size: size.breaking_stress_Pa,
-        _BREAKING_STRESS_PA,
-        "Pa",
-    )
-
-
-def _proportion(
-    grade: Grade,
-    name: str,
-    measure: Callable[[Size], float],
-    bounds: tuple[float, float],
-    unit: str,
-) -> Iterator[Flaw]:
-    values = [measure(size) for size in grade.sizes]
-    middle = median(values)
-    if not _within(middle, bounds):
-        problem = f"{name} over the nominal circle is {middle:.3g} {unit} in the median"
-        expected = f"{bounds[0]:.3g} to {bounds[1]:.3g} {unit}; check the units"
-        yield Flaw(("sizes",), problem, expected)
-        return
-    for index, value in enumerate(values):
-        if not 1.0 / LARGEST_FACTOR_FROM_MEDIAN <= value / middle <= LARGEST_FACTOR_FROM_MEDIAN:
-            problem = f"over d² it is {value / middle:.3g} times the median of the grade"
-            yield Flaw(("sizes", index, name), problem, "about 1; check figure and unit")
-
-
-def _within(value: float, bounds: tuple[float, float]) -> bool:
-    return bounds[0] <= value <= bounds[1]
-
-
-_CHECKS_OF_FIELDS = (_identity, _choices, _modulus, _extras, _figures, _order, _areas)
-_CHECKS_OF_PROPORTION = (_densities, _stresses)
+_CHECKS = (
+    _identity,
+    _choices,
+    _elasticity,
+    _modulus,
+    _stiffness,
+    _extras,
+    _limits,
+    _prices,
+    _figures,
+    _order,
+    _areas,
+)

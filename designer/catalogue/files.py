@@ -7,21 +7,31 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from typing import get_args
 
 from pydantic import ValidationError
 
 from designer.catalogue.checks import find_flaws
 from designer.catalogue.grade import (
     AreaFactor,
+    ComputedColumn,
+    ComputedFigure,
     Grade,
+    Limits,
     Modulus,
     Reference,
     SheaveRatio,
     Size,
     ThermalExpansion,
 )
-from designer.catalogue.schema import GradeSection, SizeSection
-from designer.config.document import Document, read_document
+from designer.catalogue.schema import (
+    GradeSection,
+    ModulusSection,
+    SizeSection,
+    StiffnessSection,
+)
+from designer.catalogue.stiffness import RelativeStiffness
+from designer.config.document import GRADE, Document, read_document
 from designer.config.faults import schema_faults
 from designer.errors import Fault, InputError
 
@@ -46,7 +56,7 @@ def read_grade(path: Path) -> Grade:
     InputError
         If anything is wrong with it; carries every fault, in the order of the lines.
     """
-    document = read_document(path)
+    document = read_document(path, GRADE)
     faults = list(document.faults)
     grade = None
     try:
@@ -140,8 +150,7 @@ def _flaws(grade: Grade, document: Document) -> list[Fault]:
 
 
 def _grade(section: GradeSection, file: str) -> Grade:
-    modulus, expansion = section.modulus, section.thermal_expansion
-    factor, ratio = section.area_factor, section.sheave_ratio
+    expansion, factor, ratio = section.thermal_expansion, section.area_factor, section.sheave_ratio
     return Grade(
         id=section.id,
         manufacturer=section.manufacturer,
@@ -149,16 +158,12 @@ def _grade(section: GradeSection, file: str) -> Grade:
         construction=section.construction,
         core=section.core,
         finish=section.finish,
-        modulus=Modulus(
-            modulus.value,
-            modulus.reference_area,
-            modulus.basis,
-            modulus.source,
-            modulus.uncertainty,
-        ),
         sizes=tuple(_size(size) for size in section.sizes),
         source=Reference(**section.source.model_dump()),
         trust=section.trust,
+        modulus=_modulus(section.modulus) if section.modulus else None,
+        stiffness=_stiffness(section.stiffness) if section.stiffness else None,
+        material=section.material,
         standard=section.standard,
         wire_grade=section.wire_grade,
         area_factor=AreaFactor(**factor.model_dump()) if factor else None,
@@ -168,9 +173,36 @@ def _grade(section: GradeSection, file: str) -> Grade:
             else None
         ),
         sheave_ratio=SheaveRatio(**ratio.model_dump()) if ratio else None,
+        limits=Limits(**section.limits.model_dump()) if section.limits else None,
+        currency=section.currency,
+        computed=tuple(
+            ComputedFigure(figure, how)
+            for figure in get_args(ComputedColumn)
+            if (how := getattr(section.computed, figure)) is not None
+        ),
         notes=section.notes,
         file=file,
     )
+
+
+def _modulus(section: ModulusSection) -> Modulus:
+    return Modulus(
+        section.value,
+        section.reference_area,
+        section.basis,
+        section.source,
+        section.uncertainty,
+    )
+
+
+def _stiffness(section: StiffnessSection) -> RelativeStiffness:
+    if section.by_load_fraction is not None:
+        loads, ratios = zip(*section.by_load_fraction, strict=True)
+    else:
+        assert section.ea_over_breaking_load is not None  # the schema sees to it
+        ratios = (section.ea_over_breaking_load,)
+        loads = () if section.at_load_fraction is None else (section.at_load_fraction,)
+    return RelativeStiffness(ratios, loads, section.basis, section.source, section.uncertainty)
 
 
 def _size(section: SizeSection) -> Size:
@@ -181,4 +213,5 @@ def _size(section: SizeSection) -> Size:
         linear_density_kg_per_m=section.linear_mass,
         metallic_area_m2=section.metallic_area,
         doubt=section.doubt,
+        price_per_m=section.price_per_m,
     )

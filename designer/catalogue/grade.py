@@ -14,10 +14,27 @@ from statistics import median
 from typing import Literal
 
 from designer.cable import Cable, Material
+from designer.catalogue.stiffness import Basis, RelativeStiffness
 
 ReferenceArea = Literal["nominal", "metallic"]
-Basis = Literal["printed", "computed", "borrowed"]
 Trust = Literal["A", "B", "C"]
+RopeMaterial = Literal[
+    "steel",
+    "stainless steel",
+    "HMPE",
+    "Vectran",
+    "PBO",
+    "aramid",
+    "polyester",
+    "nylon",
+    "polyester and nylon",
+    "polypropylene",
+    "other",
+]
+ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"]
+
+TYPICAL_LOAD_FRACTION = 0.2
+"""Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
 
 TRUST_MEANING = {
     "A": "the maker's own or a standard's own table",
@@ -45,6 +62,8 @@ class Size:
     doubt : str or None
         Why the figures of this size may be wrong. A doubtful size may still be chosen, and
         whoever shows it shows the doubt with it.
+    price_per_m : float or None
+        Price of one metre in the grade's currency; None where it is not known.
     """
 
     id: str
@@ -53,6 +72,7 @@ class Size:
     linear_density_kg_per_m: float
     metallic_area_m2: float | None = None
     doubt: str | None = None
+    price_per_m: float | None = None
 
     @property
     def nominal_area_m2(self) -> float:
@@ -95,6 +115,12 @@ class Modulus:
     source: str
     uncertainty: float
 
+    @property
+    def figure(self) -> str:
+        """The modulus in words."""
+        area = {"nominal": "nominal circle", "metallic": "metallic area"}[self.reference_area]
+        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}"
+
 
 @dataclass(frozen=True, slots=True)
 class ThermalExpansion:
@@ -121,6 +147,33 @@ class SheaveRatio:
     suggested: float
     minimum: float
     source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a rope bears beside load.
+
+    Parameters
+    ----------
+    source : str
+        Where the limits come from.
+    temperature_C : tuple of float or None
+        Lowest and highest temperature of use [°C].
+    creep : str or None
+        What is known of its creep.
+    """
+
+    source: str
+    temperature_C: tuple[float, float] | None = None
+    creep: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ComputedFigure:
+    """A column of the table of sizes that the source does not print, and how it was computed."""
+
+    figure: ComputedColumn
+    how: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +224,7 @@ class FamilyFit:
 
 @dataclass(frozen=True, slots=True)
 class Grade:
-    """A rope of one construction and one wire grade, in the sizes it is sold in.
+    """A rope of one construction and one wire grade or fibre, in the sizes it is sold in.
 
     Parameters
     ----------
@@ -181,21 +234,34 @@ class Grade:
         Who makes it, and under which name it is sold.
     construction, core, finish : str
         Such as ``6x36 WS``, ``IWRC``, ``galvanised``.
-    modulus : Modulus
-        Effective modulus of elasticity.
     sizes : tuple of Size
         Ascending in diameter.
     source : Reference
         Where the table was read.
     trust : str
         How far to trust it: a key of `TRUST_MEANING`.
+    modulus : Modulus or None
+        Effective modulus of elasticity.
+    stiffness : RelativeStiffness or None
+        Stiffness over breaking load, for a rope that is described so. A grade has either this or
+        a modulus.
+    material : str or None
+        What bears the load; None where it is not known.
     standard, wire_grade : str or None
         Standard, and tensile grade of the wires, where stated.
     area_factor : AreaFactor or None
     thermal_expansion : ThermalExpansion or None
     sheave_ratio : SheaveRatio or None
+    limits : Limits or None
+    currency : str or None
+        Of the prices of the sizes, such as ``EUR``.
+    computed : tuple of ComputedFigure
+        Columns of the table that the source does not print.
     notes : tuple of str
         What a user of the figures should know.
+    is_nominal : bool
+        True for a grade computed from the factors of a standard. It is no product: a selection
+        among all grades leaves it out, and takes it where a study names it.
     origin : str
         Name of the plugin or folder the grade came in by; set by the registry.
     file : str
@@ -208,16 +274,22 @@ class Grade:
     construction: str
     core: str
     finish: str
-    modulus: Modulus
     sizes: tuple[Size, ...]
     source: Reference
     trust: Trust
+    modulus: Modulus | None = None
+    stiffness: RelativeStiffness | None = None
+    material: RopeMaterial | None = None
     standard: str | None = None
     wire_grade: str | None = None
     area_factor: AreaFactor | None = None
     thermal_expansion: ThermalExpansion | None = None
     sheave_ratio: SheaveRatio | None = None
+    limits: Limits | None = None
+    currency: str | None = None
+    computed: tuple[ComputedFigure, ...] = ()
     notes: tuple[str, ...] = ()
+    is_nominal: bool = False
     origin: str = ""
     file: str = ""
 
@@ -232,41 +304,59 @@ class Grade:
             return size.metallic_area_m2
         return self.area_factor.value * size.diameter_m**2
 
-    def axial_stiffness_N(self, size: Size) -> float:
-        """Return EA of a size [N].
+    @property
+    def elasticity(self) -> Modulus | RelativeStiffness:
+        """The modulus or the relative stiffness, whichever the grade has.
 
         Raises
         ------
         ValueError
-            If the modulus refers to a metallic area that is not known.
+            If it has neither.
         """
-        if self.modulus.reference_area == "nominal":
-            return self.modulus.value_Pa * size.nominal_area_m2
+        found = self.modulus or self.stiffness
+        if found is None:
+            raise ValueError(f"{self.id}: neither modulus nor stiffness is known")
+        return found
+
+    def axial_stiffness_N(self, size: Size, load_fraction: float = TYPICAL_LOAD_FRACTION) -> float:
+        """Return EA of a size [N]; of a fibre rope, EA at this load over breaking load.
+
+        Raises
+        ------
+        ValueError
+            If the grade has neither modulus nor stiffness, or if the modulus refers to a metallic
+            area that is not known.
+        """
+        elasticity = self.elasticity
+        if isinstance(elasticity, RelativeStiffness):
+            return elasticity.at(load_fraction) * size.minimum_breaking_load_N
+        if elasticity.reference_area == "nominal":
+            return elasticity.value_Pa * size.nominal_area_m2
         area_m2 = self.metallic_area_m2(size)
         if area_m2 is None:
             raise ValueError(f"{self.id}, {size.id}: the metallic area is not known")
-        return self.modulus.value_Pa * area_m2
+        return elasticity.value_Pa * area_m2
 
     def cable(self, size: Size, safety_factor: float) -> Cable:
         """Return one size as a cable, its breaking load divided by ``safety_factor``."""
         return Cable(
             diameter_m=size.diameter_m,
             linear_density_kg_per_m=size.linear_density_kg_per_m,
-            axial_stiffness_N=self.axial_stiffness_N(size),
+            axial_stiffness_N=self.axial_stiffness_N(size, 1.0 / safety_factor),
             allowable_tension_N=size.minimum_breaking_load_N / safety_factor,
         )
 
     def family(self, safety_factor: float) -> Material:
         """Return the continuous family of this grade, see `fit`."""
-        fit = self.fit()
+        fit = self.fit(1.0 / safety_factor)
         return Material(
             density_kg_per_m3=fit.density_kg_per_m3,
             youngs_modulus_Pa=fit.youngs_modulus_Pa,
             allowable_stress_Pa=fit.breaking_stress_Pa / safety_factor,
         )
 
-    def fit(self) -> FamilyFit:
-        """Return the continuous family fitted to the sizes.
+    def fit(self, load_fraction: float = TYPICAL_LOAD_FRACTION) -> FamilyFit:
+        """Return the continuous family fitted to the sizes, stiff as it is at this load.
 
         Mass, stiffness and breaking load over the nominal circle would be the same for every
         size of an ideal grade. Tables deviate: masses of thin sizes are rounded coarsely, single
@@ -281,7 +371,8 @@ class Grade:
         return FamilyFit(
             density_kg_per_m3=density,
             youngs_modulus_Pa=median(
-                self.axial_stiffness_N(size) / size.nominal_area_m2 for size in trusted
+                self.axial_stiffness_N(size, load_fraction) / size.nominal_area_m2
+                for size in trusted
             ),
             breaking_stress_Pa=stress,
             n_fitted=len(trusted),

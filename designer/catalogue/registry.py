@@ -11,9 +11,10 @@ from pathlib import Path
 from designer.catalogue.checks import find_flaws
 from designer.catalogue.files import id_fault, nothing_found_fault, read_grades
 from designer.catalogue.grade import Grade
-from designer.catalogue.plugins import Offer, collect_offers, one_line
 from designer.config.node import path_text
 from designer.errors import Fault, InputError
+from designer.plugins.find import Offer, Plugins, ask, find_plugins
+from designer.plugins.guard import one_line
 
 MOST_PROBLEMS_OF_A_SOURCE = 20
 
@@ -76,7 +77,9 @@ class Catalogue:
         return f"there is no grade {one_line(grade_id)!r}", expected
 
 
-def load_catalogue(paths: Sequence[Path] = (), with_plugins: bool = True) -> Catalogue:
+def load_catalogue(
+    paths: Sequence[Path] = (), with_plugins: bool = True, plugins: Plugins | None = None
+) -> Catalogue:
     """Return the shipped grades, those of all plugins and of the user folder, and of ``paths``.
 
     A plugin, or a file of the user folder, that is faulty is left out and reported in
@@ -89,18 +92,22 @@ def load_catalogue(paths: Sequence[Path] = (), with_plugins: bool = True) -> Cat
     with_plugins : bool
         False leaves out plugins and the user folder, for studies that give the same answer on
         every machine.
+    plugins : Plugins or None
+        Those that were found already, by the same wish; None to find them.
 
     Raises
     ------
     InputError
         If a file in ``paths`` is faulty, or has the id of another grade.
     """
-    offers, problems = collect_offers(with_plugins)
-    shelf = _Shelf(problems=problems)
+    if plugins is None:
+        plugins = find_plugins(with_plugins)
+    offers, failures = ask(plugins, "register_grades")
+    shelf = _Shelf(problems=[*plugins.problems, *failures])
     for offer in offers:
         shelf.add_offer(offer)
     user_folder = user_catalogue_folder()
-    if with_plugins and user_folder.is_dir():
+    if plugins.with_others and user_folder.is_dir():
         shelf.add_offer(_offer_of(user_folder))
     shelf.add_paths(paths)
     return Catalogue(tuple(shelf.grades.values()), tuple(shelf.sources), tuple(shelf.problems))

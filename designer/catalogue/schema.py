@@ -6,11 +6,12 @@ What a figure may be beside the other figures is checked in `designer.catalogue.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from designer.catalogue import grade as values
+from designer.catalogue.stiffness import Basis
 from designer.config.fields import ListOf, Quantity, Text, refusal
 from designer.config.section import Section
 from designer.units import (
@@ -58,6 +59,12 @@ def _unit_of(dimension: Dimension) -> BeforeValidator:
 Line = Annotated[Text, AfterValidator(_on_one_line)]
 Lines = Annotated[tuple[Line, ...], BeforeValidator(ListOf(0, 100, "a list of texts"))]
 Number = Annotated[float, Quantity(NUMBER)]
+Positive = Annotated[float, Quantity(NUMBER, above=0.0)]
+LoadFraction = Annotated[float, Quantity(NUMBER, above=0.0, at_most=1.0)]
+LoadPoint = Annotated[
+    tuple[LoadFraction, Positive],
+    BeforeValidator(ListOf(2, 2, "[load fraction, EA over breaking load]")),
+]
 
 
 class SourceSection(Section):
@@ -76,9 +83,36 @@ class ModulusSection(Section):
         description="a modulus such as '62.7 GPa'"
     )
     reference_area: values.ReferenceArea = Field(description="'nominal' or 'metallic'")
-    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
     uncertainty: Number = Field(description="a fraction such as 0.15")
+
+
+class StiffnessSection(Section):
+    """Axial stiffness over breaking load."""
+
+    ea_over_breaking_load: Positive | None = None
+    at_load_fraction: LoadFraction | None = None
+    by_load_fraction: (
+        Annotated[
+            tuple[LoadPoint, ...],
+            BeforeValidator(ListOf(2, 20, "a list of [load fraction, EA over breaking load]")),
+        ]
+        | None
+    ) = None
+    basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    source: Line = Field(description="where the figure comes from")
+    uncertainty: Number = Field(description="a fraction such as 0.3")
+
+    @model_validator(mode="after")
+    def _is_one_figure_or_a_table(self) -> Self:
+        if (self.ea_over_breaking_load is None) == (self.by_load_fraction is None):
+            raise refusal(
+                "needs one figure or a table", "ea_over_breaking_load or by_load_fraction"
+            )
+        if self.by_load_fraction is not None and self.at_load_fraction is not None:
+            raise refusal("a table has its loads in it", "no at_load_fraction")
+        return self
 
 
 class ThermalExpansionSection(Section):
@@ -87,7 +121,7 @@ class ThermalExpansionSection(Section):
     value: Annotated[float, Quantity(PER_TEMPERATURE)] = Field(
         description="a coefficient such as '12.5e-6 /K'"
     )
-    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
 
 
@@ -95,7 +129,7 @@ class AreaFactorSection(Section):
     """Metallic area over d²."""
 
     value: Number = Field(description="a number such as 0.449")
-    basis: values.Basis = Field(description="'printed', 'computed' or 'borrowed'")
+    basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
 
 
@@ -105,6 +139,24 @@ class SheaveRatioSection(Section):
     suggested: Number = Field(description="a number such as 35")
     minimum: Number = Field(description="a number such as 23")
     source: Line = Field(description="where the figures come from")
+
+
+class LimitsSection(Section):
+    """What the rope bears beside load."""
+
+    temperature_C: (
+        Annotated[tuple[Number, Number], BeforeValidator(ListOf(2, 2, "[lowest, highest]"))] | None
+    ) = None
+    creep: Line | None = None
+    source: Line = Field(description="where the limits come from")
+
+
+class ComputedSection(Section):
+    """Columns of the table that the source does not print: how each was computed."""
+
+    minimum_breaking_load: Line | None = None
+    linear_mass: Line | None = None
+    metallic_area: Line | None = None
 
 
 class UnitsSection(Section):
@@ -130,6 +182,7 @@ class SizeSection(Section):
         description="a mass per length such as '0.137 kg/m'"
     )
     metallic_area: Annotated[float, Quantity(AREA, above=0.0)] | None = None
+    price_per_m: Positive | None = None
     doubt: Line | None = None
 
 
@@ -146,10 +199,15 @@ class GradeSection(Section):
     wire_grade: Line | None = None
     trust: values.Trust = Field(description="'A', 'B' or 'C'")
     source: SourceSection = Field(description="a mapping with publisher and document")
-    modulus: ModulusSection = Field(description="a mapping with value, reference_area, …")
+    material: values.RopeMaterial | None = None
+    modulus: ModulusSection | None = None
+    stiffness: StiffnessSection | None = None
     area_factor: AreaFactorSection | None = None
     thermal_expansion: ThermalExpansionSection | None = None
     sheave_ratio: SheaveRatioSection | None = None
+    limits: LimitsSection | None = None
+    currency: Line | None = None
+    computed: ComputedSection = ComputedSection()
     notes: Lines = ()
     units: UnitsSection = UnitsSection()
     sizes: Annotated[

@@ -6,16 +6,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from designer.effects.known import KnownEffects
     from designer.study import Study
 
 
-def read_study(path: Path) -> Study:
+def read_study(path: Path, known_effects: KnownEffects | None = None) -> Study:
     """Return the study that the config file describes.
 
     Parameters
     ----------
     path : Path
         A YAML file.
+    known_effects : KnownEffects or None
+        Which effects it may declare; None for ours alone, without those of plugins.
 
     Raises
     ------
@@ -25,4 +28,4 @@ def read_study(path: Path) -> Study:
     """
     from designer.config.reader import study_from  # geometry, which grade files do not need
 
-    return study_from(path)
+    return study_from(path) if known_effects is None else study_from(path, known_effects)

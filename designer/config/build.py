@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 from designer.arrays import frozen_array
 from designer.cable import Material
 from designer.config.columns import log_column
 from designer.config.effects import read_effects
+from designer.config.orientation import rotation_vector_rad
 from designer.config.schema import (
     BoxSection,
     CableSection,
@@ -15,20 +17,24 @@ from designer.config.schema import (
     PointsSection,
     PoseSection,
     PrismSection,
+    RectangleSection,
     RobotSection,
     SelectionSection,
     StudySection,
     WorkspaceSection,
 )
-from designer.region import PointList, Prism, Region
+from designer.effects.known import KnownEffects
+from designer.region import PointList, Prism, Rectangle, Region
 from designer.robot import Platform, Poses, Robot
-from designer.study import Measurements, Selection, Source, Study, Workspace
+from designer.space import Orientations
+from designer.study import CableGroup, Measurements, Selection, Source, Study, Workspace
 
 
-def build_study(section: StudySection, source: Source) -> Study:
+def build_study(section: StudySection, source: Source, known: KnownEffects) -> Study:
     """Return the study that the config describes."""
     folder = source.path.parent
     robot = _robot(section.robot)
+    declared = read_effects(section.effects, robot.n_cables, known.names)
     return Study(
         name=section.name or source.path.stem,
         robot=robot,
@@ -39,15 +45,24 @@ def build_study(section: StudySection, source: Source) -> Study:
         selection=_selection(section.selection),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
-        effects=tuple(one for _, one in read_effects(section.effects, robot.n_cables).effects),
+        effects=tuple(one for _, one in declared.effects),
+        known_effects=known,
     )
 
 
 def _robot(section: RobotSection) -> Robot:
     body = section.platform
     attachments = None if body.attachments is None else frozen_array(body.attachments)
-    platform = Platform(body.mass, attachments, frozen_array(body.centre_of_mass))
-    return Robot(frozen_array(section.anchors), platform)
+    hull = None if body.hull is None else frozen_array(list(product(*body.hull)))
+    wrench = frozen_array([*body.wrench.force, *body.wrench.moment])
+    platform = Platform(body.mass, attachments, frozen_array(body.centre_of_mass), hull, wrench)
+    return Robot(
+        frozen_array(section.anchors),
+        platform,
+        tension_min_N=section.tension_min,
+        gravity_direction=frozen_array(section.gravity),
+        is_planar=section.planar,
+    )
 
 
 def _material(section: CableSection) -> Material:
@@ -55,7 +70,10 @@ def _material(section: CableSection) -> Material:
 
 
 def _pose(section: PoseSection | None) -> Poses | None:
-    return None if section is None else Poses.at(section.position, section.rotation_vector)
+    if section is None:
+        return None
+    turn = rotation_vector_rad(section.rotation_vector, section.quaternion, section.euler)
+    return Poses.at(section.position, turn)
 
 
 def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | None:
@@ -67,14 +85,28 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
         sampling=section.sampling,
         seed=section.seed,
         hangs_below=section.hangs_below,
+        clearance_m=section.clearance,
+        orientations=_orientations(section),
     )
 
 
-def _region(section: PrismSection | BoxSection | PointsSection, robot: Robot) -> Region:
+def _orientations(section: WorkspaceSection) -> Orientations:
+    if section.orientation_range is not None:
+        return Orientations.within(*section.orientation_range.bounds_rad)
+    each = section.orientations or (() if section.orientation is None else (section.orientation,))
+    return Orientations(frozen_array([one.turn_rad for one in each])) if each else Orientations()
+
+
+def _region(
+    section: PrismSection | BoxSection | PointsSection | RectangleSection, robot: Robot
+) -> Region:
     if isinstance(section, BoxSection):
         return Prism.box(*section.box)
     if isinstance(section, PointsSection):
         return PointList(frozen_array(section.points))
+    if isinstance(section, RectangleSection):
+        over = robot.exit_points_m if section.rectangle == "anchors" else section.rectangle
+        return Rectangle.over(over, section.inset, section.z)
     corners = robot.exit_points_m if section.prism == "anchors" else section.prism
     return Prism.over(corners, section.inset, section.z)
 
@@ -82,7 +114,15 @@ def _region(section: PrismSection | BoxSection | PointsSection, robot: Robot) ->
 def _selection(section: SelectionSection | None) -> Selection | None:
     if section is None:
         return None
-    return Selection(None if section.grades == "all" else section.grades, section.safety_factor)
+    return Selection(
+        grades=None if section.grades == "all" else section.grades,
+        safety_factor=section.safety_factor,
+        objectives=section.objectives,
+        termination_efficiency=section.termination_efficiency,
+        sheave_diameter_m=section.sheave_diameter,
+        groups=tuple(CableGroup(name, cables) for name, cables in (section.groups or {}).items()),
+        max_distinct_products=section.max_distinct_products,
+    )
 
 
 def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurements | None:

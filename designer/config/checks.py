@@ -6,7 +6,7 @@ together.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 from pathlib import Path
 
@@ -16,11 +16,15 @@ from scipy.spatial import QhullError
 from designer.arrays import FloatArray
 from designer.config.document import Document
 from designer.config.fields import Distance, Point, Rotation
+from designer.config.group_checks import GROUP_CHECKS
 from designer.config.measured_checks import MEASURED_CHECKS
+from designer.config.orientation import Quaternion
 from designer.config.parts import Parts
-from designer.config.schema import Anchors, Attachments, Corners, PrismBase
+from designer.config.plane_checks import PLANE_CHECKS, is_planar, seen_from_above
+from designer.config.schema import Anchors, Attachments, Box, Corners, PrismBase, RectangleBase
+from designer.effect_names import EffectName
 from designer.errors import Fault
-from designer.region import Prism
+from designer.region import Prism, Rectangle
 from designer.units import describe
 
 _COINCIDENT = 1e-9
@@ -33,27 +37,35 @@ _REGION = ("workspace", "region")
 _PRISM = (*_REGION, "prism")
 
 
-def all_faults(document: Document) -> list[Fault]:
-    """Return every fault that concerns more than one field of the document."""
-    parts = Parts(document, document.root.data())
+def all_faults(document: Document, effects: Mapping[str, EffectName]) -> list[Fault]:
+    """Return every fault that concerns more than one field of the document, or the effects."""
+    parts = Parts(document, document.root.data(), effects)
     return [fault for check in CHECKS for fault in check(parts)]
 
 
-def distinct_anchors(parts: Parts) -> Iterator[Fault]:
-    """No two cables leave the base at one point."""
+def distinct_cables(parts: Parts) -> Iterator[Fault]:
+    """No two cables have both of their ends in common."""
     anchors = parts.array(Anchors, *_ANCHORS)
-    pair = None if anchors is None else _coincident_pair(anchors)
+    attachments = parts.array(Attachments, *_ATTACHMENTS)
+    if anchors is None or (attachments is not None and len(attachments) != len(anchors)):
+        return
+    if attachments is None:
+        if parts.raw(*_ATTACHMENTS) is not None:
+            return
+        attachments = np.zeros_like(anchors)
+    pair = _coincident_pair(np.hstack([anchors, attachments]))
     if pair is not None:
         problem = f"is the same point as robot.anchors[{pair[0]}]"
-        yield parts.fault((*_ANCHORS, pair[1]), problem, "distinct exit points")
+        alike = ", and so are their attachments" if attachments.any() else ""
+        yield parts.fault((*_ANCHORS, pair[1]), problem + alike, "distinct cables")
 
 
 def anchors_span_area(parts: Parts) -> Iterator[Fault]:
-    """Seen from above, the exit points are not on one line."""
+    """Seen from above, the exit points are not on one line, except in a plane."""
     anchors = parts.array(Anchors, *_ANCHORS)
-    if anchors is None or _coincident_pair(anchors) is not None:
+    if anchors is None or is_planar(parts) or any(distinct_cables(parts)):
         return
-    if _rank(anchors[:, :2]) < 2:
+    if len(anchors) > 2 and _rank(np.unique(seen_from_above(parts, anchors), axis=0)) < 2:
         problem = "all anchors lie on one line when seen from above"
         yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
 
@@ -70,7 +82,7 @@ def attachment_count(parts: Parts) -> Iterator[Fault]:
 def attachments_span_plane(parts: Parts) -> Iterator[Fault]:
     """The platform cannot turn freely about a point or a line of attachments."""
     attachments = parts.array(Attachments, *_ATTACHMENTS)
-    if attachments is None or _rank(attachments) >= 2:
+    if attachments is None or _rank(attachments) >= (1 if is_planar(parts) else 2):
         return
     where = "on one line" if _rank(attachments) else "at one point"
     problem = f"all attachments lie {where}, so nothing keeps the platform from turning"
@@ -78,15 +90,18 @@ def attachments_span_plane(parts: Parts) -> Iterator[Fault]:
 
 
 def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
-    """A point mass has neither a centre of mass of its own nor an orientation."""
+    """A point mass has neither a centre of mass of its own, nor a hull, nor an orientation."""
     if parts.raw(*_ATTACHMENTS) is not None:
         return
-    for kind, keys in (
-        (Point, ("robot", "platform", "centre_of_mass")),
-        (Rotation, ("pose", "rotation_vector")),
+    for kind, keys, first in (
+        (Point, ("robot", "platform", "centre_of_mass"), 0),
+        (Box, ("robot", "platform", "hull"), 0),
+        (Rotation, ("pose", "rotation_vector"), 0),
+        (Quaternion, ("pose", "quaternion"), 1),  # the first number is 1 where nothing turns
+        (Rotation, ("pose", "euler", "angles"), 0),
     ):
         value = parts.read(kind, *keys)
-        if value is not None and any(value):
+        if value is not None and any(value[first:]):
             problem = "has no meaning for a point mass"
             yield parts.fault(keys, problem, "robot.platform.attachments, or leave it out")
 
@@ -108,6 +123,20 @@ def prism_has_area(parts: Parts) -> Iterator[Fault]:
         yield parts.fault((*_REGION, "inset"), problem, "a smaller inset")
 
 
+def rectangle_has_area(parts: Parts) -> Iterator[Fault]:
+    """Something is left of the rectangle's width inside the inset."""
+    keys = (*_REGION, "rectangle")
+    base = parts.read(RectangleBase, *keys)
+    inset_m = parts.read(Distance, *_REGION, "inset") or 0.0
+    ends = parts.array(Anchors, *_ANCHORS) if base == "anchors" else base
+    if ends is None:
+        return
+    try:
+        Rectangle.over(ends, inset_m, (0.0, 1.0))
+    except ValueError as error:
+        yield parts.fault(keys, str(error), "a line that leaves something between its ends")
+
+
 def catalogues_exist(parts: Parts) -> Iterator[Fault]:
     """Each extra catalogue is a file or folder beside the config."""
     folder = Path(parts.document.name).parent
@@ -119,13 +148,16 @@ def catalogues_exist(parts: Parts) -> Iterator[Fault]:
 
 
 CHECKS = (
-    distinct_anchors,
+    distinct_cables,
     anchors_span_area,
     attachment_count,
     attachments_span_plane,
     point_mass_has_no_body,
     prism_has_area,
+    rectangle_has_area,
     catalogues_exist,
+    *PLANE_CHECKS,
+    *GROUP_CHECKS,
     *MEASURED_CHECKS,
 )
 

@@ -13,10 +13,8 @@ from designer.measured.names import (
     COVARIATE,
     IGNORE,
     TEMPERATURE,
-    UNKNOWNS,
     column_hint,
     dimension_of,
-    unknown_hint,
 )
 from designer.study import LogColumn
 from designer.units import NUMBER, Dimension, QuantityError, describe, read_quantity
@@ -29,12 +27,6 @@ def _target(given: object) -> str:
         raise refusal(f"{describe(given)} is not a name", _TARGET)
     if given not in (IGNORE, COVARIATE) and dimension_of(given) is None:
         raise refusal(f"{describe(given)} is no column of ours", _TARGET + column_hint(given))
-    return given
-
-
-def _unknown(given: object) -> str:
-    if not isinstance(given, str) or given not in UNKNOWNS:
-        raise refusal(f"{describe(given)} is not known", unknown_hint(given))
     return given
 
 
@@ -114,7 +106,6 @@ def _no_such_unit(unit: str, dimension: Dimension, error: QuantityError) -> Pyda
 
 
 Columns = Annotated[dict[str, ColumnSection], BeforeValidator(mapping)]
-Unknown = Annotated[str, BeforeValidator(_unknown)]
 
 
 def log_column(name: str, section: ColumnSection) -> LogColumn:

@@ -22,6 +22,26 @@ _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
 @dataclass(frozen=True, slots=True)
+class FileKind:
+    """What a file should hold, for messages.
+
+    Parameters
+    ----------
+    content : str
+        The whole of it.
+    field : str
+        One of its fields.
+    """
+
+    content: str
+    field: str
+
+
+STUDY = FileKind("a study; `designer init` writes a first one", "robot: …")
+GRADE = FileKind("a grade, as in the files of the shipped catalogue", "id: …")
+
+
+@dataclass(frozen=True, slots=True)
 class Document:
     """A YAML file that is well-formed.
 
@@ -53,8 +73,15 @@ class Document:
         return Fault(self.name, node.line, path_text(keys), problem, expected)
 
 
-def read_document(path: Path) -> Document:
+def read_document(path: Path, kind: FileKind = STUDY) -> Document:
     """Return the YAML mapping in ``path``.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : FileKind
+        What it should hold.
 
     Raises
     ------
@@ -67,9 +94,10 @@ def read_document(path: Path) -> Document:
     composer = _Composer(name)
     root = composer.compose(_decode(raw, name))
     if root is None:
-        _refuse(name, None, "the file is empty", "a study; `designer init` writes a first one")
+        _refuse(name, None, "the file is empty", kind.content)
     if not isinstance(root.content, dict):
-        _refuse(name, root.line, "the file does not hold a mapping", "fields such as 'robot: …'")
+        expected = f"fields such as '{kind.field}'"
+        _refuse(name, root.line, "the file does not hold a mapping", expected)
     return Document(name, hashlib.sha256(raw).hexdigest(), root, tuple(composer.faults))
 
 

@@ -9,7 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from designer.config.fields import Quantity, WholeNumber
 from designer.config.node import Data, Key, Node, path_text, printable
-from designer.effect_names import EFFECTS, EffectName, ParameterName
+from designer.effect_names import EffectName, ParameterName
 from designer.nearest import did_you_mean, nearest_name
 from designer.study import DeclaredEffect, Entry
 from designer.units import describe, format_SI
@@ -40,7 +40,7 @@ class Found:
         self.refusals.append(Refusal(place, problem, expected))
 
 
-def read_effects(data: Data, n_cables: int, known: Mapping[str, EffectName] = EFFECTS) -> Found:
+def read_effects(data: Data, n_cables: int, known: Mapping[str, EffectName]) -> Found:
     """Return what the section ``effects`` says.
 
     Parameters
@@ -64,14 +64,16 @@ def read_effects(data: Data, n_cables: int, known: Mapping[str, EffectName] = EF
     return found
 
 
-def effect_entries(data: Data, node: Node, n_cables: int) -> Iterator[Entry]:
+def effect_entries(
+    data: Data, node: Node, n_cables: int, known: Mapping[str, EffectName]
+) -> Iterator[Entry]:
     """Yield the rows of the table of inputs for a section without faults."""
     dimensions = {
         (name.id, parameter.name): parameter.dimension
-        for name in EFFECTS.values()
+        for name in known.values()
         for parameter in name.parameters_for(n_cables)
     }
-    for place, effect in read_effects(data, n_cables).effects:
+    for place, effect in read_effects(data, n_cables, known).effects:
         if effect.cable is not None:
             yield Entry(path_text((*place, "cable")), str(effect.cable), str(effect.cable))
         for name, value in effect.parameters.items():

@@ -47,6 +47,11 @@ def _entries(
 ) -> Iterator[Entry]:
     if node is None:
         yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
+    elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
+        for index, item in enumerate(value):
+            below = node.child(index)
+            given = DEFAULT if below is None else below.as_written()
+            yield Entry(path_text((*place, index)), given, str(item))
     elif isinstance(value, dict) and value:
         yield from _map_entries(value, node, place)
     elif not _has_rows(value):
@@ -65,6 +70,8 @@ def _map_entries(value: dict[str, Any], node: Node, place: tuple[Key, ...]) -> I
             below = node.child(name)
             given = DEFAULT if below is None else below.as_written()
             yield Entry(path_text((*place, name)), given, item.meaning)
+        elif isinstance(item, tuple):
+            yield from _entries(item, node.child(name), (*place, name), NUMBER)
 
 
 def _has_rows(value: object) -> bool:

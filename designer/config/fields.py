@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -15,6 +16,7 @@ from designer.units import (
     LENGTH,
     LINEAR_DENSITY,
     MASS,
+    MOMENT,
     NUMBER,
     STRESS,
     Dimension,
@@ -147,11 +149,30 @@ def _text(given: object) -> str:
     return given
 
 
-def _rising(ends: tuple[float, float]) -> tuple[float, float]:
+def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
     lower, upper = ends
     if lower >= upper:
-        raise refusal(f"the lower end {lower:g} m is not below the upper {upper:g} m", _INTERVAL)
+        problem = f"the lower end {lower:g} {unit} is not below the upper {upper:g} {unit}"
+        raise refusal(problem, _INTERVAL)
     return ends
+
+
+def _rising_angles(ends: tuple[float, float]) -> tuple[float, float]:
+    return _rising(ends, "rad")
+
+
+def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(direction):
+        raise refusal("the direction is zero", _DIRECTION)
+    return direction
+
+
+def different(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names unchanged, or refuse them if one stands twice."""
+    twice = next((name for index, name in enumerate(names) if name in names[:index]), None)
+    if twice is not None:
+        raise refusal(f"{describe(twice)} is named twice", "each name once")
+    return names
 
 
 def mapping(given: object) -> object:
@@ -161,7 +182,15 @@ def mapping(given: object) -> object:
     return given
 
 
+def not_empty(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the mapping unchanged, or refuse one without fields."""
+    if not given:
+        raise refusal("the mapping is empty", "at least one group such as {front: [1, 2]}")
+    return given
+
+
 _INTERVAL = "[lower, upper]"
+_DIRECTION = "a direction such as [0, 0, -1]"
 _FARTHEST_M = 1e7
 _POINT = "three lengths [x, y, z]"
 
@@ -170,21 +199,46 @@ FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 
 Length = Annotated[float, Quantity(LENGTH, at_least=-_FARTHEST_M, at_most=_FARTHEST_M)]
 Distance = Annotated[float, Quantity(LENGTH, at_least=0.0, at_most=_FARTHEST_M)]
+Clearance = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
 LengthNoise = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
 Mass = Annotated[float, Quantity(MASS, above=0.0, at_most=1e12)]
 Density = Annotated[float, Quantity(DENSITY, above=0.0, at_most=1e6)]
 LinearDensity = Annotated[float, Quantity(LINEAR_DENSITY, above=0.0, at_most=1e6)]
 Force = Annotated[float, Quantity(FORCE, above=0.0, at_most=1e20)]
+Tension = Annotated[float, Quantity(FORCE, at_least=0.0, at_most=1e20)]
+ForcePart = Annotated[float, Quantity(FORCE, at_least=-1e20, at_most=1e20)]
+MomentPart = Annotated[float, Quantity(MOMENT, at_least=-1e20, at_most=1e20)]
+Share = Annotated[float, Quantity(NUMBER, at_least=-1e6, at_most=1e6)]
+HalfTurn = Annotated[float, Quantity(ANGLE, at_least=-math.pi, at_most=math.pi)]
 Modulus = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e5, at_most=1e20)]
 Stress = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e3, at_most=1e20)]
 Angle = Annotated[float, Quantity(ANGLE, at_least=-100.0, at_most=100.0)]
 SafetyFactor = Annotated[float, Quantity(NUMBER, at_least=1.0, at_most=1000.0)]
+SheaveDiameter = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
+Efficiency = Annotated[float, Quantity(NUMBER, above=0.0, at_most=1.0)]
 
 Interval = Annotated[
     tuple[Length, Length], BeforeValidator(ListOf(2, 2, _INTERVAL)), AfterValidator(_rising)
+]
+Turn = Annotated[
+    tuple[HalfTurn, HalfTurn],
+    BeforeValidator(ListOf(2, 2, _INTERVAL)),
+    AfterValidator(_rising_angles),
 ]
 Corner = Annotated[tuple[Length, Length], BeforeValidator(ListOf(2, 2, "two lengths [x, y]"))]
 Point = Annotated[tuple[Length, Length, Length], BeforeValidator(ListOf(3, 3, _POINT))]
 Rotation = Annotated[
     tuple[Angle, Angle, Angle], BeforeValidator(ListOf(3, 3, "three angles [rx, ry, rz]"))
+]
+Forces = Annotated[
+    tuple[ForcePart, ForcePart, ForcePart], BeforeValidator(ListOf(3, 3, "three forces [x, y, z]"))
+]
+Moments = Annotated[
+    tuple[MomentPart, MomentPart, MomentPart],
+    BeforeValidator(ListOf(3, 3, "three moments [x, y, z]")),
+]
+Direction = Annotated[
+    tuple[Share, Share, Share],
+    BeforeValidator(ListOf(3, 3, _DIRECTION)),
+    AfterValidator(_not_zero),
 ]

@@ -11,6 +11,8 @@ from designer.config.parts import Parts
 from designer.config.schema import MOST_CABLES, Anchors
 from designer.errors import Fault
 from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
+from designer.nearest import did_you_mean
+from designer.units import describe
 
 _COLUMNS = ("measurements", "columns")
 _UNKNOWN = ("measurements", "unknown")
@@ -18,14 +20,15 @@ _UNKNOWN = ("measurements", "unknown")
 
 def effects_are_known(parts: Parts) -> Iterator[Fault]:
     """Each effect has an id, parameters and a cable that there are."""
-    for refusal in read_effects(parts.raw("effects"), _n_cables(parts)).refusals:
+    for refusal in read_effects(parts.raw("effects"), _n_cables(parts), parts.effects).refusals:
         yield parts.fault(refusal.place, refusal.problem, refusal.expected)
 
 
 def mass_stays_positive(parts: Parts) -> Iterator[Fault]:
     """The platform still weighs something with the effect ``platform_mass``."""
     mass_kg = parts.read(Mass, "robot", "platform", "mass")
-    for place, effect in read_effects(parts.raw("effects"), _n_cables(parts)).effects:
+    declared = read_effects(parts.raw("effects"), _n_cables(parts), parts.effects).effects
+    for place, effect in declared:
         is_negative = mass_kg is not None and mass_kg + effect.parameters.get("offset_kg", 0.0) <= 0
         if is_negative and effect.id == "platform_mass":
             expected = f"more than -{mass_kg:g} kg, minus the platform's own mass"
@@ -57,6 +60,17 @@ def columns_go_to_different_places(parts: Parts) -> Iterator[Fault]:
         first.setdefault(target, name)
 
 
+def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
+    """What is fitted from the start is an effect, or all exit points together."""
+    names = parts.raw(*_UNKNOWN)
+    known = (*parts.effects, "anchors")
+    for index, name in enumerate(names if isinstance(names, list) else ()):
+        if isinstance(name, str) and name not in known:
+            listed = f"anchors, or an effect: {', '.join(parts.effects)}"
+            expected = listed + did_you_mean(name, known)
+            yield parts.fault((*_UNKNOWN, index), f"{describe(name)} is not known", expected)
+
+
 def unknowns_are_distinct(parts: Parts) -> Iterator[Fault]:
     """Nothing is unknown twice."""
     names = parts.raw(*_UNKNOWN)
@@ -70,6 +84,7 @@ MEASURED_CHECKS = (
     mass_stays_positive,
     columns_fit_the_robot,
     columns_go_to_different_places,
+    unknowns_are_known,
     unknowns_are_distinct,
 )
 

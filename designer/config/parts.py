@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,15 +12,20 @@ from pydantic import TypeAdapter, ValidationError
 from designer.arrays import FloatArray
 from designer.config.document import Document
 from designer.config.node import Data, Key
+from designer.effect_names import EffectName
 from designer.errors import Fault
 
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """A document whose parts can be had one by one, whatever is wrong with the others."""
+    """A document whose parts can be had one by one, whatever is wrong with the others.
+
+    ``effects`` are those that there are, by their ids.
+    """
 
     document: Document
     data: Data
+    effects: Mapping[str, EffectName]
 
     def raw(self, *keys: str) -> Data:
         """Return what the file holds at a path, None for nothing."""

@@ -15,21 +15,23 @@ from designer.config.entries import all_entries
 from designer.config.faults import MOST_FAULTS, schema_faults
 from designer.config.node import path_text
 from designer.config.schema import StudySection
+from designer.effects.known import KnownEffects
+from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.study import Entry, Source, Study
 
 
-def study_from(path: Path) -> Study:
+def study_from(path: Path, known: KnownEffects = SHIPPED) -> Study:
     """Return the study that the config file describes, see `designer.config.read_study`."""
     document = read_document(path)
-    section = _checked(document)
+    section = _checked(document, known)
     if section.name is None:
         section = section.model_copy(update={"name": path.stem})
-    return build_study(section, _source(path, document, section))
+    return build_study(section, _source(path, document, section, known), known)
 
 
-def _checked(document: Document) -> StudySection:
-    faults = [*document.faults, *all_faults(document)]
+def _checked(document: Document, known: KnownEffects) -> StudySection:
+    faults = [*document.faults, *all_faults(document, known.names)]
     section = None
     try:
         section = StudySection.model_validate(document.root.data())
@@ -44,13 +46,15 @@ def _place(fault: Fault) -> tuple[int, str]:
     return fault.line or 0, fault.field
 
 
-def _source(path: Path, document: Document, section: StudySection) -> Source:
+def _source(path: Path, document: Document, section: StudySection, known: KnownEffects) -> Source:
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
-    entries = [*all_entries(section, document.root), *_effect_entries(document, section)]
+    entries = [*all_entries(section, document.root), *_effect_entries(document, section, known)]
     return Source(path, document.sha256, tuple(entries), lines)
 
 
-def _effect_entries(document: Document, section: StudySection) -> Iterator[Entry]:
+def _effect_entries(
+    document: Document, section: StudySection, known: KnownEffects
+) -> Iterator[Entry]:
     node = document.root.child("effects")
     if node is not None:
-        yield from effect_entries(section.effects, node, len(section.robot.anchors))
+        yield from effect_entries(section.effects, node, len(section.robot.anchors), known.names)

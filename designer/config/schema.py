@@ -9,14 +9,26 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    StrictBool,
+    Tag,
+    model_validator,
+)
 
-from designer.config.columns import Columns, Unknown
+from designer.config.columns import Columns
 from designer.config.fields import (
+    Clearance,
     Corner,
     Density,
+    Direction,
     Distance,
+    Efficiency,
     Force,
+    Forces,
     FreeMapping,
     Interval,
     LengthNoise,
@@ -24,45 +36,81 @@ from designer.config.fields import (
     ListOf,
     Mass,
     Modulus,
+    Moments,
     OnlyWord,
     Point,
     Rotation,
     SafetyFactor,
+    SheaveDiameter,
     Stress,
+    Tension,
     Text,
     WholeNumber,
+    different,
+    mapping,
+    not_empty,
     refusal,
 )
+from designer.config.orientation import (
+    EulerSection,
+    OrientationRangeSection,
+    OrientationSection,
+    Quaternion,
+    only_one_form,
+    only_one_of,
+)
 from designer.config.section import Section
-from designer.study import HangsBelow, Sampling
+from designer.study import HangsBelow, Objective, Sampling
 from designer.units import describe
 
 MOST_CABLES = 64
 _GRADES = "'all' or a list of grade ids"
+_ENDS = "'anchors' or two corners [[x, y], [x, y]]"
 _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
-_points = ListOf(3, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z]")
+_points = ListOf(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 _names = ListOf(0, 1000, "a list")
 _corners = ListOf(3, 1000, _CORNERS)
 _positions = ListOf(1, 50_000, "1 to 50000 positions [x, y, z]")
+_ends = ListOf(2, 2, _ENDS)
 _box = ListOf(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
 
 Anchors = Annotated[tuple[Point, ...], BeforeValidator(_points)]
 Attachments = Annotated[tuple[Point, ...], BeforeValidator(_points)]
 Corners = Annotated[tuple[Corner, ...], BeforeValidator(_corners)]
+Ends = Annotated[tuple[Corner, Corner], BeforeValidator(_ends)]
 Positions = Annotated[tuple[Point, ...], BeforeValidator(_positions)]
 Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
+Objectives = Annotated[
+    tuple[Objective, ...],
+    BeforeValidator(ListOf(1, 5, "a list of objectives such as [mass, drum_diameter]")),
+    AfterValidator(different),
+]
 Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
-Unknowns = Annotated[tuple[Unknown, ...], BeforeValidator(_names)]
+CableNumbers = Annotated[
+    tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
+    BeforeValidator(ListOf(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]")),
+]
+Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
 
 def _word_or_list(given: object) -> str:
     return "a word" if isinstance(given, str) else "a list"
 
 
+ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
+TurnList = Annotated[
+    tuple[OrientationSection, ...],
+    BeforeValidator(ListOf(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]")),
+]
 PrismBase = Annotated[
     Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _CORNERS)), Tag("a word")]
     | Annotated[Corners, Tag("a list")],
+    Discriminator(_word_or_list),
+]
+RectangleBase = Annotated[
+    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _ENDS)), Tag("a word")]
+    | Annotated[Ends, Tag("a list")],
     Discriminator(_word_or_list),
 ]
 GradeIds = Annotated[
@@ -72,12 +120,21 @@ GradeIds = Annotated[
 ]
 
 
+class WrenchSection(Section):
+    """Constant load beside gravity, along the axes of the world frame."""
+
+    force: Forces = (0.0, 0.0, 0.0)
+    moment: Moments = (0.0, 0.0, 0.0)
+
+
 class PlatformSection(Section):
     """What the cables carry."""
 
     mass: Mass = Field(description="a mass such as '4000 kg'")
     attachments: Attachments | None = None
     centre_of_mass: Point = (0.0, 0.0, 0.0)
+    hull: Box | None = None
+    wrench: WrenchSection = WrenchSection()
 
 
 class RobotSection(Section):
@@ -85,6 +142,9 @@ class RobotSection(Section):
 
     anchors: Anchors = Field(description="at least 3 exit points [x, y, z]")
     platform: PlatformSection = Field(description="a mapping with the platform's mass")
+    gravity: Direction = (0.0, 0.0, -1.0)
+    planar: StrictBool = False
+    tension_min: Tension = 0.0
 
 
 class CableSection(Section):
@@ -100,11 +160,13 @@ class PoseSection(Section):
 
     position: Point = Field(description="three lengths [x, y, z]")
     rotation_vector: Rotation = (0.0, 0.0, 0.0)
+    quaternion: Quaternion | None = None
+    euler: EulerSection | None = None
 
     @model_validator(mode="before")
     @classmethod
     def _from_list(cls, given: object) -> object:
-        return {"position": given} if isinstance(given, list) else given
+        return {"position": given} if isinstance(given, list) else only_one_form(given)
 
 
 class PrismSection(Section):
@@ -127,11 +189,21 @@ class PointsSection(Section):
     points: Positions = Field(description="a list of positions [x, y, z]")
 
 
+class RectangleSection(Section):
+    """An upright rectangle over the line between two corners, or over anchors on a line."""
+
+    rectangle: RectangleBase = Field(description=_ENDS)
+    inset: Distance = 0.0
+    z: Interval = Field(description="[lower, upper]")
+
+
 REGION_KINDS: dict[str, type[Section]] = {
     "prism": PrismSection,
     "box": BoxSection,
     "points": PointsSection,
+    "rectangle": RectangleSection,
 }
+_KINDS = "prism, box, points and rectangle"
 
 
 def _kinds_named(region: dict[str, object]) -> list[str]:
@@ -143,11 +215,11 @@ def _kinds_named(region: dict[str, object]) -> list[str]:
 
 def _of_one_kind(given: object) -> object:
     if not isinstance(given, dict):
-        raise refusal(f"{describe(given)} is not a mapping", "one of prism, box and points in it")
+        raise refusal(f"{describe(given)} is not a mapping", f"one of {_KINDS} in it")
     kinds = _kinds_named(given)
     if len(kinds) != 1:
-        found = " and ".join(kinds) or "none of the three kinds"
-        raise refusal(f"the region has {found}", "exactly one of prism, box and points")
+        found = " and ".join(kinds) or "none of the kinds"
+        raise refusal(f"the region has {found}", f"exactly one of {_KINDS}")
     return given
 
 
@@ -158,7 +230,8 @@ def _region_tag(given: dict[str, object]) -> str:
 Region = Annotated[
     Annotated[PrismSection, Tag("prism region")]
     | Annotated[BoxSection, Tag("box region")]
-    | Annotated[PointsSection, Tag("points region")],
+    | Annotated[PointsSection, Tag("points region")]
+    | Annotated[RectangleSection, Tag("rectangle region")],
     Discriminator(_region_tag),
     BeforeValidator(_of_one_kind),
 ]
@@ -167,11 +240,20 @@ Region = Annotated[
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: Region = Field(description="one of {prism, z}, {box} and {points}")
+    region: Region = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
     samples: Annotated[int, WholeNumber(1, 10**8)] = 20_000
     sampling: Sampling = "low_discrepancy"
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
     hangs_below: HangsBelow = "include"
+    clearance: Clearance | None = None
+    orientation: OrientationSection | None = None
+    orientations: TurnList | None = None
+    orientation_range: OrientationRangeSection | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_kind_of_orientation(cls, given: object) -> object:
+        return only_one_of(given, ORIENTATION_KINDS, "the workspace")
 
 
 class SelectionSection(Section):
@@ -179,6 +261,11 @@ class SelectionSection(Section):
 
     grades: GradeIds = "all"
     safety_factor: SafetyFactor = 5.0
+    objectives: Objectives = ("mass", "drum_diameter", "max_tension")
+    termination_efficiency: Efficiency = 1.0
+    sheave_diameter: SheaveDiameter | None = None
+    groups: Groups | None = None
+    max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
 
 
 class MeasuredCableSection(Section):
@@ -201,7 +288,7 @@ class MeasurementsSection(Section):
     file: Text = Field(description="the name of a CSV file")
     columns: Columns = Field(default_factory=dict)
     settled: StrictBool = True
-    unknown: Unknowns = ()
+    unknown: Names = ()  # checked by designer.config.measured_checks
     cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
     noise: NoiseSection = NoiseSection()
 

@@ -7,21 +7,10 @@ import numpy as np
 from designer.cable import Cable
 from designer.diagnosis.diagnose import Case
 from designer.effects.declared import declared_settings
-from designer.effects.effect import Effect, as_built
-from designer.effects.registry import all_effects
+from designer.effects.effect import NEEDS, Effect, as_built
 from designer.machine import Machine
 from designer.measured.data import Measured
 from designer.study import Measurements, Study
-
-_MEANINGS = {
-    "time": "a column time_s",
-    "temperature": "a column temperature_C that varies",
-    "wind": "columns wind_x_m_per_s … that vary",
-    "motion": "samples of a motion (settled: false)",
-    "tension": "measured tensions",
-    "length": "measured lengths",
-    "rotation": "a platform that can turn",
-}
 
 
 def case_of(study: Study, measurements: Measurements, measured: Measured) -> Case:
@@ -42,7 +31,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     declared = declared_settings(study)
     machine = as_built(Machine(study.robot, cable), declared)
     known = {setting.effect.key for setting in declared}
-    effects = [e for e in all_effects(machine) if e.key not in known]
+    effects = [e for e in study.known_effects.of(machine) if e.key not in known]
     given = tuple(e for e in effects if _is_given(e, measurements))
     candidates, skipped = [], []
     for effect in effects:
@@ -50,7 +39,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         if effect in given:
             continue
         if missing:
-            skipped.append((effect.key, f"needs {_MEANINGS[missing[0]]}"))
+            skipped.append((effect.key, f"needs {NEEDS[missing[0]]}"))
         else:
             candidates.append(effect)
     return Case(

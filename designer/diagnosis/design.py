@@ -26,7 +26,7 @@ def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
 def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     """Add the chosen cable and the worst tension before and after, where the study has both."""
     study = diagnosis.study
-    if study.workspace is None or study.selection is None or not study.robot.is_square:
+    if study.workspace is None or study.selection is None or not study.robot.has_enough_cables:
         return diagnosis
     before = choice(study, grades)
     reaches = any(setting.effect.reaches_design for setting in diagnosis.settings)

@@ -7,26 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
-from designer.diagnosis.drift import drifting
 from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
 from designer.diagnosis.fit import Fit, fit
+from designer.diagnosis.hold import Outcome, search_and_hold
 from designer.diagnosis.noise import noise_of, rescaled
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Noise, Problem
 from designer.diagnosis.propose import propose
-from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage, Withdrawn
-from designer.diagnosis.search import Search, Searcher
-from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
+from designer.diagnosis.structure import covariates_of, find_structure
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
 from designer.measured.data import Measured
 from designer.study import Measurements, Study
 
-_MOST_WITHDRAWN = 2
 _NOISE_ROUNDS = 2
 _NOISE_CHANGE = 0.15
 
@@ -59,30 +57,20 @@ class Case:
     fixed: tuple[Setting, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Outcome:
-    """A search whose findings hold still."""
-
-    problem: Problem
-    searcher: Searcher
-    search: Search
-    withdrawn: tuple[Withdrawn, ...]
-    structure: Structure
-
-
 def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
     """Find what the model lacks, and say how sure that is.
 
     Raises
     ------
     InputError
-        If there are fewer readings than the unknowns ask for, or lengths are in another unit.
+        If there are fewer readings than the unknowns ask for, or the robot as declared cannot
+        hold most of the poses.
     """
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
     _check_size(case, heldout)
     predict = Predictor(case.machine, measured, case.fixed)
-    _check_scale(case, predict)
+    _check_held(case, predict)
     outcome = _with_settled_noise(case, predict, ~heldout, progress)
     problem, search = outcome.problem, outcome.search
     base = fit(problem, case.given, ~heldout)
@@ -118,14 +106,14 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
 
 def _with_settled_noise(
     case: Case, predict: Predictor, rows: BoolArray, progress: Callable[[str], None]
-) -> _Outcome:
+) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
     unit = Problem(measured, predict, Noise(1.0, 1.0, "none"))
     noise = noise_of(case.measurements, measured, unit.residual(_given_fit(unit, case, rows)))
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
-        outcome = _search(problem, case, rows, progress)
+        outcome = search_and_hold(problem, case.candidates, case.given, rows, progress)
         # The fast part of a motion's residual is the sensors' own; that of poses at rest still
         # holds what neighbours do not share, and is taken again from the better model.
         if noise.source == "declared" or not measured.settled:
@@ -144,33 +132,8 @@ def _given_fit(unit: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ...
     return fit(unit, case.given, rows).settings if case.given else ()
 
 
-def _search(
-    problem: Problem, case: Case, rows: BoolArray, progress: Callable[[str], None]
-) -> _Outcome:
-    """Search, withdraw what drifts, search again without it, until all that is found holds."""
-    withdrawn: list[Withdrawn] = []
-    candidates = list(case.candidates)
-    while True:
-        searcher = Searcher(problem, candidates, case.given, rows, progress)
-        search = searcher.run()
-        covariates = covariates_of(problem.measured, problem.predict(search.fit.settings))
-        structure = find_structure(
-            without_outliers(problem.residual(search.fit.settings)),
-            covariates,
-            settled=problem.measured.settled,
-        )
-        loose = None
-        if structure.is_present and len(withdrawn) < _MOST_WITHDRAWN:
-            loose = drifting(problem, search.fit, search.found, structure, covariates, rows)
-        if loose is None:
-            return _Outcome(problem, searcher, search, tuple(withdrawn), structure)
-        progress(f"{loose.effect} would have to change with {loose.covariate}")
-        withdrawn.append(loose)
-        candidates = [e for e in candidates if e.key != loose.effect]
-
-
 def _finding(
-    outcome: _Outcome, effect: Effect, rows: BoolArray, progress: Callable[[str], None]
+    outcome: Outcome, effect: Effect, rows: BoolArray, progress: Callable[[str], None]
 ) -> Finding:
     search, searcher = outcome.search, outcome.searcher
     progress(f"rivals of {effect.key}")
@@ -207,7 +170,7 @@ def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
     return answer
 
 
-def _stages(outcome: _Outcome, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
+def _stages(outcome: Outcome, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
     """Errors as declared, then with the found effects one after the other."""
     label = "as declared, unknowns fitted" if base.settings else "as declared"
     stages = [stage(outcome.problem, label, base.settings, heldout)]
@@ -221,7 +184,7 @@ def _stages(outcome: _Outcome, base: Fit, heldout: BoolArray) -> tuple[Stage, ..
     return tuple(stages)
 
 
-def _proposals(case: Case, outcome: _Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
+def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
     region = case.study.workspace.region if case.study.workspace else None
     by_key = {effect.key: effect for effect in case.candidates}
     answer = []
@@ -263,26 +226,10 @@ def _check_size(case: Case, heldout: BoolArray) -> None:
         )
 
 
-def _check_scale(case: Case, predict: Predictor) -> None:
-    """Tell lengths in another unit by their scale; homing offsets do not come near it."""
-    if any(effect.id == "length_offset" for effect in case.given):
-        return
-    predicted: FloatArray = predict(()).length_m
-    ratio = case.measured.length_m / predicted
-    if np.isnan(ratio).all():
-        return
-    scale = float(np.nanmedian(ratio))
-    for name, factor in (("millimetres", 1e3), ("centimetres", 1e2), ("feet", 1 / 0.3048)):
-        if abs(scale / factor - 1.0) < 0.1:
-            raise InputError(
-                [
-                    Fault(
-                        str(case.measurements.file),
-                        None,
-                        "length_1_m",
-                        f"lengths are {scale:.4g} times what the poses ask for, "
-                        f"as if they were in {name}",
-                        "metres, or the unit in measurements.columns",
-                    )
-                ]
-            )
+def _check_held(case: Case, predict: Predictor) -> None:
+    """Refuse poses most of which no cables can hold: frames, units or exit points are mixed up."""
+    held = ~np.isnan(predict(()).length_m).any(axis=1)
+    if 2 * held.sum() < held.size:
+        problem = f"the robot as declared can hold {held.sum()} of {held.size} poses"
+        expected = "poses between its exit points, in the same frame and unit"
+        raise InputError([Fault(str(case.measurements.file), None, "", problem, expected)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -11,10 +11,11 @@ from designer.diagnosis.fit import Fit, jacobian
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Withdrawn
 from designer.diagnosis.structure import SIGNIFICANCE, Structure
-from designer.effects.effect import Effect
+from designer.effects.effect import Effect, Readings
 
 _CHANCE = 1e-5
-_VARIATION = 0.15
+_VARIATION = 0.2
+_LEAST_VARIATION, _SHARE_OF_LEFT = 0.05, 0.5
 _CLIP = 4.0
 _MOST_CARRIERS = 4
 
@@ -27,60 +28,98 @@ def drifting(
     covariates: Mapping[str, FloatArray],
     rows: BoolArray,
 ) -> Withdrawn | None:
-    """Return the found effect that drifts most with a covariate that the residual goes with.
+    r"""Return the found effect that drifts most with a covariate that the residual goes with.
 
-    Each parameter is allowed to change in proportion to the covariate. That it does is held
-    against the effect if it is no accident and the change is a good part of the effect itself: a
-    constant that only suits the average of something else.
+    Each effect is allowed to change in proportion to the covariate, all others being fitted anew.
+    That it does is held against it if the gain is no accident, and a good part of what the effect
+    itself gains or most of what is left: a constant that only suits the average of something else.
+    The variation is √(gain of the change / gain of the effect), both linearised: for an effect of
+    one parameter, its change over one standard deviation of the covariate, relative to its size.
     """
-    carriers = [c.name for c in structure.carriers[:_MOST_CARRIERS] if c.chance < SIGNIFICANCE]
-    if not found:
-        return None
-    found_keys = {effect.key for effect in found}
-    worst: Withdrawn | None = None
-    slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
-    residual = problem.residual(model.settings)
+    keys = {effect.key for effect in found}
     limit = _CLIP * np.sqrt(model.variance)
-    residual = np.clip(residual, -limit, limit)
+    residual = np.clip(problem.residual(model.settings), -limit, limit)
     taken = rows[:, None] & ~np.isnan(residual)
-    for carrier in carriers:
-        z = covariates[carrier]
-        z = np.nan_to_num((z - np.nanmean(z)) / np.nanstd(z))
-        at = 0
-        for setting in model.settings:
-            width = len(setting.effect.parameters)
-            if setting.effect.key in found_keys:
-                moved = slopes[..., at : at + width] * z[:, None, None]
-                variation = _variation(
-                    setting.effect, model, at, slopes[taken], moved[taken], residual[taken]
-                )
-                if variation > max(_VARIATION, worst.variation if worst else 0.0):
-                    worst = Withdrawn(setting.effect.key, carrier, variation)
-            at += width
+    slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
+    orthonormal = _orthonormal(slopes[taken])
+    left = _without(orthonormal, residual[taken])
+    unexplained = model.loss - model.n_data
+    worst: Withdrawn | None = None
+    at = 0
+    for setting in model.settings:
+        own = slice(at, at + len(setting.effect.parameters))
+        at = own.stop
+        if setting.effect.key not in keys:
+            continue
+        size = np.sqrt(_gain_of(problem, model, setting.effect, slopes, own, taken))
+        for name, z in _weights(structure, covariates, problem.predict(model.settings)):
+            moved = (slopes[..., own] * z[..., None])[taken]
+            drift = _significant_gain(orthonormal, moved, left, model.variance)
+            variation = float(np.sqrt(drift) / size)
+            explains = drift > _SHARE_OF_LEFT * unexplained > 0.0
+            least = _LEAST_VARIATION if explains else _VARIATION
+            if variation > max(least, worst.variation if worst else 0.0):
+                worst = Withdrawn(setting.effect.key, name, variation)
     return worst
 
 
-def _variation(
-    effect: Effect,
+def _weights(
+    structure: Structure, covariates: Mapping[str, FloatArray], predicted: Readings
+) -> Iterator[tuple[str, FloatArray]]:
+    """Yield standardised covariates: of the row (n_rows, 1), or each cable's own (…, 2 n_cables).
+
+    The latter tell what differs between cables in one pose, such as a stiffness that rises with
+    tension.
+    """
+    for carrier in structure.carriers[:_MOST_CARRIERS]:
+        if carrier.chance < SIGNIFICANCE:
+            yield carrier.name, _standard(covariates[carrier.name])[:, None]
+    for name, own in (
+        ("the cable's own tension", predicted.tension_N),
+        ("the cable's own length", predicted.length_m),
+    ):
+        yield name, np.tile(_standard(own), 2)
+
+
+def _standard(values: FloatArray) -> FloatArray:
+    return np.nan_to_num((values - np.nanmean(values)) / (np.nanstd(values) or 1.0))
+
+
+def _gain_of(
+    problem: Problem,
     model: Fit,
-    at: int,
+    effect: Effect,
     slopes: FloatArray,
-    moved: FloatArray,
-    residual: FloatArray,
+    own: slice,
+    taken: BoolArray,
 ) -> float:
-    """Return the drift per standard deviation of the covariate over the effect; 0 if chance."""
+    """Return what the effect takes off the sum of squares that the others, fitted anew, leave."""
+    rest = [s for s in model.settings if s.effect.key != effect.key]
+    change = problem.residual(rest)[taken] - problem.residual(model.settings)[taken]
+    others = _orthonormal(np.delete(slopes, own, axis=-1)[taken])
+    return float(max(np.sum(_without(others, change) ** 2), model.variance))
+
+
+def _significant_gain(
+    orthonormal: FloatArray, moved: FloatArray, left: FloatArray, variance: float
+) -> float:
+    """Return what the further columns take off the sum of squares; 0 if that may be chance."""
     from scipy.stats import chi2
 
-    width = moved.shape[1]
-    both = np.hstack([slopes, moved])
-    scale = np.linalg.norm(both, axis=0)
+    further = _orthonormal(_without(orthonormal, moved))
+    gain = float(np.sum((further.T @ left) ** 2))
+    return gain if chi2.sf(gain / variance, moved.shape[1]) < _CHANCE else 0.0
+
+
+def _orthonormal(columns: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the columns, those that are nearly dependent left out."""
+    if columns.shape[1] == 0:
+        return columns
+    scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0.0] = 1.0
-    answer = np.linalg.lstsq(both / scale, -residual, rcond=1e-12)[0] / scale
-    alone = np.linalg.lstsq(slopes / scale[:-width], -residual, rcond=1e-12)[0] / scale[:-width]
-    gain = np.sum((residual + slopes @ alone) ** 2) - np.sum((residual + both @ answer) ** 2)
-    if chi2.sf(gain / model.variance, width) > _CHANCE:
-        return 0.0
-    change = answer[-width:]
-    size = model.vector[at : at + width] - [p.neutral for p in effect.parameters]
-    typical = np.array([p.typical for p in effect.parameters])
-    return float(np.linalg.norm(change / typical) / (np.linalg.norm(size / typical) + 1e-12))
+    u, s, _ = np.linalg.svd(columns / scale, full_matrices=False)
+    return np.asarray(u[:, s > 1e-6 * s[0]])
+
+
+def _without(orthonormal: FloatArray, columns: FloatArray) -> FloatArray:
+    return np.asarray(columns - orthonormal @ (orthonormal.T @ columns))

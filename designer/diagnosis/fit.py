@@ -14,6 +14,7 @@ from designer.effects.effect import Effect, Setting, Values
 _HUBER = 3.0
 _STEP = 1e-3
 _TRIAL_TURNS, _ALL_TURNS = 12, 80
+_TRIAL_TOLERANCE, _TOLERANCE = 1e-5, 1e-8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,10 +82,11 @@ def fit(
     known: Sequence[Setting] = (),
     *,
     thorough: bool = False,
+    anew: bool = False,
 ) -> Fit:
     """Fit all parameters of the effects to the readings of some rows.
 
-    Huber's loss, bounds, and as many starts as the newest effect asks for. The slopes are central
+    Huber's loss, bounds, and as many starts as the effects ask for. The slopes are central
     differences of the compiled model over steps that each parameter's typical size sets.
 
     Parameters
@@ -99,19 +101,33 @@ def fit(
         Effects whose values are already near.
     thorough : bool
         Whether to go on until nothing moves; a trial need not, nor one part of a validation.
+    anew : bool
+        Whether known effects that have several valleys start in each of them again: the valley
+        that an effect was found in alone need not be the one that it has beside another.
     """
     taken = rows[:, None] & ~np.isnan(problem.readings)
     if not effects:
         loss = float(huber(problem.residual(())[taken]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, int(taken.sum()))
-    fresh = [e for e in effects if e.key not in {s.effect.key for s in known}]
-    starts = [s for e in fresh for s in e.starts] or [{}]
-    turns = _ALL_TURNS if thorough or not known else _TRIAL_TURNS
+    anew = anew and any(effect.starts for effect in effects)
+    turns = _ALL_TURNS if thorough or anew or not known else _TRIAL_TURNS
+    tolerance = _TOLERANCE if thorough else _TRIAL_TOLERANCE
     fits = [
-        _fit_from(problem, effects, taken, starting_vector(effects, known, s), turns)
-        for s in starts
+        _fit_from(problem, effects, taken, start, turns, tolerance)
+        for start in _starts(effects, known, anew=anew)
     ]
     return min(fits, key=lambda one: one.loss)
+
+
+def _starts(effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool) -> list[FloatArray]:
+    keys = {s.effect.key for s in known}
+    fresh = [e for e in effects if e.starts and (anew or e.key not in keys)]
+    near = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
+    return near + [
+        starting_vector(effects, [s for s in known if s.effect.key != e.key], values)
+        for e in fresh
+        for values in e.starts
+    ]
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
@@ -133,6 +149,7 @@ def _fit_from(
     taken: BoolArray,
     start: FloatArray,
     turns: int,
+    tolerance: float,
 ) -> Fit:
     from scipy.optimize import least_squares
 
@@ -147,13 +164,13 @@ def _fit_from(
         x_scale=[p.typical for p in parameters],
         loss="huber",
         f_scale=_HUBER,
-        xtol=1e-8,
-        ftol=1e-8,
+        xtol=tolerance,
+        ftol=tolerance,
         max_nfev=turns,
     )
     loss, count = 2.0 * float(answer.cost), int(taken.sum())
     variance = max(1.0, loss / max(count - len(start), 1))
-    slopes = jacobian(problem, effects, answer.x)[taken]
+    slopes = answer.jac  # scaled by Huber's weights, so that outliers add no certainty
     scale = np.linalg.norm(slopes, axis=0)
     scale[scale == 0.0] = 1.0
     covariance = np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-12)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.problem import Noise
@@ -48,13 +49,34 @@ class Finding:
     warnings: tuple[str, ...]
 
 
+class Reason(Enum):
+    """Why an effect that fits was not kept."""
+
+    DRIFTS = "it fits as a constant, but would have to change with a covariate"
+    SMALL = "it explains less than half of what stays unexplained, which it may be bent to fit"
+    IMPLAUSIBLE = "it needs values that are not plausible, and leaves structure even so"
+
+
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """An effect that fits, but not as a constant: it would have to change with a covariate."""
+    """An effect that fits, but does not hold where structure is left.
+
+    Parameters
+    ----------
+    effect : str
+        Its key.
+    covariate : str
+        What it would have to change with; empty for another reason.
+    variation : float
+        By how much of itself, for each standard deviation of the covariate; NaN if not tried.
+    reason : Reason
+        Why it was not kept.
+    """
 
     effect: str
-    covariate: str
-    variation: float
+    covariate: str = ""
+    variation: float = float("nan")
+    reason: Reason = Reason.DRIFTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +210,7 @@ class Diagnosis:
     given : tuple of Setting
         What was unknown from the start, with its values.
     withdrawn : tuple of Withdrawn
-        Effects that fitted but would have to drift.
+        Effects that fitted but do not hold.
     skipped : tuple of (effect, reason)
         Effects that this data cannot show.
     steps : tuple of Step

@@ -11,7 +11,7 @@ from designer.diagnosis.fit import Fit, fit, huber
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect
 
-SIGNIFICANCE = 0.01
+SIGNIFICANCE = 0.001
 """Chance of a false finding in a whole round of candidates."""
 RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
@@ -138,11 +138,13 @@ class Searcher:
         self._progress = progress
 
     def run(self) -> Search:
-        """Add, exchange and prune until nothing changes."""
+        """Add, exchange and prune until nothing changes, or a set of effects comes again."""
         found: list[Effect] = []
         steps: list[Step] = []
         present = self.fit(found)
-        while len(found) <= _MOST_EFFECTS:
+        tried: list[set[Effect]] = []
+        while set(found) not in tried:
+            tried.append(set(found))
             trials = self.trials(found, present)
             best = _simplest(trials)
             steps.append(Step(tuple(trials), best.effect if best else None))
@@ -153,15 +155,21 @@ class Searcher:
             found = self._exchanged([*found, best.effect], best.fit, outsiders)
             found = self._pruned(found)
             present = self.fit(found, best.fit)
+        found = self._foretelling(found, present)
         return Search(tuple(steps), self.fit(found, present, thorough=True), tuple(found))
 
     def fit(
-        self, found: Sequence[Effect], near: Fit | None = None, *, thorough: bool = False
+        self,
+        found: Sequence[Effect],
+        near: Fit | None = None,
+        *,
+        thorough: bool = False,
+        anew: bool = False,
     ) -> Fit:
         """Fit the given effects and the found ones together."""
         effects = self._sorted([*self._given, *found])
         known = near.settings if near else ()
-        return fit(self._problem, effects, self._rows, known, thorough=thorough)
+        return fit(self._problem, effects, self._rows, known, thorough=thorough, anew=anew)
 
     def trials(self, found: Sequence[Effect], present: Fit) -> list[Trial]:
         """Try every other candidate in addition, best first."""
@@ -181,7 +189,7 @@ class Searcher:
         for other in self._candidates:
             if other.key in taken:
                 continue
-            swapped = self.fit([*rest, other], present)
+            swapped = self.fit([*rest, other], present, anew=True)
             if (self._penalised(swapped) - loss) / present.variance < RIVAL_MARGIN:
                 answer.append(other)
         return answer
@@ -190,7 +198,7 @@ class Searcher:
         from scipy.stats import chi2
 
         self._progress(effect.key)
-        model = self.fit([*found, effect], present)
+        model = self.fit([*found, effect], present, anew=True)
         gain = (present.loss - model.loss) / model.variance
         chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
         return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
@@ -207,20 +215,19 @@ class Searcher:
         """Cross-validate a candidate that may be significant; the others need no proof."""
         if trial.chance >= SIGNIFICANCE:
             return trial
-        gain = 0.0
-        for part in folds(self._rows):
-            seen = self._rows & ~part
-            gain += self._unseen_loss(found, seen, part, trial.fit)
-            gain -= self._unseen_loss([*found, trial.effect], seen, part, trial.fit)
+        gain = self._unseen_loss(found, trial.fit)
+        gain -= self._unseen_loss([*found, trial.effect], trial.fit)
         heldout = gain / trial.fit.variance
         return Trial(trial.effect, trial.fit, trial.gain, trial.chance, heldout)
 
-    def _unseen_loss(
-        self, found: Sequence[Effect], seen: BoolArray, unseen: BoolArray, near: Fit
-    ) -> float:
+    def _unseen_loss(self, found: Sequence[Effect], near: Fit) -> float:
+        """Return the loss over each part of the rows, fitted to the other parts."""
         effects = self._sorted([*self._given, *found])
-        model = fit(self._problem, effects, seen, near.settings)
-        return float(huber(self._problem.residual(model.settings)[unseen]).sum())
+        loss = 0.0
+        for part in folds(self._rows):
+            model = fit(self._problem, effects, self._rows & ~part, near.settings)
+            loss += float(huber(self._problem.residual(model.settings)[part]).sum())
+        return loss
 
     def _exchanged(
         self, found: list[Effect], near: Fit, outsiders: Sequence[Effect]
@@ -252,6 +259,18 @@ class Searcher:
             chance = float(chi2.sf(loss, len(effect.parameters))) * len(self._candidates)
             if chance > SIGNIFICANCE:
                 found, present = rest, without
+        return found
+
+    def _foretelling(self, found: list[Effect], present: Fit) -> list[Effect]:
+        """Leave out what no longer helps to foretell rows that a fit has not seen."""
+        loss = self._unseen_loss(found, present) if len(found) > 1 else 0.0
+        for effect in list(found):
+            if len(found) == 1:
+                break
+            rest = [e for e in found if e.key != effect.key]
+            without = self._unseen_loss(rest, present)
+            if without <= loss:
+                found, loss = rest, without
         return found
 
     def _penalised(self, model: Fit) -> float:

@@ -92,7 +92,7 @@ def find_structure(
     """Test the residual against every covariate, by permutation of rows.
 
     For each covariate a parabola is fitted to each channel and to the mean over cables of each
-    kind of reading; the best of these, by its chance under plain noise, is what counts. Rows are
+    kind of reading; the largest share of variance is what counts. Rows are
     then permuted, all covariates at once, to learn how large the best of all gets by accident.
     Samples of a motion are permuted in blocks, since neighbours are alike.
 
@@ -108,26 +108,20 @@ def find_structure(
     channels = _channels(residual)
     if channels.shape[1] == 0 or not covariates:
         return Structure((), float("nan"))
-    bases = {name: _basis(column) for name, column in covariates.items()}
-    observed = {name: _surprise(basis, channels) for name, basis in bases.items()}
+    bases = np.stack([_basis(column) for column in covariates.values()])
+    observed = _largest_share(bases, channels)
     rng = np.random.default_rng(seed)
-    best = np.sort(
+    best = np.array(
         [
-            max(_surprise(basis, shuffled)[0] for basis in bases.values())
-            for shuffled in (
-                channels[_permutation(rng, len(channels), settled)] for _ in range(_PERMUTATIONS)
-            )
+            _largest_share(bases, channels[_permutation(rng, len(channels), settled)]).max()
+            for _ in range(_PERMUTATIONS)
         ]
     )
     carriers = [
-        Carrier(
-            name,
-            share,
-            (1 + len(best) - int(np.searchsorted(best, surprise))) / (1 + len(best)),
-        )
-        for name, (surprise, share) in observed.items()
+        Carrier(name, float(share), (1 + int(np.sum(best >= share))) / (1 + len(best)))
+        for name, share in zip(covariates, observed, strict=True)
     ]
-    carriers.sort(key=lambda c: (c.chance, -observed[c.name][0]))
+    carriers.sort(key=lambda c: (c.chance, -c.fraction_of_variance))
     return Structure(tuple(carriers), float(np.mean(channels**2)))
 
 
@@ -150,27 +144,23 @@ def _channels(residual: FloatArray) -> FloatArray:
 
 
 def _basis(column: FloatArray) -> FloatArray:
-    """Return an orthonormal basis (n_rows, 2) of the parabolas in a covariate, mean removed."""
+    """Return an orthonormal basis (n_rows, 2) of the parabolas in a covariate, mean removed.
+
+    A covariate of two values has no parabola; the second column is then 0.
+    """
     filled = np.where(np.isnan(column), np.nanmean(column), column)
     z = (filled - filled.mean()) / filled.std()
     parabola = np.stack([z, z**2], axis=1)
     q, r = np.linalg.qr(parabola - parabola.mean(axis=0))
-    keep = np.abs(np.diag(r)) > 1e-9 * len(z)
-    return np.asarray(q[:, keep])
+    return np.asarray(q * (np.abs(np.diag(r)) > 1e-9 * len(z)))
 
 
-def _surprise(basis: FloatArray, channels: FloatArray) -> tuple[float, float]:
-    """Return minus log chance of the best channel under noise, and its share of variance.
-
-    The explained part of n rows of noise has a Beta distribution, which for the large n here is
-    that of n times an exponential variable when the basis has two columns.
-    """
-    explained = np.sum((basis.T @ channels) ** 2, axis=0)
-    share = explained / np.sum(channels**2, axis=0)
-    best = int(np.argmax(share))
-    return float(-0.5 * len(channels) * np.log1p(-min(share[best], 1.0 - 1e-15))), float(
-        share[best]
-    )
+def _largest_share(bases: FloatArray, channels: FloatArray) -> FloatArray:
+    """Return the share of variance in the channel that each covariate explains best (n_bases,)."""
+    count, rows, width = bases.shape
+    parts = bases.transpose(0, 2, 1).reshape(-1, rows) @ channels
+    explained = np.sum(parts.reshape(count, width, -1) ** 2, axis=1)
+    return np.asarray((explained / np.sum(channels**2, axis=0)).max(axis=1))
 
 
 def _permutation(rng: np.random.Generator, count: int, settled: bool) -> IntArray:

@@ -8,8 +8,11 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import frozen_array
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import LENGTH
 
 
 def _change(machine: Machine, values: Values, *, cable: int) -> Machine:
@@ -38,3 +41,13 @@ def build(machine: Machine) -> list[Effect]:
         )
         for cable in range(1, machine.robot.n_cables + 1)
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "anchor_offset",
+        tuple(ParameterName(name, LENGTH, neutral=0.0) for name in ("x_m", "y_m", "z_m")),
+        takes_cable=True,
+    ),
+    build,
+)

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from designer.arrays import frozen_array
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import ANGLE
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -30,3 +33,11 @@ def build(machine: Machine) -> list[Effect]:
             reaches_design=True,
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "base_tilt", tuple(ParameterName(name, ANGLE, neutral=0.0) for name in ("rx_rad", "ry_rad"))
+    ),
+    build,
+)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import FLEXURAL_RIGIDITY, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 
 
@@ -25,3 +27,12 @@ def build(machine: Machine) -> list[Effect]:
             on_machine=_change,
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "bending_stiffness",
+        (ParameterName("flexural_rigidity_N_m2", FLEXURAL_RIGIDITY, at_least=0.0),),
+    ),
+    build,
+)

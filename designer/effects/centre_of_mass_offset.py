@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import frozen_array
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import LENGTH
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -37,3 +40,12 @@ def build(machine: Machine) -> list[Effect]:
             reaches_design=True,
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "centre_of_mass_offset",
+        tuple(ParameterName(name, LENGTH, neutral=0.0) for name in ("x_m", "y_m", "z_m")),
+    ),
+    build,
+)

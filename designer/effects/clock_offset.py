@@ -6,20 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.effect_names import TIME, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     assert measured.time_s is not None
-    from scipy.interpolate import CubicSpline
+    from designer.kernel.spline import at_earlier_times
 
     if np.isnan(readings.length_m).any():  # a spline would spread the gap over all rows
         return readings
-    first, last = measured.time_s[[0, -1]]
-    then = np.clip(measured.time_s - values["offset_s"], first, last)
-    return replace(readings, length_m=CubicSpline(measured.time_s, readings.length_m)(then))
+    length = np.empty(readings.length_m.shape)
+    present = np.ascontiguousarray(readings.length_m)
+    at_earlier_times(measured.time_s, present, values["offset_s"], length)
+    return replace(readings, length_m=length)
 
 
 def build(machine: Machine) -> list[Effect]:
@@ -35,3 +38,6 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"time", "motion", "length"}),
         )
     ]
+
+
+KIND = EffectKind(EffectName("clock_offset", (ParameterName("offset_s", TIME),)), build)

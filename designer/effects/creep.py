@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.effect_names import TIME, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import NUMBER
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -35,3 +38,15 @@ def build(machine: Machine) -> list[Effect]:
             starts=tuple({"strain_per_decade": 1e-4, "onset_s": t} for t in (5.0, 100.0, 2000.0)),
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "creep",
+        (
+            ParameterName("strain_per_decade", NUMBER),
+            ParameterName("onset_s", TIME, above=0.0),
+        ),
+    ),
+    build,
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from designer.cable import Cable
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
-from designer.effects.registry import all_effects
+from designer.errors import InputError
 from designer.machine import Machine
 from designer.study import Study
 
@@ -13,13 +13,26 @@ _ANY_CABLE = Cable(1.0, 1.0, 1.0, 1.0)
 
 
 def declared_settings(study: Study) -> tuple[Setting, ...]:
-    """Return the declared effects with their values, in the order in which they act."""
+    """Return the declared effects with their values, in the order in which they act.
+
+    Raises
+    ------
+    InputError
+        If this machine cannot have one of them.
+    """
     wanted = {(effect.id, effect.cable): effect.parameters for effect in study.effects}
-    return tuple(
+    settings = tuple(
         Setting(effect, wanted[effect.id, effect.cable])
-        for effect in all_effects(Machine(study.robot, _ANY_CABLE))
+        for effect in study.known_effects.of(Machine(study.robot, _ANY_CABLE))
         if (effect.id, effect.cable) in wanted
     )
+    impossible = wanted.keys() - {(s.effect.id, s.effect.cable) for s in settings}
+    if impossible:
+        raise InputError(
+            study.source.fault(f"effects.{effect_id}", "this robot cannot have it")
+            for effect_id, _ in sorted(impossible, key=str)
+        )
+    return settings
 
 
 def as_built_by(study: Study) -> AsBuilt:

@@ -7,9 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.effect_names import PER_LENGTH, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import LENGTH
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -35,11 +38,10 @@ def build(machine: Machine) -> list[Effect]:
     """Return the effect; where each winch's scale is right is fitted with it."""
     exits = machine.robot.exit_points_m
     size = float(np.ptp(exits, axis=0).max())
-    gain = Parameter(
-        "radius_gain_per_m", "1/m", 0.0, 1e-2 / size, (-0.3 / size, 0.3 / size), (0.0, 0.02)
-    )
+    gain = Parameter("radius_gain_per_m", "1/m", 0.0, 1e-2 / size, (0.0, 0.9 / size), (0.0, 0.02))
+    # A tiny gain about a reference far off would be a wrong scale of each winch, not layering.
     references = tuple(
-        Parameter(f"reference_{k}_m", "m", 0.0, 0.1 * size, (-2 * size, 3 * size), (0.0, 2 * size))
+        Parameter(f"reference_{k}_m", "m", 0.0, 0.1 * size, (0.0, 2 * size), (0.0, 2 * size))
         for k in range(1, machine.robot.n_cables + 1)
     )
     return [
@@ -53,3 +55,15 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"length"}),
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName(
+        "drum_layering",
+        (
+            ParameterName("radius_gain_per_m", PER_LENGTH),
+            ParameterName("reference_{cable}_m", LENGTH, neutral=0.0),
+        ),
+    ),
+    build,
+)

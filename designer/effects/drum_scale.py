@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import NUMBER
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -26,3 +29,6 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"length"}),
         )
     ]
+
+
+KIND = EffectKind(EffectName("drum_scale", (ParameterName("scale", NUMBER, above=0.0),)), build)

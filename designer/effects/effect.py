@@ -52,6 +52,17 @@ class Parameter:
     plausible: tuple[float, float]
 
 
+NEEDS: Mapping[str, str] = {
+    "time": "a column time_s",
+    "temperature": "a column temperature_C that varies",
+    "wind": "columns wind_x_m_per_s … that vary",
+    "motion": "samples of a motion (settled: false)",
+    "tension": "measured tensions",
+    "length": "measured lengths",
+    "rotation": "a platform that can turn",
+}
+"""What an effect may need in the data to be seen, in words."""
+
 MachineChange = Callable[[Machine, Values], Machine]
 ReadingChange = Callable[[Readings, Values, Measured], Readings]
 
@@ -75,8 +86,7 @@ class Effect:
     on_machine, on_readings : callable or None
         Exactly one of them.
     needs : frozenset of str
-        Columns that the data must have: ``time``, ``temperature``, ``wind``, ``motion``,
-        ``tension``, ``length``, ``rotation``.
+        What the data must have, of `NEEDS`.
     cable : int or None
         The one cable it concerns, from 1; None for all.
     starts : tuple of mapping

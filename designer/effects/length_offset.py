@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import LENGTH
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -33,3 +36,8 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"length"}),
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName("length_offset", (ParameterName("offset_{cable}_m", LENGTH, neutral=0.0),)), build
+)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import NUMBER
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -30,3 +33,6 @@ def build(machine: Machine) -> list[Effect]:
             reaches_design=True,
         )
     ]
+
+
+KIND = EffectKind(EffectName("linear_mass", (ParameterName("scale", NUMBER, above=0.0),)), build)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import MASS
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -31,3 +34,6 @@ def build(machine: Machine) -> list[Effect]:
             reaches_design=True,
         )
     ]
+
+
+KIND = EffectKind(EffectName("platform_mass", (ParameterName("offset_kg", MASS),)), build)

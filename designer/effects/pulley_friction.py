@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import NUMBER
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -32,3 +35,6 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"tension"}),
         )
     ]
+
+
+KIND = EffectKind(EffectName("pulley_friction", (ParameterName("coefficient", NUMBER),)), build)

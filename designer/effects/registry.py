@@ -22,31 +22,29 @@ from designer.effects import (
     thermal_expansion,
     wind_drag,
 )
-from designer.effects.effect import Builder, Effect
-from designer.machine import Machine
+from designer.effects.kind import EffectKind
+from designer.effects.known import KnownEffects
 
-BUILDERS: tuple[Builder, ...] = (
-    anchor_offset.build,
-    base_tilt.build,
-    pulley_radius.build,
-    elastic_modulus.build,
-    linear_mass.build,
-    platform_mass.build,
-    centre_of_mass_offset.build,
-    wind_drag.build,
-    bending_stiffness.build,
-    thermal_expansion.build,
-    creep.build,
-    drum_layering.build,
-    drum_scale.build,
-    length_offset.build,
-    clock_offset.build,
-    pulley_friction.build,
-    tension_gain.build,
-    tension_bias.build,
+KINDS: tuple[EffectKind, ...] = (
+    anchor_offset.KIND,
+    base_tilt.KIND,
+    pulley_radius.KIND,
+    elastic_modulus.KIND,
+    linear_mass.KIND,
+    platform_mass.KIND,
+    centre_of_mass_offset.KIND,
+    wind_drag.KIND,
+    bending_stiffness.KIND,
+    thermal_expansion.KIND,
+    creep.KIND,
+    drum_layering.KIND,
+    drum_scale.KIND,
+    length_offset.KIND,
+    clock_offset.KIND,
+    pulley_friction.KIND,
+    tension_gain.KIND,
+    tension_bias.KIND,
 )
 
-
-def all_effects(machine: Machine) -> list[Effect]:
-    """Return every effect that this machine may have, in the order in which they act."""
-    return [effect for build in BUILDERS for effect in build(machine)]
+SHIPPED = KnownEffects(KINDS)
+"""Our own effects, without those of plugins."""

@@ -7,9 +7,12 @@ from functools import partial
 
 import numpy as np
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import NUMBER
 
 
 def _change(readings: Readings, values: Values, measured: Measured, *, cable: int) -> Readings:
@@ -33,3 +36,8 @@ def build(machine: Machine) -> list[Effect]:
         )
         for cable in range(1, machine.robot.n_cables + 1)
     ]
+
+
+KIND = EffectKind(
+    EffectName("tension_gain", (ParameterName("gain", NUMBER, above=0.0),), takes_cable=True), build
+)

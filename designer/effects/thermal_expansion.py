@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
 from designer.measured.data import Measured
+from designer.units import PER_TEMPERATURE
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -31,3 +34,8 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"temperature", "length"}),
         )
     ]
+
+
+KIND = EffectKind(
+    EffectName("thermal_expansion", (ParameterName("coefficient_per_K", PER_TEMPERATURE),)), build
+)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
 from designer.machine import Machine
+from designer.units import AREA
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -29,3 +32,6 @@ def build(machine: Machine) -> list[Effect]:
             needs=frozenset({"wind"}),
         )
     ]
+
+
+KIND = EffectKind(EffectName("wind_drag", (ParameterName("drag_area_m2", AREA),)), build)

@@ -18,11 +18,13 @@ from designer.kernel.layout import (
     L_0,
     LANES,
     LENGTH,
+    LOAD,
     LOAD_FACTOR,
     LOWEST,
     MASSLESS,
     MASSLESS_TENSION,
     OVERLOAD,
+    PULL,
     REACH,
     RESIDUAL,
     REST,
@@ -46,11 +48,13 @@ TOLERANCE = 1e-10
 """Largest residual of closure (over length) plus balance (over the largest force)."""
 _AT_LIMIT = 1.0 + 1e-9
 _ON_BOUNDARY = 1e-12
+_SINGULAR = 1e12
 # Numba knows plain integers, not members of an enumeration.
 _SOLVED = int(Verdict.SOLVED)
 _OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
 _NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 _NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
+_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
 
 
 @kernel
@@ -69,12 +73,18 @@ def evaluate(cables: FloatArray, kappa: FloatArray, n: int) -> None:
 
 @kernel
 def check(
-    poses: FloatArray, cables: FloatArray, weights: FloatArray, strength: FloatArray, n: int
+    poses: FloatArray,
+    cables: FloatArray,
+    weights: FloatArray,
+    strength: FloatArray,
+    rows: IntArray,
 ) -> None:
     """Compute the residuals of closure and of the platform's balance, and the worst overload.
 
-    The balance, moments divided by the reach of the attachments, ends in row `REST`.
+    The balance in the components `rows`, moments over the reach of the attachments, ends in row
+    `REST`.
     """
+    n = rows.size
     for j in range(LANES):
         c = poses[C, j]
         for m in range(6):
@@ -102,20 +112,32 @@ def check(
             poses[RESIDUAL, j] = max(poses[RESIDUAL, j], row[L_0, j] / row[L, j])
             burst = row[T, j] / strength[i] if row[P, j] >= PULL_FLOOR else np.inf
             poses[OVERLOAD, j] = max(poses[OVERLOAD, j], burst)
-            poses[LOWEST, j] = min(poses[LOWEST, j], row[MASSLESS, j])
-            poses[HIGHEST, j] = max(poses[HIGHEST, j], abs(row[MASSLESS, j]))
+            # A singular matrix leaves infinity or NaN in some cables; the sum lets them through.
+            straight = row[MASSLESS, j]
+            poses[LOWEST, j] = min(poses[LOWEST, j], straight) + 0.0 * straight
+            poses[HIGHEST, j] = max(poses[HIGHEST, j], abs(straight)) + 0.0 * straight
     for j in range(LANES):
-        force = abs(poses[REST, j]) + abs(poses[REST + 1, j]) + abs(poses[REST + 2, j])
-        moment = abs(poses[REST + 3, j]) + abs(poses[REST + 4, j]) + abs(poses[REST + 5, j])
-        force += moment / poses[REACH, j] if n == 6 else 0.0
+        force = 0.0
+        for m in range(n):
+            part = abs(poses[REST + rows[m], j])
+            force += part if rows[m] < 3 else part / poses[REACH, j]
         poses[REST, j] = force
+        poses[PULL, j] = abs(poses[LOAD, j]) + abs(poses[LOAD + 1, j]) + abs(poses[LOAD + 2, j])
+        for axis in range(3, 6):
+            poses[PULL, j] += abs(poses[LOAD + axis, j]) / poses[REACH, j]
         # Addition instead of a maximum, because it lets NaN through.
         poses[RESIDUAL, j] += force / poses[SCALE, j]
 
 
 @element
 def judge(
-    residual: float, c: float, overload: float, lowest: float, highest: float, sizing: bool
+    residual: float,
+    c: float,
+    overload: float,
+    lowest: float,
+    highest: float,
+    load: float,
+    sizing: bool,
 ) -> int:
     """Return the verdict of a pose.
 
@@ -130,6 +152,9 @@ def judge(
         Of the state; an infinite overload marks a cable too slack to be evaluated.
     lowest, highest : float
         Tensions of straight cables; a negative one means that the pose is outside the hull.
+    load : float
+        Force and moment over reach that they hold; where they are far above it, cables so directed
+        cannot take up every wrench.
     sizing : bool
         Whether the section was sought or given.
     """
@@ -137,6 +162,8 @@ def judge(
     finite = (c > 0.0 and overload <= _AT_LIMIT) if sizing else overload < np.inf
     if closed and finite:
         return _SOLVED
+    if not highest <= _SINGULAR * load:
+        return _RANK_DEFICIENT
     if not lowest >= -_ON_BOUNDARY * highest:
         return _OUTSIDE_HULL
     if sizing and (closed or lowest <= _ON_BOUNDARY * highest):
@@ -164,6 +191,7 @@ def store(
             poses[OVERLOAD, j],
             poses[LOWEST, j],
             poses[HIGHEST, j],
+            poses[PULL, j],
             sizing,
         )
         blank = 1.0 if verdict == _SOLVED else np.nan

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -12,6 +13,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray
 from designer.kernel import layout
+from designer.kernel.redundant import solve_massless_range, solve_redundant_range
 from designer.kernel.square import solve_range
 from designer.robot import Poses, Robot
 
@@ -27,7 +29,8 @@ class Solution:
     verdict : array (n_poses,)
         One `Verdict` a pose.
     weight_N_per_m : array (n_poses,)
-        Weight per length, as given or, when sizing, the least that the strength allows [N/m].
+        The common w of the weights per length, as given or, when sizing, the least that the
+        strength allows [N/m].
     length_m, force_x_N, force_z_N : array (n_poses, n_cables)
         Unstrained lengths [m], and forces on the cables at the platform [N].
     closure_residual_m, equilibrium_residual_N : array (n_poses,)
@@ -65,7 +68,7 @@ def solve_batch(
     Parameters
     ----------
     robot : Robot
-        Must have as many cables as degrees of freedom.
+        With at least as many cables as degrees of freedom.
     poses : Poses
         One leading axis, in a frame whose z axis is the vertical.
     exit_points_m : array (n_cables, 3) or (n_poses, n_cables, 3)
@@ -77,8 +80,15 @@ def solve_batch(
         strength allows.
     force_N : array (n_poses, 3), optional
         Force on the platform beside its weight, in that frame [N].
+
+    Raises
+    ------
+    ValueError
+        If the robot has fewer cables than degrees of freedom.
     """
     n, count = robot.n_cables, len(poses.position_m)
+    if n < robot.degrees_of_freedom:
+        raise ValueError(f"{n} cables cannot hold {robot.degrees_of_freedom} degrees of freedom")
     out_cables = np.empty((count, n, 3))
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
@@ -94,16 +104,18 @@ def solve_batch(
         _plain(relative_weights),
         _plain(strength_m),
         -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N,
+        robot.balance_rows,
         out_cables,
         out_poses,
         out_verdict,
     )
-    shares = [(at, min(at + _SHARE, count)) for at in range(0, count, _SHARE)]
-    if len(shares) == 1:
-        solve_range(0, count, *arguments)
+    if robot.is_redundant:
+        arguments = (*arguments[:-3], robot.tension_min_N, *arguments[-3:])
+        _share_out(solve_redundant_range, count, arguments)
     else:
-        for future in [_pool().submit(solve_range, *share, *arguments) for share in shares]:
-            future.result()
+        _share_out(solve_range, count, arguments)
+    if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
+        out_cables[..., [layout.FORCE_X, layout.FORCE_Z]] *= relative_weights[:, None]
     return Solution(
         verdict=out_verdict,
         weight_N_per_m=out_poses[:, layout.WEIGHT],
@@ -117,6 +129,60 @@ def solve_batch(
     )
 
 
+def solve_massless_batch(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray, VerdictArray]:
+    """Return tensions of straight cables with the smallest largest one, in poses (n_poses,).
+
+    Parameters
+    ----------
+    robot : Robot
+        With more cables than degrees of freedom.
+    poses, exit_points_m, force_N
+        As for `solve_batch`.
+
+    Returns
+    -------
+    tension_N : array (n_poses, n_cables)
+        NaN where no tensions hold the pose.
+    wrench : array (n_poses, degrees of freedom)
+        The dual of the load, of any length: where no tensions hold the pose it separates the load
+        from all that they can do.
+    verdict : array (n_poses,)
+        One `Verdict` a pose.
+    """
+    n, count = robot.n_cables, len(poses.position_m)
+    tension = np.empty((count, n))
+    wrench = np.empty((count, robot.degrees_of_freedom))
+    verdict = np.empty(count, dtype=np.int8)
+    arguments = (
+        _plain(exit_points_m.reshape(-1, n, 3)),
+        _plain(robot.attachments_m),
+        _plain(_load(robot, force_N)),
+        _plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        _plain(poses.position_m),
+        _plain(poses.rotation.reshape(-1, 3, 3)),
+        robot.balance_rows,
+        robot.tension_min_N,
+        tension,
+        wrench,
+        verdict,
+    )
+    _share_out(solve_massless_range, count, arguments)
+    return tension, wrench, verdict
+
+
+def _share_out(solve: Callable[..., None], count: int, arguments: tuple[Any, ...]) -> None:
+    """Solve all poses, on all processors where there are many."""
+    shares = [(at, min(at + _SHARE, count)) for at in range(0, count, _SHARE)]
+    if len(shares) == 1:
+        solve(0, count, *arguments)
+    else:
+        for future in [_pool().submit(solve, *share, *arguments) for share in shares]:
+            future.result()
+
+
 def _plain(values: FloatArray) -> FloatArray:
     """Return the array as the one kind that the kernel is compiled for: contiguous, read-only."""
     plain = np.ascontiguousarray(values).view()
@@ -125,9 +191,9 @@ def _plain(values: FloatArray) -> FloatArray:
 
 
 def _load(robot: Robot, force_N: FloatArray | None) -> FloatArray:
-    """Return what the cables have to pull with (1 or n_poses, 3) [N]: upward, and against force."""
-    upward = np.array([[0.0, 0.0, robot.weight_N]])
-    return upward if force_N is None else upward - force_N
+    """Return `Robot.pull_N` less a force in that frame (1 or n_poses, 6) [N, N·m]."""
+    pull = robot.pull_N[None]
+    return pull if force_N is None else pull - np.pad(force_N, ((0, 0), (0, 3)))
 
 
 @cache

@@ -44,3 +44,28 @@ def _stamp() -> str:
 def is_cached(function: Callable[..., Any]) -> bool:
     """Tell whether machine code of a kernel lies on disk, so that the first call is quick."""
     return bool(function._cache._cache_file._load_index())  # type: ignore[attr-defined]
+
+
+def tell_of_compiling(tell: Callable[[], None]) -> None:
+    """Call ``tell`` once, as soon as a kernel has to be compiled in this process.
+
+    It is not called where the machine code of all that is used lies on disk.
+    """
+    from numba.core import event
+
+    event.Listener.register(_FirstCompile)
+    event.register("numba:compile", _FirstCompile(tell))
+
+
+class _FirstCompile:
+    """Hears when Numba begins or ends to compile; a virtual subclass of its `Listener`."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self._tell = tell
+        self._is_told = False
+
+    def notify(self, event: Any) -> None:
+        function = event.data["dispatcher"].py_func
+        if not self._is_told and function.__module__.startswith(__package__):
+            self._is_told = True
+            self._tell()

@@ -16,8 +16,8 @@ CABLE_ROWS = 16
 LOAD, C, GOAL, STEP = 0, 6, 7, 8
 # What is left of the balance (6), its scales of force and length, and the figures of merit.
 REST, SCALE, REACH = 9, 15, 16
-CLOSURE, RESIDUAL, OVERLOAD, LOWEST, HIGHEST = range(17, 22)
-POSE_ROWS = 22
+CLOSURE, RESIDUAL, OVERLOAD, LOWEST, HIGHEST, PULL = range(17, 23)
+POSE_ROWS = 23
 
 # Last axis of the results of a cable, and of a pose.
 LENGTH, FORCE_X, FORCE_Z = range(3)

@@ -66,3 +66,38 @@ def _subtract(target: FloatArray, a: FloatArray, b: FloatArray) -> None:
 def _divide(target: FloatArray, a: FloatArray) -> None:
     for j in range(target.size):
         target[j] /= a[j]
+
+
+@kernel
+def solve_small(A: FloatArray, x: FloatArray) -> bool:
+    """Solve one system by elimination with row exchange; False if it is singular.
+
+    Parameters
+    ----------
+    A : array (m, m + 1)
+        The matrix and, in the last column, the right-hand side; overwritten.
+    x : array (m,)
+        Receives the solution.
+    """
+    m = x.size
+    for k in range(m):
+        row = k
+        for i in range(k + 1, m):
+            if abs(A[i, k]) > abs(A[row, k]):
+                row = i
+        if not abs(A[row, k]) > 0.0:
+            return False
+        for j in range(k, m + 1):
+            keep = A[k, j]
+            A[k, j] = A[row, j]
+            A[row, j] = keep
+        for i in range(k + 1, m):
+            factor = A[i, k] / A[k, k]
+            for j in range(k, m + 1):
+                A[i, j] -= factor * A[k, j]
+    for k in range(m - 1, -1, -1):
+        total = A[k, m]
+        for j in range(k + 1, m):
+            total -= A[k, j] * x[j]
+        x[k] = total / A[k, k]
+    return True

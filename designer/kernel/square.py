@@ -48,6 +48,7 @@ def _solve_block(
     kappa: FloatArray,
     weights: FloatArray,
     strength: FloatArray,
+    rows: IntArray,
     inverse_weight: float,
     iterations: int,
     smallest_step: float,
@@ -65,7 +66,7 @@ def _solve_block(
             linearise_taut(cables, n)
         else:
             linearise(cables, kappa, n)
-        assemble(A, cables, poses, weights, n)
+        assemble(A, cables, poses, weights, rows, n)
         solve_lanes(A, n, n + 2)
         if inverse_weight < 0.0:
             aim_at_strength(poses, A, cables, strength, n)
@@ -96,6 +97,7 @@ def solve_range(
     weights: FloatArray,
     strength: FloatArray,
     inverse_weight: float,
+    rows: IntArray,
     out_cables: FloatArray,
     out_poses: FloatArray,
     out_verdict: IntArray,
@@ -123,11 +125,11 @@ def solve_range(
                 lane,
             )
             _solve_block(
-                cables, A, poses, kappa, weights, strength, inverse_weight,
+                cables, A, poses, kappa, weights, strength, rows, inverse_weight,
                 iterations, step, lightness,
             )  # fmt: skip
             evaluate(cables, kappa, n)
-            check(poses, cables, weights, strength, n)
+            check(poses, cables, weights, strength, rows)
             store(out_cables, out_poses, out_verdict, cables, poses, lane, inverse_weight < 0.0)
             for j in range(min(LANES, pending.size - first)):
                 # Negated, so that NaN counts as failed.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import element, kernel
 from designer.kernel.layout import (
     EX,
     EY,
@@ -50,8 +50,9 @@ def place(
 ) -> None:
     """Fill the geometry of one block: cable vectors, levers and the load to be balanced.
 
-    Exit points, load (force at the body origin) and rotations have a leading axis of poses, or of
-    one for all; the weight, which is part of the load, acts at `load_point` of the body.
+    Exit points, load (force at the body origin, then moment) and rotations have a leading axis of
+    poses, or of one for all; the weight, which is part of the force, acts at `load_point` of the
+    body, and what that makes of moment comes on top.
     """
     n = exit_points.shape[1]
     for j in range(LANES):
@@ -72,11 +73,10 @@ def place(
         s = load_point
         sx = Q[0, 0] * s[0] + Q[0, 1] * s[1] + Q[0, 2] * s[2]
         sy = Q[1, 0] * s[0] + Q[1, 1] * s[1] + Q[1, 2] * s[2]
-        for axis in range(3):
+        for axis in range(6):
             poses[LOAD + axis, j] = f[axis]
-        poses[LOAD + 3, j] = sy * weight
-        poses[LOAD + 4, j] = -sx * weight
-        poses[LOAD + 5, j] = 0.0
+        poses[LOAD + 3, j] += sy * weight
+        poses[LOAD + 4, j] -= sx * weight
 
 
 @kernel
@@ -118,36 +118,63 @@ def linearise(cables: FloatArray, kappa: FloatArray, n: int) -> None:
 
 @kernel
 def assemble(
-    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, n: int
+    A: FloatArray,
+    cables: FloatArray,
+    poses: FloatArray,
+    weights: FloatArray,
+    rows: IntArray,
+    n: int,
 ) -> None:
-    """Write the linearised balance: columns dp, then minus the present wrench, then the load."""
+    """Write the linearised balance: columns dp, then minus the present wrench, then the load.
+
+    `rows` are the components of the wrench that are balanced, n of 0 … 5.
+    """
     for m in range(n):
         for j in range(LANES):
             A[m, n, j] = 0.0
-            A[m, n + 1, j] = poses[m, j]
-    for i in range(n):
-        row = cables[i]
-        w = weights[i]
-        for j in range(LANES):
-            p, v = row[P, j], row[V, j]
-            x, y, s = row[EX, j], row[EY, j], row[V_P, j]
-            A[0, i, j] = w * x
-            A[1, i, j] = w * y
-            A[2, i, j] = w * s
-            A[0, n, j] -= w * p * x
-            A[1, n, j] -= w * p * y
-            A[2, n, j] -= w * v
-        if n == 6:
-            for j in range(LANES):
-                p, v = row[P, j], row[V, j]
-                x, y, s = row[EX, j], row[EY, j], row[V_P, j]
-                rx, ry, rz = row[RX, j], row[RY, j], row[RZ, j]
-                A[3, i, j] = w * (ry * s - rz * y)
-                A[4, i, j] = w * (rz * x - rx * s)
-                A[5, i, j] = w * (rx * y - ry * x)
-                A[3, n, j] -= w * (ry * v - rz * p * y)
-                A[4, n, j] -= w * (rz * p * x - rx * v)
-                A[5, n, j] -= w * p * (rx * y - ry * x)
+            A[m, n + 1, j] = poses[LOAD + rows[m], j]
+        for i in range(n):
+            if rows[m] < 2:
+                _balance_pull(A[m, i], A[m, n], cables[i], weights[i], EX + rows[m])
+            elif rows[m] == 2:
+                _balance_lift(A[m, i], A[m, n], cables[i], weights[i])
+            else:
+                _balance_moment(A[m, i], A[m, n], cables[i], weights[i], rows[m] - 3)
+
+
+@element
+def _balance_pull(
+    slope: FloatArray, rest: FloatArray, row: FloatArray, w: float, axis: int
+) -> None:
+    for j in range(LANES):
+        slope[j] = w * row[axis, j]
+        rest[j] -= w * row[P, j] * row[axis, j]
+
+
+@element
+def _balance_lift(slope: FloatArray, rest: FloatArray, row: FloatArray, w: float) -> None:
+    for j in range(LANES):
+        slope[j] = w * row[V_P, j]
+        rest[j] -= w * row[V, j]
+
+
+@element
+def _balance_moment(
+    slope: FloatArray, rest: FloatArray, row: FloatArray, w: float, axis: int
+) -> None:
+    for j in range(LANES):
+        p, v = row[P, j], row[V, j]
+        x, y, s = row[EX, j], row[EY, j], row[V_P, j]
+        rx, ry, rz = row[RX, j], row[RY, j], row[RZ, j]
+        if axis == 0:
+            slope[j] = w * (ry * s - rz * y)
+            rest[j] -= w * (ry * v - rz * p * y)
+        elif axis == 1:
+            slope[j] = w * (rz * x - rx * s)
+            rest[j] -= w * (rz * p * x - rx * v)
+        else:
+            slope[j] = w * (rx * y - ry * x)
+            rest[j] -= w * p * (rx * y - ry * x)
 
 
 @kernel

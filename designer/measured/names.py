@@ -1,10 +1,10 @@
-"""Names that measured data go by: our columns, and what may be unknown from the start."""
+"""Names that the columns of measured data go by."""
 
 from __future__ import annotations
 
 import re
 
-from designer.effect_names import EFFECTS, TIME
+from designer.effect_names import TIME
 from designer.nearest import did_you_mean
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, Dimension
 
@@ -21,9 +21,6 @@ WIND = ("wind_x_m_per_s", "wind_y_m_per_s", "wind_z_m_per_s")
 IGNORE = "ignore"
 COVARIATE = "covariate"
 """What a log's column may be that is none of ours."""
-
-UNKNOWNS = (*EFFECTS, "anchors")
-"""What may be fitted from the start: every effect, and all exit points together."""
 
 _READING = re.compile(r"length_(?P<length>[0-9]{1,9})_m|tension_(?P<tension>[0-9]{1,9})_N")
 _EULER = re.compile(r"euler_(?:intrinsic|extrinsic)_(?P<axes>[xyz]{3})_[123]")
@@ -109,8 +106,3 @@ def column_hint(name: str) -> str:
         COVARIATE,
     )
     return did_you_mean(name, known)
-
-
-def unknown_hint(given: object) -> str:
-    """Return what may stand in ``measurements.unknown``, with the nearest name to this one."""
-    return f"anchors, or an effect: {', '.join(EFFECTS)}{did_you_mean(str(given), UNKNOWNS)}"

@@ -10,6 +10,7 @@ from designer.measured.assign import Assigned, assign
 from designer.measured.data import Measured
 from designer.measured.names import POSITION, length_names, tension_names
 from designer.measured.orientation import orientation, quaternion_faults
+from designer.measured.plausible import unit_faults
 from designer.measured.rows import Rows, cell_faults, usable_rows
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
@@ -46,7 +47,10 @@ def read_measured(study: Study) -> Measured:
         _refuse([*_head_and_cells(found), *rows.faults, *quaternion_faults(found, rows.kept)])
     poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
     _refuse(_one_pose(table, poses))
-    return _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
+    measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
+    is_homed = "length_offset" not in measurements.unknown
+    _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
+    return measured
 
 
 def _refuse(faults: list[Fault]) -> None:

@@ -20,10 +20,13 @@ from designer.report.sections.appendix import (
     left_out_section,
     provenance_section,
 )
+from designer.report.sections.clearance import ClearanceSection, clearance_section
 from designer.report.sections.first_page import FirstPage, first_page
+from designer.report.sections.groups import GroupsSection, groups_section
 from designer.report.sections.inputs import InputsSection, inputs_section
 from designer.report.sections.pose import PoseSection, pose_section
 from designer.report.sections.selection import SelectionSection, selection_section
+from designer.report.sections.stiffness import StiffnessSection, stiffness_section
 from designer.report.sections.workspace import WorkspaceSection, workspace_section
 
 
@@ -50,8 +53,8 @@ class ReportContext:
         Date and time of the analysis, to read and as ISO 8601.
     headings : tuple of Heading
         The sections that this report has, in order; ids are ``answer``, ``inputs``, ``pose``,
-        ``workspace``, ``selection``, ``left-out``, ``assumptions``, ``nomenclature`` and
-        ``provenance``.
+        ``workspace``, ``selection``, ``groups``, ``stiffness``, ``clearance``, ``left-out``,
+        ``assumptions``, ``nomenclature`` and ``provenance``.
     first_page : FirstPage
         The answer, what it rests on, and what to do where it is no.
     inputs : InputsSection
@@ -62,6 +65,12 @@ class ReportContext:
         All poses.
     selection : SelectionSection or None
         The choice of a rope.
+    groups : GroupsSection or None
+        Products for groups of cables.
+    stiffness : StiffnessSection or None
+        How far a force moves the platform.
+    clearance : ClearanceSection or None
+        How near cables come to each other and to the platform.
     left_out : LeftOutSection or None
         Grades that were not considered.
     assumptions : AssumptionsSection
@@ -80,6 +89,9 @@ class ReportContext:
     pose: PoseSection | None
     workspace: WorkspaceSection | None
     selection: SelectionSection | None
+    groups: GroupsSection | None
+    stiffness: StiffnessSection | None
+    clearance: ClearanceSection | None
     left_out: LeftOutSection | None
     assumptions: AssumptionsSection
     provenance: ProvenanceSection
@@ -110,7 +122,10 @@ def build_context(analysis: Analysis, pictures: Pictures) -> ReportContext:
         inputs=inputs_section(analysis),
         pose=pose_section(analysis, pictures.loop_chart, pictures.pose_scene),
         workspace=workspace_section(analysis, findings, pictures),
-        selection=selection_section(analysis, findings, pictures.candidates),
+        selection=selection_section(analysis, findings, pictures),
+        groups=groups_section(analysis, pictures.groups),
+        stiffness=stiffness_section(analysis, pictures.stiffness),
+        clearance=clearance_section(analysis, pictures.clearance),
         left_out=left_out_section(analysis),
         assumptions=assumptions_section(analysis),
         provenance=provenance_section(analysis),
@@ -118,12 +133,16 @@ def build_context(analysis: Analysis, pictures: Pictures) -> ReportContext:
 
 
 def _headings(analysis: Analysis) -> tuple[Heading, ...]:
+    qualities = analysis.qualities
     present = {
         "answer": ("The answer", True),
         "inputs": ("Inputs", True),
         "pose": ("The configured pose", analysis.pose is not None),
         "workspace": ("The workspace", analysis.workspace is not None),
         "selection": ("The choice of a rope", analysis.selection is not None),
+        "groups": ("Products for groups of cables", analysis.groups is not None),
+        "stiffness": ("Stiffness", qualities is not None and qualities.stiffness is not None),
+        "clearance": ("Clearance", qualities is not None and qualities.interference is not None),
         "left-out": ("Grades left out", analysis.study.selection is not None),
         "assumptions": ("Assumptions and limits", True),
         "nomenclature": ("Names of quantities", True),

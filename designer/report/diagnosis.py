@@ -17,11 +17,8 @@ from designer.report.diagnosis_sections.found import FoundSection, found_section
 from designer.report.diagnosis_sections.residual import ResidualSection, residual_section
 from designer.report.diagnosis_sections.search import SearchSection, search_section
 from designer.report.diagnosis_sections.unexplained import UnexplainedSection, unexplained_section
-from designer.report.files import write_whole
 from designer.report.parts import Fact
-from designer.report.render import environment, render_pdf
-
-_TEMPLATE = "diagnosis.html.j2"
+from designer.report.render import DIAGNOSIS, write_pages
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,41 +105,10 @@ def build_diagnosis_context(
     )
 
 
-def render_diagnosis_html(
-    context: DiagnosisContext, *, paged: bool = False, user_folder: Path | None = None
-) -> str:
-    """Return the diagnosis report as one self-contained HTML page.
-
-    Parameters
-    ----------
-    context : DiagnosisContext
-        What to show.
-    paged : bool
-        For paper.
-    user_folder : Path, optional
-        Templates that replace or extend the shipped ones, see `designer.report.render`.
-
-    Raises
-    ------
-    jinja2.TemplateError
-        If a template of the user is faulty.
-    """
-    template = environment(user_folder).get_template(_TEMPLATE)
-    return template.render(report=context, paged=paged)
-
-
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
-    """Write ``diagnosis.html`` and ``diagnosis.pdf`` into an existing folder.
-
-    Both are made before either is written, and each takes its name only when it is whole.
-    """
+    """Write ``diagnosis.html`` and ``diagnosis.pdf`` into an existing folder."""
     context = build_diagnosis_context(diagnosis, draw(diagnosis), Provenance.now())
-    files = {
-        "diagnosis.html": render_diagnosis_html(context).encode(),
-        "diagnosis.pdf": render_pdf(render_diagnosis_html(context, paged=True)),
-    }
-    for name, content in files.items():
-        write_whole(folder / name, content)
+    write_pages(context, DIAGNOSIS, folder)
 
 
 def _headings(diagnosis: Diagnosis) -> tuple[Heading, ...]:

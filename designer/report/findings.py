@@ -25,7 +25,7 @@ from designer.study import HangsBelow
 from designer.verdict import Verdict
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
-from designer.workspace.samples import positions_m
+from designer.workspace.samples import places
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -39,19 +39,25 @@ class MasslessChoice:
 
     Parameters
     ----------
-    size : Size
-        The thinnest size whose breaking load covers the massless tension with the safety factor.
+    candidate : Candidate
+        The thinnest size whose allowable tension covers the massless one.
     verification : Verification
         What that size really meets in the workspace.
     """
 
-    size: Size
+    candidate: Candidate
     verification: Verification
 
     @property
+    def size(self) -> Size:
+        """The size."""
+        return self.candidate.size
+
+    @property
     def safety_factor(self) -> float:
-        """Breaking load over the largest tension that the size really meets."""
-        return self.size.minimum_breaking_load_N / self.verification.max_tension_N
+        """What is left of its breaking load over the largest tension that it really meets."""
+        strength_N = self.candidate.efficiency * self.size.minimum_breaking_load_N
+        return strength_N / self.verification.max_tension_N
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,7 +152,7 @@ def find(analysis: Analysis) -> Findings:
 
 def modulus_utilisation(robot: Robot, candidate: Candidate) -> tuple[float, float]:
     """Return the utilisation at the worst pose with the lowest and the highest modulus."""
-    cable, doubt = candidate.cable, candidate.grade.modulus.uncertainty
+    cable, doubt = candidate.cable, candidate.grade.elasticity.uncertainty
     worst = Poses.at(candidate.verification.worst_position_m)
 
     def at(scale: float) -> float:
@@ -163,18 +169,15 @@ def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoic
     assert study.selection is not None
     if workspace is None or workspace.massless is None:
         return None
-    factor = study.selection.safety_factor
-    needed_N = factor * workspace.massless.max_tension_N
-    enough = [s for s in outcome.grade.sizes if s.minimum_breaking_load_N >= needed_N]
+    needed_N = workspace.massless.max_tension_N
+    enough = [c for c in outcome.candidates if c.cable.allowable_tension_N >= needed_N]
     if not enough:
         return None
-    tried = {c.size: c.verification for c in outcome.candidates}
-    verification = tried.get(enough[0]) or verify(
-        analysis.built.robot,
-        study.workspace,
-        analysis.built.cable(outcome.grade.cable(enough[0], factor)),
-    )
-    return MasslessChoice(enough[0], verification)
+    first = enough[0]
+    if first.verification.is_refined:
+        return MasslessChoice(first, first.verification)
+    verification = verify(analysis.built.robot, study.workspace, first.cable)
+    return MasslessChoice(first, verification)
 
 
 def _other_policy(analysis: Analysis) -> OtherPolicy | None:
@@ -199,7 +202,7 @@ def _hanging(analysis: Analysis) -> float | None:
     few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), chosen.cable), "exclude")
-        for positions in positions_m(few)
+        for positions in places(few)
     ]
     return float(np.concatenate(hangs).mean())
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
+import numpy as np
+
 MISSING = "–"
 """Stands for a number that does not exist."""
 
@@ -132,10 +134,26 @@ def factor(value: float) -> str:
     return number(value, 3)
 
 
-def position(xyz_m: Iterable[float]) -> str:
-    """Return a position such as ``(256.52, 10.35, −40.00) m``."""
-    inside = f",{_BEFORE_UNIT}".join(fixed(float(x), _POSITION_DIGITS) for x in xyz_m)
-    return _with_unit(f"({inside})", "m")
+def position(place: Iterable[float]) -> str:
+    """Return a position such as ``(256.52, 10.35, −40.00) m``.
+
+    Of a place with an orientation (position [m] and rotation vector [rad]) both, the latter in
+    degrees and only where it is not zero.
+    """
+    xyz_m, turn_rad = np.split(np.array([*place], dtype=np.float64), [3])
+    text = _with_unit(f"({_row(xyz_m)})", "m")
+    if not turn_rad.any():
+        return text
+    return f"{text}, turned by {degrees(np.degrees(turn_rad))}"
+
+
+def degrees(turn_deg: Iterable[float]) -> str:
+    """Return a rotation vector [degrees] such as ``(0.00, 3.00, 0.00)°``."""
+    return f"({_row(turn_deg)})°"
+
+
+def _row(values: Iterable[float]) -> str:
+    return f",{_BEFORE_UNIT}".join(fixed(float(x), _POSITION_DIGITS) for x in values)
 
 
 def power_of_ten(value: float, unit: str = "") -> str:

@@ -24,7 +24,19 @@ class Pictures:
     workspace : tuple of Picture
         Maps and charts of the workspace, in the order in which they are shown.
     candidates : Picture or None
-        The candidates as a chart.
+        Sizes and need of each grade.
+    pareto : Picture or None
+        The sizes that no other beats, among all that hold.
+    usable_chart : Picture or None
+        How much of the workspace each size of a grade serves.
+    usable_scene : Picture or None
+        Where some of its sizes serve, in space.
+    stiffness : Picture or None
+        Displacement under a unit force at the middle height.
+    clearance : Picture or None
+        Smallest clearance at the middle height.
+    groups : Picture or None
+        The robot from above with the cables of each group.
     """
 
     robot: Picture | None = None
@@ -33,3 +45,9 @@ class Pictures:
     verdicts: Picture | None = None
     workspace: tuple[Picture, ...] = ()
     candidates: Picture | None = None
+    pareto: Picture | None = None
+    usable_chart: Picture | None = None
+    usable_scene: Picture | None = None
+    stiffness: Picture | None = None
+    clearance: Picture | None = None
+    groups: Picture | None = None

@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from designer.report.context import ReportContext, build_context
+from designer.report.context import build_context
 from designer.report.drawings import draw
 from designer.report.files import write_whole
 from designer.report.outline import add_outline
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from designer.analysis import Analysis
 
-_TEMPLATE = "report.html.j2"
+REPORT, DIAGNOSIS = "report", "diagnosis"
+"""The pages that there are templates for."""
 
 
 def environment(user_folder: Path | None = None) -> Environment:
@@ -50,14 +51,16 @@ def environment(user_folder: Path | None = None) -> Environment:
 
 
 def render_html(
-    context: ReportContext, *, paged: bool = False, user_folder: Path | None = None
+    context: object, page: str = REPORT, *, paged: bool = False, user_folder: Path | None = None
 ) -> str:
-    """Return the report as one self-contained HTML page.
+    """Return a report as one self-contained HTML page.
 
     Parameters
     ----------
-    context : ReportContext
-        What to show.
+    context : ReportContext or DiagnosisContext
+        What to show; the template knows it as ``report``.
+    page : str
+        Which page: `REPORT` or `DIAGNOSIS`.
     paged : bool
         For paper: without scenes to turn.
     user_folder : Path, optional
@@ -68,7 +71,7 @@ def render_html(
     jinja2.TemplateError
         If a template of the user is faulty.
     """
-    template = environment(user_folder).get_template(_TEMPLATE)
+    template = environment(user_folder).get_template(f"{page}.html.j2")
     return template.render(report=context, paged=paged)
 
 
@@ -104,14 +107,18 @@ def render_pdf(html: str) -> bytes:
 
 
 def write_report(analysis: Analysis, folder: Path) -> None:
-    """Write ``report.html`` and ``report.pdf`` into an existing folder.
+    """Write ``report.html`` and ``report.pdf`` into an existing folder."""
+    write_pages(build_context(analysis, draw(analysis)), REPORT, folder)
+
+
+def write_pages(context: object, page: str, folder: Path) -> None:
+    """Write a report as HTML and as PDF, named after the page, into an existing folder.
 
     Both are made before either is written, and each takes its name only when it is whole.
     """
-    context = build_context(analysis, draw(analysis))
     files = {
-        "report.html": render_html(context).encode(),
-        "report.pdf": render_pdf(render_html(context, paged=True)),
+        f"{page}.html": render_html(context, page).encode(),
+        f"{page}.pdf": render_pdf(render_html(context, page, paged=True)),
     }
     for name, content in files.items():
         write_whole(folder / name, content)

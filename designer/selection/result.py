@@ -7,40 +7,73 @@ from typing import Literal
 
 from designer.cable import Cable, Material
 from designer.catalogue.grade import Grade, Size
+from designer.selection.objectives import Figures
+from designer.selection.usable import Usable
 from designer.selection.verify import Verification
+from designer.study import Objective
 
 Outcome = Literal["fits", "too_thin", "no_finite_cable"]
+Standing = Literal["chosen", "undominated", "dominated", "not_comparable", "too_thin", "not_held"]
+"""What became of a candidate; those of the first two span the Pareto set."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
-    """One size of one grade, verified over the whole workspace.
+    """One size of one grade, solved over the whole workspace.
 
     Parameters
     ----------
     grade, size
         The product.
     cable : Cable
-        Its figures as the solver takes them, safety factor applied.
+        Its figures as the solver takes them, efficiency and safety factor applied.
+    efficiency : float
+        Share of the breaking load that end fittings and bending leave.
     continuous_diameter_m : float
         Optimum in the grade's continuous family [m]; NaN where the family has none.
     verification : Verification
         What it meets.
-    total_mass_kg : float
-        Mass of all cables at the longest length each needs [kg].
+    figures : Figures
+        What it is compared by.
+    standing : str
+        What became of it.
+    reason : str
+        Why, for the reader of a report.
     """
 
     grade: Grade
     size: Size
     cable: Cable
+    efficiency: float
     continuous_diameter_m: float
     verification: Verification
-    total_mass_kg: float
+    figures: Figures
+    standing: Standing
+    reason: str
 
     @property
     def verified(self) -> bool:
-        """Whether it holds everywhere with its own mass, stiffness and breaking load."""
-        return self.verification.holds
+        """Whether it holds everywhere, between the samples as well, with its own figures."""
+        return self.verification.holds and self.verification.is_refined
+
+    @property
+    def total_mass_kg(self) -> float:
+        """Mass of all cables at the longest length each needs [kg]."""
+        return self.figures.mass_kg
+
+    @property
+    def name(self) -> str:
+        """Grade and size."""
+        return f"{self.grade.id}, {self.size.id}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NotTried:
+    """A grade, or one size of it, that was not solved, and why; ``size`` is None for the grade."""
+
+    grade: Grade
+    size: Size | None
+    reason: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,13 +85,15 @@ class GradeOutcome:
     grade : Grade
         The grade.
     family : Material
-        Its continuous family, safety factor applied.
+        Its continuous family, efficiency and safety factor applied.
     continuous_diameter_m : float
         The thinnest member of the family that holds everywhere [m]; NaN where none does.
     candidates : tuple of Candidate
-        The sizes that were tried, ascending.
+        Its sizes, ascending.
     outcome : str
-        ``fits``, ``too_thin`` (the thickest size does not hold) or ``no_finite_cable``.
+        ``fits``, ``too_thin`` (no size holds) or ``no_finite_cable``.
+    best : Candidate or None
+        The best size by the objective that decides, of those that are verified.
     """
 
     grade: Grade
@@ -66,21 +101,16 @@ class GradeOutcome:
     continuous_diameter_m: float
     candidates: tuple[Candidate, ...]
     outcome: Outcome
-
-    @property
-    def best(self) -> Candidate | None:
-        """The thinnest size that holds everywhere."""
-        return next((c for c in self.candidates if c.verified), None)
+    best: Candidate | None
 
     @property
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
-        if self.outcome == "no_finite_cable":
+        if self.best is None and self.outcome == "no_finite_cable":
             return "no section of this rope can hold the workspace: its own weight is too much"
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
-        if self.outcome == "too_thin":
+        if self.best is None:
             return f"ends at {self.grade.thickest.id}, {need}"
-        assert self.best is not None
         return f"{self.best.size.id} holds everywhere, {need}"
 
 
@@ -93,19 +123,40 @@ class SelectionResult:
     outcomes : tuple of GradeOutcome
         Every grade that the study allows.
     chosen : Candidate or None
-        The lightest product that holds everywhere.
+        The best product by the objective that decides, of those that hold everywhere.
     reason : str or None
         Why none was chosen.
     alternatives : tuple of GradeOutcome
         Where none was chosen: grades outside the study's list that would hold.
+    objectives : tuple of str
+        What candidates were compared by, the one that decides first.
+    currency : str or None
+        Of the costs; None where nothing has a price.
+    not_tried : tuple of NotTried
+        What was not solved, and why.
+    usable : Usable or None
+        What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
+        most. None where nothing was tried.
     """
 
     outcomes: tuple[GradeOutcome, ...]
     chosen: Candidate | None
     reason: str | None
     alternatives: tuple[GradeOutcome, ...] = ()
+    objectives: tuple[Objective, ...] = ("mass",)
+    currency: str | None = None
+    not_tried: tuple[NotTried, ...] = ()
+    usable: Usable | None = None
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
-        """All sizes that were tried."""
+        """All sizes that were solved."""
         return tuple(c for outcome in self.outcomes for c in outcome.candidates)
+
+    @property
+    def front(self) -> tuple[Candidate, ...]:
+        """The verified candidates that no other dominates, the chosen one first."""
+        members = [c for c in self.candidates if c.standing in ("chosen", "undominated")]
+        first = self.objectives[0]
+        rank = [(c.standing != "chosen", c.figures.burden(first)) for c in members]
+        return tuple(members[k] for k in sorted(range(len(members)), key=rank.__getitem__))

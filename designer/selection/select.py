@@ -1,21 +1,40 @@
-"""Continuous optimum of each grade, snap to a size, verify, next size up until it holds."""
+"""Every size of every allowed grade, proved with its own figures; the best by what the study names.
+
+The pass over the samples comes first, all sizes at once. The candidates that matter are then
+searched between the samples, and compared.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-import numpy as np
-
-from designer.catalogue.grade import Grade, Size
+from designer.catalogue.grade import Grade
 from designer.effects.design import AsBuilt
+from designer.progress import Reporter, Silent
 from designer.robot import Robot
-from designer.selection.result import Candidate, GradeOutcome, Outcome, SelectionResult
-from designer.selection.verify import verify, worst_of
-from designer.study import Selection, Workspace
-from designer.workspace.demand import diameter_demand
+from designer.selection.compare import Entry, best_of, settle, standing_of
+from designer.selection.continuous import continuous_optimum
+from designer.selection.efficiency import Allowance
+from designer.selection.objectives import (
+    MEANINGS,
+    Figures,
+    common_currency,
+    cost,
+    drum_diameter_m,
+    smallest_stiffness_N_per_m,
+    stiffness_positions_m,
+)
+from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
+from designer.selection.usable import Usable, usable
+from designer.selection.verify import Verification
+from designer.selection.verify_sizes import refined, verify_sizes
+from designer.study import Objective, Selection, Workspace
+from designer.workspace.samples import sample_count
 
-Progress = Callable[[], None]
-"""Called after each grade."""
+_NOMINAL = "computed from the factors of a standard, no product; taken where a study names it"
+_SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
 
 
 def select(
@@ -25,9 +44,9 @@ def select(
     grades: Sequence[Grade],
     *,
     built: AsBuilt | None = None,
-    progress: Progress = lambda: None,
+    reporter: Reporter | None = None,
 ) -> SelectionResult:
-    """Choose the lightest product among the grades that the study allows.
+    """Choose the best product among the grades that the study allows.
 
     Parameters
     ----------
@@ -37,78 +56,177 @@ def select(
         The whole catalogue; ``selection.grades`` narrows it.
     built : AsBuilt, optional
         By how much cables on this machine differ from their data sheet.
-    progress : callable
-        Called after each grade.
+    reporter : Reporter, optional
+        Shows progress.
     """
-    allowed = [g for g in grades if selection.grades is None or g.id in selection.grades]
-    outcomes = []
-    for grade in allowed:
-        outcomes.append(try_grade(robot, workspace, grade, selection.safety_factor, built))
-        progress()
-    fitting = [outcome.best for outcome in outcomes if outcome.best is not None]
-    if fitting:
-        chosen = min(fitting, key=lambda candidate: candidate.total_mass_kg)
-        return SelectionResult(tuple(outcomes), chosen, None)
-    others = [g for g in grades if g not in allowed]
-    alternatives = [try_grade(robot, workspace, g, selection.safety_factor, built) for g in others]
+    built, reporter = built or AsBuilt(robot), reporter or Silent()
+    named = selection.grades
+    allowed = [g for g in grades if (not g.is_nominal if named is None else g.id in named)]
+    trial = _Trial(robot, workspace, selection, built, reporter, common_currency(allowed))
+    outcomes, not_tried = trial.outcomes(allowed)
+    if named is None:
+        not_tried += [NotTried(g, None, _NOMINAL) for g in grades if g.is_nominal]
+    chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
+    alternatives: list[GradeOutcome] = []
+    if chosen is None:
+        others = [g for g in grades if g not in allowed and not g.is_nominal]
+        found = trial.outcomes(others)[0] if others else []
+        alternatives = [o for o in found if o.outcome == "fits"]
     return SelectionResult(
-        tuple(outcomes),
-        None,
-        _reason(outcomes),
-        tuple(outcome for outcome in alternatives if outcome.outcome == "fits"),
+        outcomes=tuple(outcomes),
+        chosen=chosen,
+        reason=None if chosen else _reason(outcomes, not_tried, selection.objectives[0]),
+        alternatives=tuple(alternatives),
+        objectives=selection.objectives,
+        currency=trial.currency,
+        not_tried=tuple(not_tried),
+        usable=_usable(robot, workspace, outcomes, chosen),
     )
 
 
-def try_grade(
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """What all candidates have in common."""
+
+    robot: Robot
+    workspace: Workspace
+    selection: Selection
+    built: AsBuilt
+    reporter: Reporter
+    currency: str | None
+
+    def outcomes(self, grades: Sequence[Grade]) -> tuple[list[GradeOutcome], list[NotTried]]:
+        """Try all sizes of these grades."""
+        entries, not_tried = self._sampled(grades)
+        objectives = self.selection.objectives
+        n_sizes = len(entries)
+        with self.reporter.task("search", n_sizes) as advance:
+
+            def search(entry: Entry) -> Verification:
+                advance(1)
+                return refined(self.robot, self.workspace, entry.cable, entry.sampled)
+
+            front = settle(entries, objectives, search)
+        found = []
+        with self.reporter.task("grades", len(grades)) as advance:
+            for grade in grades:
+                own = [e for e in entries if e.grade is grade]
+                if own:
+                    found.append(self._outcome(grade, own, front))
+                advance(1)
+        return found, not_tried
+
+    def _sampled(self, grades: Sequence[Grade]) -> tuple[list[Entry], list[NotTried]]:
+        """Solve all samples with all sizes."""
+        allowance = Allowance.of(self.selection)
+        products, not_tried = [], []
+        for grade in grades:
+            for size in grade.sizes:
+                if math.isnan(allowance.efficiency(grade, size.diameter_m)):
+                    not_tried.append(NotTried(grade, size, _SHEAVE))
+                else:
+                    products.append((grade, size, self.built.cable(allowance.cable(grade, size))))
+        with self.reporter.task("sizes", sample_count(self.workspace)) as advance:
+            cables = [cable for _, _, cable in products]
+            sampled = verify_sizes(self.robot, self.workspace, cables, progress=advance)
+        entries = []
+        for (grade, size, cable), one in zip(products, sampled, strict=True):
+            length = float(one.longest_m.sum())
+            figures = Figures(
+                mass_kg=cable.linear_density_kg_per_m * length,
+                cost=cost(grade, size, length, self.currency),
+                drum_diameter_m=drum_diameter_m(grade, size),
+                max_tension_N=one.utilisation * cable.allowable_tension_N,
+                stiffness_N_per_m=math.nan,
+            )
+            share = allowance.efficiency(grade, size.diameter_m)
+            found = one.verification(cable)
+            entries.append(Entry(grade, size, cable, share, one, found, figures))
+        if "stiffness" in self.selection.objectives:
+            self._add_stiffness(entries)
+        return entries, not_tried
+
+    def _add_stiffness(self, entries: Sequence[Entry]) -> None:
+        positions = stiffness_positions_m(self.workspace)
+        holding = [entry for entry in entries if entry.verification.holds]
+        with self.reporter.task("stiffness", len(holding)) as advance:
+            for entry in holding:
+                found = smallest_stiffness_N_per_m(
+                    self.robot, self.workspace, entry.cable, positions
+                )
+                entry.figures = replace(entry.figures, stiffness_N_per_m=found)
+                advance(1)
+
+    def _outcome(
+        self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry]
+    ) -> GradeOutcome:
+        allowance = Allowance.of(self.selection)
+        family, optimum = continuous_optimum(self.workspace, grade, allowance, self.built)
+        objectives = self.selection.objectives
+        best = best_of(entries, objectives, _nothing_left)
+        candidates = {id(e): _candidate(e, optimum, front, self.selection) for e in entries}
+        outcome: Outcome = "too_thin"
+        if best is not None:
+            outcome = "fits"
+        elif math.isnan(optimum):
+            outcome = "no_finite_cable"
+        return GradeOutcome(
+            grade=grade,
+            family=family,
+            continuous_diameter_m=optimum,
+            candidates=tuple(candidates.values()),
+            outcome=outcome,
+            best=None if best is None else candidates[id(best)],
+        )
+
+
+def _candidate(
+    entry: Entry, optimum_m: float, front: Sequence[Entry], selection: Selection
+) -> Candidate:
+    standing, reason = standing_of(entry, front, selection.objectives)
+    return Candidate(
+        grade=entry.grade,
+        size=entry.size,
+        cable=entry.cable,
+        efficiency=entry.efficiency,
+        continuous_diameter_m=optimum_m,
+        verification=entry.verification,
+        figures=entry.figures,
+        standing=standing,
+        reason=reason,
+    )
+
+
+def _nothing_left(entry: Entry) -> Verification:
+    raise AssertionError(f"{entry.name} is the best of its grade and was not searched")
+
+
+def _usable(
     robot: Robot,
     workspace: Workspace,
-    grade: Grade,
-    safety_factor: float,
-    built: AsBuilt | None = None,
-) -> GradeOutcome:
-    """Find the thinnest size of a grade that holds everywhere.
-
-    The sizes of a table scatter about their family, so the size below the snap is tried as well:
-    it either proves that the choice is the thinnest, or replaces it.
-    """
-    built = built or AsBuilt(robot)
-    family = built.material(grade.family(safety_factor))
-    demand = diameter_demand(robot, family, workspace.hangs_below)
-    worst = worst_of(workspace, demand, demand)
-    if not np.isfinite(worst.demand):
-        return GradeOutcome(grade, family, float("nan"), (), "no_finite_cable")
-
-    def attempt(size: Size) -> Candidate:
-        cable = built.cable(grade.cable(size, safety_factor))
-        result = verify(robot, workspace, cable)
-        mass = cable.linear_density_kg_per_m * float(result.longest_m.sum())
-        return Candidate(grade, size, cable, worst.demand, result, mass)
-
-    tried = _around_the_snap(grade.sizes, worst.demand, attempt)
-    outcome: Outcome = "fits" if any(c.verified for c in tried) else "too_thin"
-    return GradeOutcome(grade, family, worst.demand, tried, outcome)
+    outcomes: Sequence[GradeOutcome],
+    chosen: Candidate | None,
+) -> Usable | None:
+    """Return what the sizes of the chosen grade serve, or of the one whose best serves most."""
+    if chosen is not None:
+        outcomes = [o for o in outcomes if o.grade is chosen.grade]
+    found = [
+        usable(robot, workspace, o.grade, [(c.size, c.cable) for c in o.candidates])
+        for o in outcomes
+        if o.candidates
+    ]
+    return max(found, key=lambda u: max(s.fraction for s in u.sizes), default=None)
 
 
-def _around_the_snap(
-    sizes: tuple[Size, ...], diameter_m: float, attempt: Callable[[Size], Candidate]
-) -> tuple[Candidate, ...]:
-    """Try sizes upward from the one below the optimum, and downward while they hold."""
-    above = [k for k, size in enumerate(sizes) if size.diameter_m >= diameter_m]
-    first = max((above[0] if above else len(sizes)) - 1, 0)
-    tried = [attempt(sizes[first])]
-    down, up = first, first
-    while tried[0].verified and down > 0:
-        down -= 1
-        tried.insert(0, attempt(sizes[down]))
-    while not tried[-1].verified and up < len(sizes) - 1:
-        up += 1
-        tried.append(attempt(sizes[up]))
-    return tuple(tried)
-
-
-def _reason(outcomes: Sequence[GradeOutcome]) -> str:
+def _reason(
+    outcomes: Sequence[GradeOutcome], not_tried: Sequence[NotTried], decides: Objective
+) -> str:
+    if not outcomes and not_tried:
+        return f"no size could be tried: {not_tried[0].reason}"
     if not outcomes:
         return "the catalogue has none of the grades that the study names"
+    if any(c.standing == "not_comparable" for o in outcomes for c in o.candidates):
+        return f"some ropes hold, but the {MEANINGS[decides].word} of none of them is known"
     if all(outcome.outcome == "no_finite_cable" for outcome in outcomes):
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]

@@ -14,7 +14,7 @@ from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out, tension_demand
 from designer.workspace.refine import Demand, Worst, refine, spread_starts
-from designer.workspace.samples import positions_m
+from designer.workspace.samples import places
 
 _STARTS = 4
 
@@ -25,20 +25,23 @@ class Verification:
 
     Parameters
     ----------
-    worst_position_m : array (3,)
-        Where its tension is largest, refined beyond the samples [m].
+    worst_position_m : array (n_coordinates,)
+        Place where its tension is largest, see `designer.space` [m, rad].
     max_tension_N : float
         The largest tension there [N]; inf if the pose cannot be held at all.
     utilisation : float
         Largest over allowable tension; the cable holds up to 1.
     longest_m : array (n_cables,)
         Longest unstrained length that each cable needs [m].
+    is_refined : bool
+        Whether the largest tension was searched for between the samples as well.
     """
 
     worst_position_m: FloatArray
     max_tension_N: float
     utilisation: float
     longest_m: FloatArray
+    is_refined: bool = True
 
     @property
     def holds(self) -> bool:
@@ -50,9 +53,9 @@ def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
     """Solve every sample with this cable, then search for its largest tension between them."""
     longest = np.zeros(robot.n_cables)
 
-    def observed(positions: FloatArray) -> FloatArray:
+    def observed(places: FloatArray) -> FloatArray:
         nonlocal longest
-        statics = solve_sagging(robot, Poses.at(positions), cable)
+        statics = solve_sagging(robot, Poses.at(places), cable)
         left_out = is_left_out(statics, workspace.hangs_below)
         counted = statics.length_m[statics.is_solved & ~left_out]
         longest = np.maximum(longest, counted.max(axis=0, initial=0.0))
@@ -62,7 +65,7 @@ def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
     demand = tension_demand(robot, cable, workspace.hangs_below)
     worst = worst_of(workspace, observed, demand)
     return Verification(
-        worst_position_m=worst.position_m,
+        worst_position_m=worst.place,
         max_tension_N=worst.demand,
         utilisation=worst.demand / cable.allowable_tension_N,
         longest_m=longest,
@@ -76,14 +79,15 @@ def worst_of(
 
     Where every sample is left out, nothing is served: infinite, at no position.
     """
-    kept = np.empty((0, 3))
+    space = workspace.space
+    kept = np.empty((0, space.n_coordinates))
     values = np.empty(0)
-    for positions in positions_m(workspace):
-        pool = np.concatenate([kept, positions])
-        asked = np.concatenate([values, demand(positions)])
-        kept = spread_starts(workspace.region, pool, asked, _STARTS)
+    for some in places(workspace):
+        pool = np.concatenate([kept, some])
+        asked = np.concatenate([values, demand(some)])
+        kept = spread_starts(space, pool, asked, _STARTS)
         at = [int(np.argmin(np.abs(pool - start).sum(axis=1))) for start in kept]
         values = asked[at]
     if len(kept) == 0:
-        return Worst(np.full(3, np.nan), np.inf)
-    return refine(workspace.region, refined_demand, kept)
+        return Worst(np.full(space.n_coordinates, np.nan), np.inf)
+    return refine(space, refined_demand, kept)

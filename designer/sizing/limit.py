@@ -17,6 +17,8 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
     finite cable exists. At or above 1 none does where the taut cable sets the ratio; where it is
     the slack one, pulling it up may still help, which the verdict of the sizing decides.
 
+    With more cables than degrees of freedom it is the least ratio that any internal forces reach.
+
     NaN where that limit was not solved.
     """
     task = Task(material.elastic_compliance_per_m, material.strength_length_m, 0.0)

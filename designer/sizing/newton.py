@@ -44,7 +44,8 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
     """Return the thinnest cable of the family for each pose (...).
 
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
-    cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`.
+    cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
+    cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`.
     """
     task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)
     solution, run = solve_task(robot, poses, task)

@@ -17,6 +17,9 @@ from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless
 
+_LEAST_SHARE = 0.02
+"""Of the largest tension, that each cable starts with: a slack one has no slope to follow."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NlpSizing:
@@ -61,10 +64,10 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
     ------
     ValueError
         If straight cables cannot hold the pose, so that there is no start, or if the robot has
-        pulleys, which the paper's equations do not know.
+        pulleys or a least tension, which the paper's equations do not know.
     """
-    if robot.pulley_radius_m != 0.0:
-        raise ValueError("the reference has no pulleys")
+    if robot.pulley_radius_m != 0.0 or robot.tension_min_N > 0.0:
+        raise ValueError("the reference has no pulleys and no least tension")
     from scipy.optimize import minimize
 
     problem = _Problem.of(robot, pose, material)
@@ -116,7 +119,8 @@ class _Problem:
     def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
         geometry = cable_geometry(robot, pose)
         massless = solve_massless(robot, pose)
-        if not np.all(massless.tension_N > 0.0):
+        largest = float(massless.largest_tension_N)
+        if not largest > 0.0:
             raise ValueError("straight cables cannot hold this pose")
         return cls(
             material,
@@ -124,7 +128,7 @@ class _Problem:
             geometry.drop_m,
             structure_matrix(robot, geometry),
             load_wrench_N(robot, pose),
-            massless.tension_N,
+            np.maximum(massless.tension_N, _LEAST_SHARE * largest),
             geometry.chord_m,
         )
 

@@ -36,8 +36,8 @@ class CableGeometry:
 
 
 def upright_poses(robot: Robot, poses: Poses) -> Poses:
-    """Return the poses in the frame whose z axis is the true vertical."""
-    if not robot.tilt_rad.any():
+    """Return the poses in the upright frame, whose z axis is the true vertical."""
+    if robot.is_upright:
         return poses
     turn = robot.upright
     return Poses(np.asarray(poses.position_m @ turn.T), np.asarray(turn @ poses.rotation))
@@ -45,7 +45,7 @@ def upright_poses(robot: Robot, poses: Poses) -> Poses:
 
 def upright_exit_points_m(robot: Robot) -> FloatArray:
     """Return the exit points in that frame (n_cables, 3) [m]."""
-    if not robot.tilt_rad.any():
+    if robot.is_upright:
         return robot.exit_points_m
     return np.asarray(robot.exit_points_m @ robot.upright.T)
 
@@ -73,7 +73,7 @@ def cable_geometry(
 
 
 def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
-    """Return W_f of eq. (9), (..., degrees of freedom, 2 n_cables).
+    """Return W_f of eq. (9), (..., degrees of freedom, 2 n_cables), one row a balanced direction.
 
     Columns alternate between the horizontal and the vertical force on each cable at the platform;
     the product with them is the wrench that holds the platform against gravity, with opposite sign.
@@ -91,30 +91,32 @@ def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
             columns.append(np.concatenate([direction, moment], axis=-1))
     pairs = np.stack(columns, axis=-2)  # (..., n_cables, 2, dof)
     flat = pairs.reshape(*pairs.shape[:-3], -1, pairs.shape[-1])
-    return np.asarray(np.swapaxes(flat, -1, -2))
+    return np.asarray(np.swapaxes(flat, -1, -2)[..., robot.balance_rows, :])
 
 
 def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None) -> FloatArray:
-    """Return weight and other force on the platform as a wrench (..., dof) [N, N·m].
+    """Return weight and all other load on the platform as a wrench (..., dof) [N, N·m].
 
     Parameters
     ----------
     robot, poses
         The robot and its poses (...).
     force_N : array (..., 3), optional
-        Force on the platform at the origin of the body frame, base frame [N].
+        Force on the platform at the origin of the body frame, base frame, beside weight and the
+        platform's own wrench [N].
 
     Returns
     -------
     array (..., degrees of freedom)
-        About the origin of the body frame, upright frame.
+        About the origin of the body frame, upright frame; one row a balanced direction.
     """
+    shape = poses.position_m.shape
     weight = np.array([0.0, 0.0, -robot.weight_N])
-    other = np.zeros(3) if force_N is None else force_N @ robot.upright.T
-    force = np.broadcast_to(weight + other, poses.position_m.shape)
-    if robot.is_point_mass:
-        return force
+    force, moment = np.split(-robot.pull_N, 2)
+    if force_N is not None:
+        force = force + force_N @ robot.upright.T
     rotation = upright_poses(robot, poses).rotation
     arm = np.einsum("...ij,j->...i", rotation, robot.platform.centre_of_mass_m)
-    moment = np.broadcast_to(np.cross(arm, weight), force.shape)
-    return np.concatenate([force, moment], axis=-1)
+    moment = moment + np.cross(arm, weight)
+    parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
+    return np.asarray(np.concatenate(parts, axis=-1)[..., robot.balance_rows])

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.cable import Cable
+from designer.cable import Cable, Cables
 from designer.physics import catenary
 from designer.robot import Poses, Robot
+from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
@@ -36,8 +37,9 @@ class Statics:
         The poses (...).
     verdict : array (...) of int
         One `Verdict` a pose.
-    weight_N_per_m, axial_stiffness_N : array (..., 1)
-        Weight per unstrained length [N/m] and EA [N] of the cables in each pose.
+    weight_N_per_m, axial_stiffness_N : array (..., 1 or n_cables)
+        Weight per unstrained length [N/m] and EA [N] of the cables in each pose; one for all
+        cables, or each its own.
     length_m : array (..., n_cables)
         Unstrained lengths from the exit points, around pulleys where there are any [m].
     force_x_N, force_z_N : array (..., n_cables)
@@ -86,9 +88,14 @@ class Statics:
         return self._end_tensions_N()[1]
 
     @property
+    def cable_tension_N(self) -> FloatArray:
+        """Largest tension anywhere in each cable (..., n_cables) [N]."""
+        return np.asarray(np.maximum(*self._end_tensions_N()))
+
+    @property
     def largest_tension_N(self) -> FloatArray:
         """Largest tension anywhere in any cable (...) [N]."""
-        return np.asarray(np.maximum(*self._end_tensions_N()).max(axis=-1))
+        return np.asarray(self.cable_tension_N.max(axis=-1))
 
     def closure_residual_m(self) -> FloatArray:
         """Distance between the end of each cable by eqs. (7)-(8) and its attachment point [m]."""
@@ -142,10 +149,15 @@ class MasslessStatics:
 def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
     """Return lengths and tensions of straight cables in poses (...), Riehl et al., section II.A.
 
-    The unknowns are force densities, so that a vertical cable needs no special case.
+    The unknowns are force densities, so that a vertical cable needs no special case. With more
+    cables than degrees of freedom the tensions are those with the smallest largest one, NaN where
+    none hold the pose.
     """
     run = straight_run(robot, poses)
     geometry = cable_geometry(robot, poses, run.exit_points_m)
+    if robot.is_redundant:
+        tension = distribute_evenly(robot, poses).tension_N
+        return MasslessStatics(geometry.chord_m + run.wrap_m, tension)
     matrix = structure_matrix(robot, geometry)
     per_density = (
         matrix[..., 0::2] * geometry.horizontal_distance_m[..., None, :]
@@ -157,9 +169,9 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
 
 
 def solve_sagging(
-    robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
+    robot: Robot, poses: Poses, cable: Cable | Cables, force_N: FloatArray | None = None
 ) -> Statics:
-    """Return the equilibrium of poses (...) with this cable, with sag and elasticity.
+    """Return the equilibrium of poses (...) with these cables, with sag and elasticity.
 
     Solves eqs. (7)-(9) of Riehl et al., ICRA 2010, by the compiled Newton of
     `designer.kernel.square`. A pose that fails is told by its verdict, never by an exception.
@@ -167,20 +179,25 @@ def solve_sagging(
     Parameters
     ----------
     robot, poses, cable
-        The robot, with as many cables as degrees of freedom, its poses and its cables.
+        The robot, with at least as many cables as degrees of freedom, its poses, and its cables:
+        one `Cable` for all, or `Cables`. Of more cables than that the internal forces are those
+        with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
     """
     weight = cable.weight_N_per_m
+    heaviest = float(np.max(weight))
     task = Task(
         kappa_per_m=weight / cable.axial_stiffness_N,
         strength_m=cable.allowable_tension_N / weight,
-        inverse_weight_m_per_N=1.0 / weight,
+        inverse_weight_m_per_N=1.0 / heaviest,
         force_N=force_N,
+        relative_weights=weight / heaviest,
     )
     solution, run = solve_task(robot, poses, task)
-    stiffness = np.where(solution.verdict == Verdict.SOLVED, cable.axial_stiffness_N, np.nan)
-    return statics_of(robot, poses, solution, run, stiffness, force_N)
+    solved = solution.verdict[:, None] == Verdict.SOLVED
+    stiffness = np.where(solved, cable.axial_stiffness_N, np.nan)
+    return statics_of(robot, poses, solution, run, stiffness, force_N, task.relative_weights)
 
 
 def statics_of(
@@ -190,11 +207,15 @@ def statics_of(
     run: PulleyRun,
     axial_stiffness_N: FloatArray,
     force_N: FloatArray | None = None,
+    relative_weights: float | FloatArray = 1.0,
 ) -> Statics:
-    """Give a solution its leading axes back, and its lengths what lies on the pulleys."""
+    """Give a solution its leading axes back, and its lengths what lies on the pulleys.
+
+    EA (n_poses,) is that of every cable, EA (n_poses, 1 or n_cables) that of each.
+    """
     shape = poses.shape
-    weight = solution.weight_N_per_m.reshape(*shape, 1)
-    stiffness = axial_stiffness_N.reshape(*shape, 1)
+    weight = solution.weight_N_per_m.reshape(*shape, 1) * relative_weights
+    stiffness = axial_stiffness_N.reshape(*shape, -1)
     free = solution.length_m.reshape(*shape, -1)
     force_x = solution.force_x_N.reshape(*shape, -1)
     force_z = solution.force_z_N.reshape(*shape, -1)

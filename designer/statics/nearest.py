@@ -9,12 +9,12 @@ sag and elasticity. Good for taut cables; the full answer for redundant robots i
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
 from designer.cable import Cable
-from designer.physics import catenary
 from designer.robot import Poses, Robot
-from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
+from designer.statics.geometry import upright_poses
 from designer.statics.task import straight_run
 
 _SMALLEST_SHARE = 1e-3
@@ -25,6 +25,9 @@ def solve_nearest(
     robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return unstrained lengths [m], upper tensions [N] and horizontal distances [m].
+
+    Lengths and tensions are NaN where a cable would hang so slack that it is many times as long as
+    its chord; no tension falls below a thousandth of the platform's weight.
 
     Parameters
     ----------
@@ -37,32 +40,37 @@ def solve_nearest(
     -------
     three arrays (n_poses, n_cables)
     """
+    from designer.kernel import nearest as kernel
+
     run = straight_run(robot, poses)
-    geometry = cable_geometry(robot, poses, run.exit_points_m)
-    density = _pulling_densities(robot, poses, force_N, run.exit_points_m)
-    X, D = geometry.horizontal_distance_m, geometry.drop_m
-    w, EA = cable.weight_N_per_m, cable.axial_stiffness_N
-    length, force_z = catenary.length_and_force_z(density, X, D, EA, w)
-    upper, _ = catenary.end_tensions_N(length, density * X, force_z, w)
-    return length + run.unstrained(upper / EA).wrap_m, upper, X
-
-
-def _pulling_densities(
-    robot: Robot, poses: Poses, force_N: FloatArray | None, exit_points_m: FloatArray
-) -> FloatArray:
-    """Return force densities (n_poses, n_cables) [N/m]: regularised least squares, kept pulling."""
-    geometry = cable_geometry(robot, poses, exit_points_m)
-    matrix = structure_matrix(robot, geometry)
-    chord = geometry.chord_m[:, None, :]
-    per_tension = (
-        matrix[..., 0::2] * geometry.horizontal_distance_m[:, None, :]
-        - matrix[..., 1::2] * geometry.drop_m[:, None, :]
-    ) / chord
-    wrench = load_wrench_N(robot, poses, force_N)
-    normal = np.einsum("pki,pkj->pij", per_tension, per_tension)
+    upright = upright_poses(robot, poses)
+    pull = robot.pull_N[None]
+    if force_N is not None:
+        pull = pull - np.pad(force_N @ robot.upright.T, ((0, 0), (0, 3)))
     n = robot.n_cables
-    size = np.trace(normal, axis1=1, axis2=2)[:, None, None] / n
-    right = np.einsum("pki,pk->pi", per_tension, wrench)
-    tension = np.linalg.solve(normal + _REGULAR * size * np.eye(n), right[..., None])[..., 0]
-    least = _SMALLEST_SHARE * robot.weight_N
-    return np.asarray(np.maximum(tension, least) / geometry.chord_m)
+    out = np.empty((len(upright.position_m), n, 3))
+    kernel.solve_nearest_poses(
+        _plain(run.exit_points_m).reshape(-1, n, 3),
+        _plain(robot.attachments_m),
+        _plain(pull),
+        _plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        _plain(upright.position_m),
+        _plain(upright.rotation).reshape(-1, 3, 3),
+        _plain(np.broadcast_to(cable.weight_N_per_m, (n,))),
+        _plain(np.broadcast_to(cable.axial_stiffness_N, (n,))),
+        robot.balance_rows,
+        _REGULAR,
+        _SMALLEST_SHARE * robot.weight_N,
+        out,
+    )
+    upper = out[..., kernel.EXIT_TENSION]
+    wrap_m = run.unstrained(upper / cable.axial_stiffness_N).wrap_m
+    return out[..., kernel.LENGTH] + wrap_m, upper, out[..., kernel.DISTANCE]
+
+
+def _plain(values: ArrayLike) -> FloatArray:
+    """Return the one kind of array that the kernel is compiled for: contiguous, read-only."""
+    plain = np.ascontiguousarray(values, dtype=np.float64).view()
+    plain.setflags(write=False)
+    return plain

@@ -52,29 +52,42 @@ class Task:
 
     Parameters
     ----------
-    kappa_per_m, strength_m : float
-        Weight over axial stiffness [1/m], allowable tension over weight [m], of every cable.
+    kappa_per_m, strength_m : float or array (n_cables,)
+        Weight over axial stiffness [1/m], allowable tension over weight [m]; one for all cables, or
+        each its own.
     inverse_weight_m_per_N : float or None
         1 / w; None asks for the lightest cable.
     force_N : array (..., 3) or None
         Force on the platform beside its weight, base frame [N].
+    relative_weights : float or array (n_cables,)
+        Weight of the cables relative to w.
     """
 
-    kappa_per_m: float
-    strength_m: float
+    kappa_per_m: float | FloatArray
+    strength_m: float | FloatArray
     inverse_weight_m_per_N: float | None
     force_N: FloatArray | None = None
+    relative_weights: float | FloatArray = 1.0
 
 
 def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
     """Return how straight cables run over the pulleys in poses (...)."""
-    geometry = cable_geometry(robot, poses)
     if robot.pulley_radius_m == 0.0:
         return PulleyRun(upright_exit_points_m(robot), np.zeros(1))
+    geometry = cable_geometry(robot, poses)
     slope = pulley.straight_slope_rad(
         geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
     )
     return _run(robot, geometry.outward, slope)
+
+
+def flat_poses(poses: Poses) -> Poses:
+    """Return poses (...) with one leading axis."""
+    count = int(np.prod(poses.shape, dtype=np.int64))
+    rotation = poses.rotation
+    if rotation.ndim > 2:
+        rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
+    return Poses(poses.position_m.reshape(count, 3), rotation)
 
 
 def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, PulleyRun]:
@@ -83,11 +96,8 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
     The tangent point follows the slope of the sagging cable at its upper end, which moves by about
     radius over length of what the tangent point moved: a handful of turns reach rounding.
     """
-    count = int(np.prod(poses.shape, dtype=np.int64))
-    rotation = poses.rotation
-    if rotation.ndim > 2:
-        rotation = np.broadcast_to(rotation, (*poses.shape, 3, 3)).reshape(-1, 3, 3)
-    flat = Poses(poses.position_m.reshape(count, 3), rotation)
+    flat = flat_poses(poses)
+    count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
     task = replace(task, force_N=None if force is None else force.reshape(count, 3))
     if robot.pulley_radius_m == 0.0:
@@ -109,7 +119,8 @@ def _solve_over_pulleys(robot: Robot, flat: Poses, task: Task) -> tuple[Solution
         run = _run(robot, geometry.outward, slope)
         solution = _solve(robot, flat, task, run)
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
-            downward = solution.weight_N_per_m[:, None] * solution.length_m - solution.force_z_N
+            weight = solution.weight_N_per_m[:, None] * task.relative_weights
+            downward = weight * solution.length_m - solution.force_z_N
         found = np.arctan2(downward, solution.force_x_N)
         new = np.where(np.isfinite(found), found, straight)
         if np.nanmax(np.abs(new - slope), initial=0.0) <= _STILL_RAD:
@@ -137,7 +148,7 @@ def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun) -> Solution:
         upright_poses(robot, flat),
         run.exit_points_m,
         task.kappa_per_m * each,
-        each,
+        task.relative_weights * each,
         task.strength_m * each,
         task.inverse_weight_m_per_N,
         force,

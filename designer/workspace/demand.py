@@ -1,4 +1,4 @@
-"""What a position asks for: a diameter, or a tension; the objective of the search for the worst."""
+"""What a place asks for: a diameter, or a tension; the objective of the search for the worst."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.cable import Cable, Material
 from designer.robot import Poses, Robot
-from designer.sizing.newton import size_poses
+from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.study import HangsBelow
+from designer.study import HangsBelow, Workspace
 from designer.verdict import Verdict
 from designer.workspace.refine import Demand
 
@@ -25,12 +25,36 @@ def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
     return np.asarray(statics.hangs_below | (statics.verdict == Verdict.NO_FINITE_CABLE))
 
 
+def size_worst(
+    robot: Robot, workspace: Workspace, positions_m: FloatArray, material: Material
+) -> tuple[FloatArray, Sizing]:
+    """Size positions (n, 3), each in the orientation that asks for the most there.
+
+    Returns
+    -------
+    places : array (n, n_coordinates)
+        The positions in that orientation [m, rad].
+    sizing : Sizing
+        What is needed there.
+    """
+    space = workspace.space
+    some = space.places(positions_m)
+    count = space.orientations.count
+    sizing = size_poses(robot, Poses.at(some), material)
+    if count == 1:
+        return some, sizing
+    asked = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
+    worst = asked.reshape(-1, count).argmax(axis=1)
+    some = some[np.arange(len(worst)) * count + worst]
+    return some, size_poses(robot, Poses.at(some), material)
+
+
 def diameter_demand(robot: Robot, material: Material, hangs_below: HangsBelow) -> Demand:
     """Needed diameter [m]; inf where no cable of the family will do."""
 
-    def demand(positions_m: FloatArray) -> FloatArray:
-        sizing = size_poses(robot, Poses.at(positions_m), material)
-        return _demand(sizing.diameter_m, sizing.statics, hangs_below)
+    def demand(places: FloatArray) -> FloatArray:
+        sizing = size_poses(robot, Poses.at(places), material)
+        return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
 
     return demand
 
@@ -38,9 +62,9 @@ def diameter_demand(robot: Robot, material: Material, hangs_below: HangsBelow) -
 def tension_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Demand:
     """Largest tension of a given cable [N]; inf where the pose cannot be held."""
 
-    def demand(positions_m: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(positions_m), cable)
-        return _demand(statics.largest_tension_N, statics, hangs_below)
+    def demand(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cable)
+        return demand_of(statics.largest_tension_N, statics, hangs_below)
 
     return demand
 
@@ -48,13 +72,14 @@ def tension_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Deman
 def massless_demand(robot: Robot) -> Demand:
     """Largest tension of straight weightless cables [N]; does not count where they would push."""
 
-    def demand(positions_m: FloatArray) -> FloatArray:
-        tension = solve_massless(robot, Poses.at(positions_m)).largest_tension_N
+    def demand(places: FloatArray) -> FloatArray:
+        tension = solve_massless(robot, Poses.at(places)).largest_tension_N
         return np.where(np.isnan(tension), -np.inf, tension)
 
     return demand
 
 
-def _demand(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> FloatArray:
+def demand_of(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> FloatArray:
+    """Return values (...) as demands: inf where a pose is not solved, -inf where it is left out."""
     asked = np.where(statics.is_solved, value, np.inf)
     return np.where(is_left_out(statics, hangs_below), -np.inf, asked)

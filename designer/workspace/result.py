@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from designer.arrays import FloatArray
+import numpy as np
+
+from designer.arrays import FloatArray, frozen_array
+from designer.robot import Poses
+from designer.space import turn_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,11 +24,29 @@ class Extreme:
         The cable that it needs [m]; for a given cable, the diameter of that cable.
     max_tension_N : float
         The largest tension there [N].
+    rotation_vector_rad : array (3,)
+        How the platform is turned there [rad].
     """
 
     position_m: FloatArray
     diameter_m: float
     max_tension_N: float
+    rotation_vector_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
+
+    @classmethod
+    def at(cls, place: FloatArray, diameter_m: float, max_tension_N: float) -> Extreme:
+        """Return the extreme at a place (n_coordinates,)."""
+        return cls(place[:3], diameter_m, max_tension_N, turn_of(place))
+
+    @property
+    def place(self) -> FloatArray:
+        """Position and rotation vector in one array (6,) [m, rad]."""
+        return np.concatenate([self.position_m, self.rotation_vector_rad])
+
+    @property
+    def pose(self) -> Poses:
+        """Position and orientation."""
+        return Poses.at(self.place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +98,8 @@ class WorkspaceMap:
     limit_ratio : float
         Stress at infinite section over allowable stress at the worst pose; 1 is the boundary
         beyond which no cable exists. NaN if not feasible.
+    infeasible_rotation_vector_rad : array (3,) or None
+        How the platform is turned in that position [rad].
     """
 
     census: Census
@@ -85,3 +109,11 @@ class WorkspaceMap:
     massless: Extreme | None
     infeasible_example_m: FloatArray | None
     limit_ratio: float
+    infeasible_rotation_vector_rad: FloatArray | None = None
+
+    @property
+    def infeasible_pose(self) -> Poses | None:
+        """The pose without a finite cable, where there is one."""
+        if self.infeasible_example_m is None:
+            return None
+        return Poses.at(self.infeasible_example_m, self.infeasible_rotation_vector_rad)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import PointList, Prism
+from designer.region import PointList, Prism, Rectangle
 from designer.study import Workspace
 
 CHUNK = 2**15
@@ -19,10 +19,28 @@ def positions_m(workspace: Workspace) -> Iterator[FloatArray]:
     region = workspace.region
     if isinstance(region, PointList):
         yield from _split(region.points_m)
+    elif isinstance(region, Rectangle):
+        yield from _in_rectangle(region, workspace)
     elif workspace.sampling == "grid":
         yield from _grid(region, workspace.samples)
     else:
         yield from _sobol(region, workspace.samples, workspace.seed)
+
+
+def places(workspace: Workspace) -> Iterator[FloatArray]:
+    """Yield the sample places in chunks (at most about `CHUNK`, n_coordinates) [m, rad].
+
+    The orientations of a position follow one another in one chunk.
+    """
+    for piece in pieces_m(workspace):
+        yield workspace.space.places(piece)
+
+
+def pieces_m(workspace: Workspace) -> Iterator[FloatArray]:
+    """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m]."""
+    size = max(CHUNK // workspace.orientations.count, 1)
+    for chunk in positions_m(workspace):
+        yield from _split(chunk, size)
 
 
 def sample_count(workspace: Workspace) -> int:
@@ -32,9 +50,9 @@ def sample_count(workspace: Workspace) -> int:
     return workspace.samples
 
 
-def _split(points: FloatArray) -> Iterator[FloatArray]:
-    for start in range(0, len(points), CHUNK):
-        yield points[start : start + CHUNK]
+def _split(points: FloatArray, size: int = CHUNK) -> Iterator[FloatArray]:
+    for start in range(0, len(points), size):
+        yield points[start : start + size]
 
 
 def _sobol(region: Prism, count: int, seed: int) -> Iterator[FloatArray]:
@@ -62,3 +80,19 @@ def _grid(region: Prism, count: int) -> Iterator[FloatArray]:
     for z in axes[2]:
         points = np.column_stack([layer, np.full(len(layer), z)])
         yield from _split(points[region.contains(points)])
+
+
+def _in_rectangle(region: Rectangle, workspace: Workspace) -> Iterator[FloatArray]:
+    if workspace.sampling == "grid":
+        width, height = region.size_m
+        spacing = np.sqrt(width * height / workspace.samples)
+        steps = np.maximum(np.ceil(region.size_m / spacing).astype(int), 1)
+        axes = [np.linspace(0.0, 1.0, count + 1) for count in steps]
+        shares = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        yield from _split(region.at(shares))
+        return
+    from scipy.stats import qmc
+
+    sequence = qmc.Sobol(2, scramble=True, rng=np.random.default_rng(workspace.seed))
+    for start in range(0, workspace.samples, CHUNK):
+        yield region.at(sequence.random(CHUNK)[: workspace.samples - start])

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _COLUMNS = {
     "position": ("axis", "m", "position of the platform, world frame"),
+    "rotation_vector": ("axis", "rad", "the worst orientation there"),
     "diameter": (None, "m", "needed diameter with sag"),
     "max_tension": (None, "N", "largest tension with that diameter"),
     "massless_diameter": (None, "m", "needed diameter with straight weightless cables"),
@@ -64,11 +65,13 @@ class SweepFile:
         self._create("hangs_below", "i1", ("sample",))
         self._file["hangs_below"].long_name = "1 where a cable hangs below the platform"
 
-    def append(self, positions_m: FloatArray, sizing: Sizing) -> None:
+    def append(self, some_places: FloatArray, sizing: Sizing) -> None:
         """Write one chunk behind what is there."""
         statics = sizing.statics
+        turns = some_places[:, 3:] if some_places.shape[1] > 3 else np.zeros_like(some_places)
         values = {
-            "position": positions_m,
+            "position": some_places[:, :3],
+            "rotation_vector": turns,
             "diameter": sizing.diameter_m,
             "max_tension": statics.largest_tension_N,
             "massless_diameter": sizing.massless_diameter_m,
@@ -83,7 +86,7 @@ class SweepFile:
         }
         start = self._file.dimensions["sample"].size
         for name, value in values.items():
-            self._file[name][start : start + len(positions_m)] = value
+            self._file[name][start : start + len(some_places)] = value
 
     def __enter__(self) -> SweepFile:
         return self

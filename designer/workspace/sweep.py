@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +13,14 @@ from designer.arrays import FloatArray
 from designer.cable import Material
 from designer.robot import Poses, Robot
 from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import Sizing, size_poses
+from designer.sizing.newton import Sizing
+from designer.space import turn_of
 from designer.study import Workspace
 from designer.verdict import Verdict
-from designer.workspace.demand import diameter_demand, is_left_out, massless_demand
+from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
 from designer.workspace.refine import refine, spread_starts
 from designer.workspace.result import Census, Extreme, WorkspaceMap
-from designer.workspace.samples import positions_m
+from designer.workspace.samples import pieces_m
 from designer.workspace.store import SweepFile
 
 Progress = Callable[[int], None]
@@ -53,19 +54,22 @@ def map_workspace(
     """
     gathered = _Gathered(workspace)
     if file is None:
-        for positions, sizing in _sweep(robot, workspace, material, progress):
-            gathered.add(positions, sizing)
+        for some, sizing in _sweep(robot, workspace, material, progress):
+            gathered.add(some, sizing)
     else:
         with SweepFile(file, robot.n_cables, attributes or {}) as store:
-            for positions, sizing in _sweep(robot, workspace, material, progress):
-                gathered.add(positions, sizing)
-                store.append(positions, sizing)
+            for some, sizing in _sweep(robot, workspace, material, progress):
+                gathered.add(some, sizing)
+                store.append(some, sizing)
     return _summarise(robot, workspace, material, gathered)
 
 
-def _sweep(robot: Robot, workspace: Workspace, material: Material, progress: Progress) -> Any:
-    for positions in positions_m(workspace):
-        yield positions, size_poses(robot, Poses.at(positions), material)
+def _sweep(
+    robot: Robot, workspace: Workspace, material: Material, progress: Progress
+) -> Iterator[tuple[FloatArray, Sizing]]:
+    """Yield every position in the orientation that asks for the most there."""
+    for positions in pieces_m(workspace):
+        yield size_worst(robot, workspace, positions, material)
         progress(len(positions))
 
 
@@ -79,9 +83,9 @@ class _Gathered:
         self.excluded = 0
         self.best: dict[str, tuple[FloatArray, FloatArray]] = {}
         self.sampled: Extreme | None = None
-        self.infeasible_example_m: FloatArray | None = None
+        self.infeasible_example: FloatArray | None = None
 
-    def add(self, positions: FloatArray, sizing: Sizing) -> None:
+    def add(self, some: FloatArray, sizing: Sizing) -> None:
         statics = sizing.statics
         left_out = is_left_out(statics, self._workspace.hangs_below)
         self.verdicts.update(statics.verdict.tolist())
@@ -90,56 +94,58 @@ class _Gathered:
         counts = statics.is_solved & ~left_out
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
         massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
-        self._keep("sagging", positions, diameter)
-        self._keep("massless", positions, massless)
-        self._keep_worst(positions, diameter, statics.largest_tension_N)
+        self._keep("sagging", some, diameter)
+        self._keep("massless", some, massless)
+        self._keep_worst(some, diameter, statics.largest_tension_N)
         served = statics.is_solved | left_out
-        if self.infeasible_example_m is None and not served.all():
-            self.infeasible_example_m = positions[int(np.argmin(served))]
+        if self.infeasible_example is None and not served.all():
+            self.infeasible_example = some[int(np.argmin(served))]
 
     def census(self) -> Census:
         statuses = {v.label: self.verdicts.get(int(v), 0) for v in Verdict}
         return Census(sum(statuses.values()), statuses, self.hangs_below, self.excluded)
 
-    def _keep(self, name: str, positions: FloatArray, demand: FloatArray) -> None:
+    def _keep(self, name: str, some: FloatArray, demand: FloatArray) -> None:
         if name in self.best:
-            positions = np.concatenate([self.best[name][0], positions])
+            some = np.concatenate([self.best[name][0], some])
             demand = np.concatenate([self.best[name][1], demand])
-        starts = spread_starts(self._workspace.region, positions, demand, _STARTS)
-        at = [int(np.argmin(np.abs(positions - start).sum(axis=1))) for start in starts]
-        self.best[name] = (positions[at], demand[at])
+        starts = spread_starts(self._workspace.space, some, demand, _STARTS)
+        at = [int(np.argmin(np.abs(some - start).sum(axis=1))) for start in starts]
+        self.best[name] = (some[at], demand[at])
 
-    def _keep_worst(self, positions: FloatArray, diameter: FloatArray, tension: FloatArray) -> None:
+    def _keep_worst(self, some: FloatArray, diameter: FloatArray, tension: FloatArray) -> None:
         at = int(np.argmax(diameter))
         if not np.isneginf(diameter[at]) and (
             self.sampled is None or diameter[at] > self.sampled.diameter_m
         ):
-            self.sampled = Extreme(positions[at], float(diameter[at]), float(tension[at]))
+            self.sampled = Extreme.at(some[at], float(diameter[at]), float(tension[at]))
 
 
 def _summarise(
     robot: Robot, workspace: Workspace, material: Material, gathered: _Gathered
 ) -> WorkspaceMap:
     census = gathered.census()
-    example = gathered.infeasible_example_m
+    example = gathered.infeasible_example
     sagging: Extreme | None = None
     ratio = np.nan
     if example is None and gathered.sampled is not None:
         demand = diameter_demand(robot, material, workspace.hangs_below)
-        worst = refine(workspace.region, demand, gathered.best["sagging"][0])
+        worst = refine(workspace.space, demand, gathered.best["sagging"][0])
         if np.isfinite(worst.demand):
-            sagging = _extreme(worst.position_m, worst.demand, material)
-            ratio = float(limit_ratio(robot, Poses.at(worst.position_m), material))
+            tension = material.cable(worst.demand).allowable_tension_N
+            sagging = Extreme.at(worst.place, worst.demand, tension)
+            ratio = float(limit_ratio(robot, Poses.at(worst.place), material))
         else:
-            example = worst.position_m
+            example = worst.place
     return WorkspaceMap(
         census=census,
         is_feasible=sagging is not None,
         sagging=sagging,
         sampled=gathered.sampled,
         massless=_worst_massless(robot, workspace, material, gathered.best["massless"][0]),
-        infeasible_example_m=example,
+        infeasible_example_m=None if example is None else example[:3],
         limit_ratio=ratio,
+        infeasible_rotation_vector_rad=None if example is None else turn_of(example),
     )
 
 
@@ -148,9 +154,5 @@ def _worst_massless(
 ) -> Extreme | None:
     if len(starts) == 0:
         return None
-    worst = refine(workspace.region, massless_demand(robot), starts)
-    return Extreme(worst.position_m, material.diameter_for_tension_m(worst.demand), worst.demand)
-
-
-def _extreme(position_m: FloatArray, diameter_m: float, material: Material) -> Extreme:
-    return Extreme(position_m, diameter_m, material.cable(diameter_m).allowable_tension_N)
+    worst = refine(workspace.space, massless_demand(robot), starts)
+    return Extreme.at(worst.place, material.diameter_for_tension_m(worst.demand), worst.demand)

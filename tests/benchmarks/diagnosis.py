@@ -1,12 +1,12 @@
 """How well the diagnosis names an effect that nobody declared, on simulated twins.
 
     python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,hall6]
-                                         [--sizes 2,5,10,30] [--unlisted]
+                                         [--sizes 2,5,10,30] [--only singles,nothing,pairs,unlisted]
 
 The twins come from physics that shares nothing with the product (`tests/twins`). Prints, for each
 size over noise, how often the effect was found first, found among the rivals of a finding, missed,
-or replaced by a wrong one; then false findings where there is nothing; then effects that are not
-in the list.
+or replaced by a wrong one; then false findings where there is nothing; then pairs of effects; then
+effects that are not in the list, which must come out as unexplained, with nothing named.
 """
 
 from __future__ import annotations
@@ -15,8 +15,11 @@ import argparse
 import os
 import sys
 import tempfile
+import time
 from collections import Counter
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -40,10 +43,33 @@ PAIRS = (
 )  # fmt: skip
 SIZES = (2.0, 5.0, 10.0, 30.0)
 MOVING = ("clock_offset",)
+PARTS = ("singles", "nothing", "pairs", "unlisted")
+
+Job = tuple[str, tuple[str, ...], float, int]
+"""Robot, effects, size over noise, seed."""
 
 
-def verdict_on(effects: tuple[str, ...], dataset: DataSet) -> tuple[str, tuple[str, ...], bool]:
-    """Return how the diagnosis did, what it found, and whether it left structure unexplained."""
+@dataclass(frozen=True)
+class Row:
+    """A job, how the diagnosis did, what it found, and what structure that leaves goes with."""
+
+    job: Job
+    outcome: str
+    named: tuple[str, ...] = ()
+    carrier: str | None = None
+    seconds: float = 0.0
+
+    def __str__(self) -> str:
+        robot, effects, size, seed = self.job
+        left = f"; left: {self.carrier}" if self.carrier else ""
+        return (
+            f"  {robot} {' + '.join(effects) or 'nothing'} at {size:g}, seed {seed}: "
+            f"{self.outcome}: {', '.join(self.named) or 'none'}{left}"
+        )
+
+
+def verdict_on(job: Job, dataset: DataSet) -> Row:
+    """Diagnose a data set and compare with what is in it."""
     from designer.config import read_study
     from designer.diagnosis.case import case_of
     from designer.diagnosis.diagnose import diagnose
@@ -54,16 +80,21 @@ def verdict_on(effects: tuple[str, ...], dataset: DataSet) -> tuple[str, tuple[s
         study = read_study(Path(folder) / "config.yaml")
         assert study.measurements is not None
         measured = read_measured(study)
+    start = time.perf_counter()
     found = diagnose(case_of(study, study.measurements, measured))
+    took = time.perf_counter() - start
     named = tuple(finding.effect.key for finding in found.findings)
-    return _score(effects, found), named, found.is_unexplained
+    carrier = found.structure_after.carriers[0].name if found.is_unexplained else None
+    return Row(job, _score(job[1], found), named, carrier, took)
 
 
 def _score(effects: tuple[str, ...], found) -> str:
     ids = [finding.effect.id for finding in found.findings]
     rivals = {r.split(" of ")[0] for finding in found.findings for r in finding.rivals}
     if not effects:
-        return "false" if ids else "nothing"
+        return "false" if ids or found.is_unexplained else "nothing"
+    if effects[0] in UNLISTED:
+        return ("in part" if ids else "unexplained") if found.is_unexplained else "bent"
     if set(ids) == set(effects):
         return "first"
     if set(effects) <= {*ids, *rivals} and len(ids) <= len(effects):
@@ -73,7 +104,7 @@ def _score(effects: tuple[str, ...], found) -> str:
     return "wrong" if ids else "missed"
 
 
-def _one(job: tuple[str, tuple[str, ...], float, int]) -> tuple[object, ...]:
+def _one(job: Job) -> Row:
     name, effects, over_noise, seed = job
     robot = ROBOTS[name]
     settled = not any(effect in MOVING for effect in effects)
@@ -84,15 +115,49 @@ def _one(job: tuple[str, tuple[str, ...], float, int]) -> tuple[object, ...]:
             )
             for effect in effects
         }
-    except (ValueError, KeyError) as error:
-        return (*job, "impossible", (str(error),), False)
-    return (*job, *verdict_on(effects, make(robot, sized, seed=seed, settled=settled)))
+    except (ValueError, KeyError):
+        return Row(job, "impossible")
+    return verdict_on(job, make(robot, sized, seed=seed, settled=settled))
 
 
-def run(jobs: list[tuple[str, tuple[str, ...], float, int]]) -> list[tuple[object, ...]]:
+def run(jobs: list[Job]) -> list[Row]:
     """Run the jobs on all processors."""
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(_one, jobs))
+
+
+def singles(names: list[str], sizes: list[float], seeds: range) -> None:
+    """Print a table of outcomes for each size, and what went wrong."""
+    rows = run(_jobs(names, [(effect,) for effect in LISTED], sizes, seeds))
+    print("effect over noise   " + "  ".join(f"{s:>6g}" for s in sizes))
+    for outcome in ("first", "rival", "with others", "partly", "missed", "wrong", "impossible"):
+        counts = Counter(row.job[2] for row in rows if row.outcome == outcome)
+        print(f"{outcome:18}  " + "  ".join(f"{counts[s]:6d}" for s in sizes))
+    _print_others(rows, "first")
+
+
+def nothing(names: list[str], count: int) -> None:
+    """Print how often something is found where there is nothing."""
+    rows = run([(names[k % len(names)], (), 0.0, k) for k in range(count)])
+    false = sum(row.outcome == "false" for row in rows)
+    print(f"nothing there: {false} of {len(rows)} with a false finding or structure")
+    _print_others(rows, "nothing")
+
+
+def several(title: str, combinations: list[Job], right: str) -> None:
+    """Print outcomes of pairs, or of effects that are not in the list."""
+    rows = run(combinations)
+    print(f"{title}: {dict(Counter(row.outcome for row in rows))}")
+    _print_others(rows, right)
+
+
+def _print_others(rows: list[Row], right: str) -> None:
+    for row in rows:
+        if row.outcome not in (right, "impossible") or row.job[1][:1] in [(e,) for e in UNLISTED]:
+            print(row)
+    slowest = max(rows, key=lambda row: row.seconds)
+    mean = sum(row.seconds for row in rows) / len(rows)
+    print(f"  {mean:.1f} s on average, at most {slowest.seconds:.0f} s:{slowest}", flush=True)
 
 
 def main() -> None:
@@ -101,35 +166,26 @@ def main() -> None:
     parser.add_argument("--nothing", type=int, default=200)
     parser.add_argument("--robots", default="yard3,fast3,hall6")
     parser.add_argument("--sizes", default=",".join(map(str, SIZES)))
-    parser.add_argument("--unlisted", action="store_true", help="minutes more")
+    parser.add_argument("--only", default=",".join(PARTS), help="parts of the table")
     arguments = parser.parse_args()
-    names = arguments.robots.split(",")
+    names, parts = arguments.robots.split(","), arguments.only.split(",")
     sizes = [float(size) for size in arguments.sizes.split(",")]
     seeds = range(arguments.seeds)
-    jobs = [(n, (e,), s, k) for n in names for e in LISTED for s in sizes for k in seeds]
-    rows = run(jobs)
-    print("effect over noise   " + "  ".join(f"{s:>6g}" for s in sizes))
-    for outcome in ("first", "rival", "with others", "partly", "missed", "wrong", "impossible"):
-        counts = Counter(row[2] for row in rows if row[4] == outcome)
-        print(f"{outcome:18}  " + "  ".join(f"{counts[s]:6d}" for s in sizes))
-    for row in rows:
-        if row[4] not in ("first", "impossible"):
-            print(f"  {row[0]} {row[1][0]} at {row[2]:g}: {row[4]}: {', '.join(row[5]) or 'none'}")
-    blank = run([(names[k % len(names)], (), 0.0, k) for k in range(arguments.nothing)])
-    false = sum(row[4] == "false" or bool(row[6]) for row in blank)
-    print(f"nothing there: {false} of {len(blank)} with a false finding or structure")
-    pairs = run([(n, pair, 10.0, k) for n in names for pair in PAIRS for k in seeds])
-    print(f"pairs at 10: {dict(Counter(str(row[4]) for row in pairs))}")
-    for row in pairs:
-        if row[4] not in ("first", "impossible"):
-            print(f"  {row[0]} {' + '.join(row[1])}: {row[4]}: {', '.join(row[5]) or 'none'}")
-    if not arguments.unlisted:
-        return
-    other = [(n, (e,), s, k) for n in names for e in UNLISTED for s in (10.0, 30.0) for k in seeds]
-    for row in run(other):
-        told = "unexplained" if row[6] else "explained"
-        named = ", ".join(row[5]) or "none"
-        print(f"  not in the list: {row[0]} {row[1][0]} at {row[2]:g}: {told}: {named}")
+    if "singles" in parts:
+        singles(names, sizes, seeds)
+    if "nothing" in parts:
+        nothing(names, arguments.nothing)
+    if "pairs" in parts:
+        several("pairs at 10", _jobs(names, PAIRS, (10.0,), seeds), "first")
+    if "unlisted" in parts:
+        one = [(effect,) for effect in UNLISTED]
+        several("not in the list", _jobs(names, one, (10.0, 30.0), seeds), "unexplained")
+
+
+def _jobs(
+    names: list[str], effects: Iterable[tuple[str, ...]], sizes: Iterable[float], seeds: range
+) -> list[Job]:
+    return [(n, e, s, k) for n in names for e in effects for s in sizes for k in seeds]
 
 
 if __name__ == "__main__":

@@ -8,6 +8,8 @@ from grade_samples import GRADE_TEXT, write_grade
 
 from designer.catalogue import files
 from designer.catalogue.files import grade_files, read_grade, read_grades
+from designer.catalogue.grade import ComputedFigure
+from designer.catalogue.stiffness import RelativeStiffness
 from designer.errors import InputError
 
 
@@ -49,6 +51,45 @@ def test_optional_parts_are_read(tmp_path):
     assert grade.notes == ("one", "two lines")
 
 
+def test_material_limits_prices_and_computed_columns_are_read(tmp_path):
+    text = GRADE_TEXT.replace("trust: A", "trust: A\nmaterial: stainless steel\ncurrency: EUR")
+    text = text.replace("0.137}", "0.137, price_per_m: 4.2}")
+    extra = (
+        "limits: {temperature_C: [-40, 80], creep: none, source: a sheet}\n"
+        "computed:\n  linear_mass: a rule of thumb\n"
+    )
+    grade = read_grade(write_grade(tmp_path / "acme.yaml", text + extra))
+
+    assert grade.material == "stainless steel"
+    assert (grade.currency, grade.sizes[0].price_per_m, grade.sizes[1].price_per_m) == (
+        "EUR",
+        None,
+        4.2,
+    )
+    assert grade.limits is not None
+    assert (grade.limits.temperature_C, grade.limits.creep) == ((-40.0, 80.0), "none")
+    assert grade.computed == (ComputedFigure("linear_mass", "a rule of thumb"),)
+
+
+def test_a_fibre_rope_has_one_stiffness_or_a_table_of_it(tmp_path):
+    head, tail = GRADE_TEXT.split("modulus:")
+    rest = tail[tail.index("units:") :]
+    about = "basis: printed, uncertainty: 0.1, source: a sheet"
+    one, table = (
+        read_grade(
+            write_grade(tmp_path / "acme.yaml", f"{head}stiffness: {{{ratio}, {about}}}\n{rest}")
+        )
+        for ratio in (
+            "ea_over_breaking_load: 56, at_load_fraction: 0.2",
+            "by_load_fraction: [[0.1, 40], [0.3, 60]]",
+        )
+    )
+
+    assert one.modulus is None
+    assert one.stiffness == RelativeStiffness((56.0,), (0.2,), "printed", "a sheet", 0.1)
+    assert table.stiffness == RelativeStiffness((40.0, 60.0), (0.1, 0.3), "printed", "a sheet", 0.1)
+
+
 def test_a_figure_may_carry_its_own_unit(tmp_path):
     text = GRADE_TEXT.replace("diameter:  6", "diameter: 0.6 cm").replace("25.0", "25000 N")
     size = read_grade(write_grade(tmp_path / "acme.yaml", text)).sizes[1]
@@ -70,12 +111,12 @@ def test_without_declared_units_bare_numbers_are_si(tmp_path):
     ("old", "new", "line", "field", "words"),
     [
         # mass in another unit than declared: lb/ft printed, kg/m declared
-        ("0.244", "0.164", 21, "sizes[2].linear_mass", "times the median"),
-        ("0.244", "0.363", 21, "sizes[2].linear_mass", "times the median"),
+        ("0.244", "0.164", 21, "sizes[2].linear_mass", "the neighbouring sizes"),
+        ("0.244", "0.363", 21, "sizes[2].linear_mass", "the neighbouring sizes"),
         ("linear_mass: kg/m}", "linear_mass: lb}", 17, "units.linear_mass", "does not fit"),
         ("linear_mass: kg/m}", "linear_mass: g/mm^2}", 17, "units.linear_mass", "does not fit"),
         ("linear_mass: kg/m}", "linear_mass: t/m}", 18, "sizes", "over the nominal circle"),
-        ("43.9", "9.87", 21, "sizes[2].minimum_breaking_load", "times the median"),
+        ("43.9", "9.87", 21, "sizes[2].minimum_breaking_load", "% below"),
         ("43.9", "43.9 kg", 21, "sizes[2].minimum_breaking_load", "has the unit"),
         ("43.9", "-43.9", 21, "sizes[2].minimum_breaking_load", "out of range"),
         ("43.9", "much", 21, "sizes[2].minimum_breaking_load", "is not a number"),
@@ -157,6 +198,16 @@ def test_a_metallic_area_is_checked_against_the_circle(tmp_path):
 
     assert fault.field == "sizes[2].metallic_area"
     assert "of the nominal circle" in fault.problem
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("", "(expected a grade,"), ("- 1\n", "(expected fields such as 'id: …')")],
+)
+def test_a_file_that_holds_no_grade_is_not_called_a_study(tmp_path, text, expected):
+    (fault,) = _faults(tmp_path / "rope.yaml", text)
+    assert expected in str(fault)
+    assert "study" not in str(fault)
 
 
 def test_a_folder_gives_all_its_grades_and_the_faults_of_the_others(tmp_path):

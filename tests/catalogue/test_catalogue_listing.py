@@ -3,14 +3,23 @@ from __future__ import annotations
 import pytest
 from grade_samples import GRADE_TEXT, write_grade
 
-from designer.catalogue.listing import check_path, facts, list_rows, size_rows
+from designer.catalogue.listing import (
+    Wanted,
+    check_path,
+    facts,
+    list_rows,
+    materials,
+    size_rows,
+    split_nominal,
+    summary,
+)
 from designer.catalogue.registry import load_catalogue
 
 
 def test_each_grade_is_one_row_with_its_ranges(tmp_path):
     catalogue = load_catalogue([write_grade(tmp_path / "acme.yaml")])
 
-    rows = {row.id: row for row in list_rows(catalogue)}
+    rows = {row.id: row for row in list_rows(catalogue.grades)}
     row = rows["acme-7x19"]
 
     assert len(rows) == len(catalogue.grades)
@@ -37,7 +46,7 @@ def test_facts_name_the_lender_of_a_borrowed_figure_and_the_gaps():
     galvanised = dict(facts(load_catalogue().grade("unirope-7x19-galvanised")))
     stainless = dict(facts(load_catalogue().grade("unirope-6x19-iwrc-stainless-316")))
 
-    assert "62.7 GPa ± 15% on the nominal circle, borrowed: Strand Core" in galvanised["modulus"]
+    assert "62.7 GPa on the nominal circle, ±15%, borrowed: Strand Core" in galvanised["modulus"]
     assert galvanised["wire grade"] == "not given"
     assert galvanised["came in by"] == "builtin (unirope-7x19-galvanised.yaml)"
     assert stainless["thermal expansion"] == "not given"
@@ -61,3 +70,63 @@ def test_checking_a_folder_without_grades_does_not_pass(tmp_path):
     (fault,) = check_path(tmp_path)
 
     assert "no grade file" in fault.problem
+
+
+@pytest.mark.parametrize(
+    ("wanted", "some", "none"),
+    [
+        (Wanted(construction="7X19"), "lg-7x19-wsc-galvanised-2070", "unirope-19x7-eips"),
+        (Wanted(construction="9x7"), None, "unirope-19x7-eips"),
+        (Wanted(construction="6x36ws"), "unirope-6x36-iwrc-1960", "unirope-8x36-iwrc-1960"),
+        (Wanted(construction="braid"), "yale-ultrex-hmpe", "superline-hmpe"),
+        (Wanted(material="hmpe"), "superline-hmpe", "yale-pobon-pbo"),
+        (Wanted(material="steel"), "gost-6x19s-iwrc-1960", "unirope-7x19-stainless-302-304"),
+        (Wanted(maker="robline"), "robline-rapallo-polyester", "yale-yalon-nylon"),
+        (Wanted(diameter_m=0.112), "superline-hmpe", "unirope-7x19-galvanised"),
+    ],
+)
+def test_the_list_can_be_narrowed(wanted, some, none):
+    found = {grade.id for grade in wanted.among(load_catalogue().grades)}
+
+    assert some is None or some in found
+    assert none not in found
+
+
+def test_a_wanted_diameter_keeps_the_sizes_that_have_it():
+    grades = Wanted(construction="7x19", diameter_m=0.0032).among(load_catalogue().grades)
+
+    sizes = {grade.id: [size.id for size in grade.sizes] for grade in grades}
+    assert sizes == {
+        "lg-7x19-wsc-galvanised-2070": ["3.2 mm"],
+        "unirope-7x19-galvanised": ["1/8 in"],
+        "unirope-7x19-stainless-302-304": ["1/8 in"],
+    }
+
+
+def test_facts_tell_what_is_not_the_source_s_own():
+    catalogue = load_catalogue()
+    wire = dict(facts(catalogue.grade("unirope-python-power9-v-1960")))
+    fibre = dict(facts(catalogue.grade("superline-hmpe")))
+    nominal = dict(facts(catalogue.grade("en12385-6x36ws-iwrc-1960")))
+
+    assert wire["borrowed"] == "modulus, thermal expansion"
+    assert wire["computed"] == "area factor"
+    assert "1.10 times the mass printed" in wire["computed linear mass"]
+    assert fibre["stiffness"].startswith("EA is 10.5, 28.6, 30.8, 30.8, 33.3 times the breaking")
+    assert "at 0.1, 0.3, 0.5, 0.7, 0.9 of it, ±50%, computed" in fibre["stiffness"]
+    assert fibre["creep"].startswith("high;")
+    assert fibre["doubtful sizes"] == "120 mm"
+    assert "leaves it out" in nominal["nominal"]
+    assert "nominal" not in wire
+
+
+def test_products_and_nominal_grades_are_told_apart_and_counted():
+    catalogue = load_catalogue()
+    products, nominal = split_nominal(catalogue.grades)
+
+    assert {grade.is_nominal for grade in nominal} == {True}
+    assert {grade.is_nominal for grade in products} == {False}
+    assert summary(catalogue).startswith(
+        f"{len(products)} grades of products and {len(nominal)} nominal ones from "
+    )
+    assert {"steel", "HMPE", "PBO"} <= set(materials(products))

@@ -11,8 +11,7 @@ import pytest
 from designer.arrays import frozen_array
 from designer.cable import Cable
 from designer.config.effects import read_effects
-from designer.effect_names import EFFECTS
-from designer.effects.registry import all_effects
+from designer.effects.registry import SHIPPED
 from designer.errors import Fault
 from designer.machine import Machine
 from designer.robot import Platform, Robot
@@ -20,6 +19,7 @@ from designer.study import DeclaredEffect, Entry, Study
 
 FaultsOf = Callable[[str], list[Fault]]
 StudyOf = Callable[[str], Study]
+EFFECTS = SHIPPED.names
 
 
 def effects(text: str) -> str:
@@ -66,7 +66,7 @@ def test_every_effect_can_be_declared() -> None:
         given = {one.name: 1.5 for one in effect.parameters_for(4)}
         if effect.takes_cable:
             given["cable"] = 4
-        found = read_effects({effect.id: dict(given)}, 4)
+        found = read_effects({effect.id: dict(given)}, 4, EFFECTS)
         assert not found.refusals
         ((place, declared),) = found.effects
         assert place == ("effects", effect.id)
@@ -88,7 +88,7 @@ def test_entries_show_effects_as_given_and_in_SI(valid: str, study_of: StudyOf) 
 # what the section holds, and the fault: field, problem, expected
 MISTAKES = [
     ("creap: {}", "creap", "unknown effect 'creap'", "did you mean 'creep'?"),
-    ("pulley: {}", "pulley", "unknown effect", "one of pulley_radius, thermal_expansion"),
+    ("pulley: {}", "pulley", "unknown effect", "one of anchor_offset, base_tilt"),
     ("Creep: {}", "Creep", "unknown effect", "did you mean 'creep'?"),
     ("pulley_radius: 0.1", "pulley_radius", "0.1 is not a mapping", "a mapping with radius_m"),
     ("pulley_radius:", "pulley_radius", "an empty value is not", "a mapping with radius_m"),
@@ -165,7 +165,7 @@ def test_names_carry_the_unit_that_a_bare_number_has() -> None:
 def test_the_names_are_those_of_the_effects_in_the_model() -> None:
     body = Platform(100.0, frozen_array(np.eye(3)))
     machine = Machine(Robot(frozen_array(9.0 * np.eye(3)), body), Cable(0.01, 0.1, 1e6, 1e4))
-    built = {(one.id, one.cable is not None): one for one in all_effects(machine)}
+    built = {(one.id, one.cable is not None): one for one in SHIPPED.of(machine)}
     assert set(built) == {(name.id, name.takes_cable) for name in EFFECTS.values()}
     for (effect_id, _), effect in built.items():
         known = EFFECTS[effect_id].parameters_for(3)

@@ -48,6 +48,9 @@ def test_values_are_SI(valid: str, study_of: StudyOf) -> None:
     assert study.selection is not None
     assert study.selection.grades is None
     assert study.selection.safety_factor == 4.0
+    assert study.selection.objectives == ("mass", "drum_diameter", "max_tension")
+    assert study.selection.termination_efficiency == 1.0
+    assert study.selection.sheave_diameter_m is None
     assert study.measurements is None
 
 
@@ -138,11 +141,19 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("robot.platform.mass", "180 kg", "180 kg"),
         Entry("robot.platform.attachments", "default", "none"),
         Entry("robot.platform.centre_of_mass", "default", "[0, 0, 0] m"),
+        Entry("robot.platform.hull", "default", "none"),
+        Entry("robot.platform.wrench.force", "default", "[0, 0, 0] N"),
+        Entry("robot.platform.wrench.moment", "default", "[0, 0, 0] N*m"),
+        Entry("robot.gravity", "default", "[0, 0, -1]"),
+        Entry("robot.planar", "default", "false"),
+        Entry("robot.tension_min", "default", "0 N"),
         Entry("cable.density", "5290 kg/m^3", "5290 kg/m^3"),
         Entry("cable.youngs_modulus", "62.7 GPa", "6.27e10 Pa"),
         Entry("cable.allowable_stress", "198 MPa", "1.98e8 Pa"),
         Entry("pose.position", "[15, 9, 4]", "[15, 9, 4] m"),
         Entry("pose.rotation_vector", "default", "[0, 0, 0] rad"),
+        Entry("pose.quaternion", "default", "none"),
+        Entry("pose.euler", "default", "none"),
         Entry("workspace.region.prism", "anchors", "anchors"),
         Entry("workspace.region.inset", "3 m", "3 m"),
         Entry("workspace.region.z", "[1, 8]", "[1, 8] m"),
@@ -150,8 +161,17 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.sampling", "default", "low_discrepancy"),
         Entry("workspace.seed", "default", "0"),
         Entry("workspace.hangs_below", "default", "include"),
+        Entry("workspace.clearance", "default", "none"),
+        Entry("workspace.orientation", "default", "none"),
+        Entry("workspace.orientations", "default", "none"),
+        Entry("workspace.orientation_range", "default", "none"),
         Entry("selection.grades", "default", "all"),
         Entry("selection.safety_factor", "4", "4"),
+        Entry("selection.objectives", "default", "[mass, drum_diameter, max_tension]"),
+        Entry("selection.termination_efficiency", "default", "1"),
+        Entry("selection.sheave_diameter", "default", "none"),
+        Entry("selection.groups", "default", "none"),
+        Entry("selection.max_distinct_products", "default", "none"),
         Entry("catalogues", "default", "none"),
         Entry("measurements", "default", "none"),
         Entry("effects", "default", "none"),
@@ -213,12 +233,18 @@ def _with_options(text: str) -> str:
 
 def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     text = _with_options(example_file("fast").read_text(encoding="utf-8"))
-    for_a_body = re.compile(r"(?m)^ *(attachments|centre_of_mass):.*\n")
-    assert len(for_a_body.findall(text)) == 2
+    choices = re.compile(r"(?m)^ *(planar|orientation|orientations|orientation_range):.*\n")
+    assert len(choices.findall(text)) == 4
+    text = choices.sub("", text)
+    for_a_body = re.compile(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n")
+    assert len(for_a_body.findall(text)) == 4
     study = study_of(for_a_body.sub("", text))
     assert study.workspace is not None
     assert study.workspace.sampling == "grid"
     assert study.workspace.hangs_below == "exclude"
+    assert study.workspace.clearance_m == pytest.approx(0.1)
+    assert study.robot.tension_min_N == 500.0
+    assert study.robot.is_upright
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)
     assert len(study.measurements.columns) == 4

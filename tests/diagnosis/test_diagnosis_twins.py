@@ -134,11 +134,11 @@ def test_outliers_are_shown_and_do_little_harm(tmp_path) -> None:
     assert found.findings[0].parameters["offset_kg"].value == pytest.approx(true, rel=0.05)
 
 
-def test_lengths_in_millimetres_are_told_by_their_scale(tmp_path) -> None:
+def test_poses_that_no_cables_can_hold_are_refused(tmp_path) -> None:
     case = case_in(study_of(make(YARD3), tmp_path))
-    scaled = replace(case.measured, length_m=1e3 * case.measured.length_m)
-    with pytest.raises(InputError, match="millimetres"):
-        diagnose(replace(case, measured=scaled))
+    high = case.measured.poses.position_m + np.array([0.0, 0.0, 40.0])
+    with pytest.raises(InputError, match="can hold 0 of 120 poses"):
+        diagnose(replace(case, measured=replace(case.measured, poses=Poses.at(high))))
 
 
 def test_effects_without_their_columns_are_skipped_and_said(tmp_path) -> None:

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from report_cases import CASES, DEFAULTS, FAST
 
-from designer.analysis import Advance, Analysis, analyse
+from designer.analysis import Analysis, analyse
 from designer.catalogue.registry import load_catalogue
 from designer.config import read_study
+from designer.progress import Advance
 
 
 class Silent:

@@ -11,21 +11,24 @@ import numpy as np
 import pytest
 
 from designer.analysis import Provenance
+from designer.arrays import frozen_array
 from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.result import Choice, Diagnosis, Proposal, Withdrawn
 from designer.effects.effect import Setting
-from designer.effects.registry import all_effects
+from designer.effects.registry import SHIPPED
 from designer.measured.read import read_measured
 from designer.report.diagnosis import (
     DiagnosisContext,
     build_diagnosis_context,
-    render_diagnosis_html,
     write_diagnosis,
 )
 from designer.report.diagnosis_drawings import draw
+from designer.report.diagnosis_sections.design import design_section
+from designer.report.diagnosis_sections.search import search_section
+from designer.report.render import DIAGNOSIS, render_html
 
 CONFIG = """
 name: {name}
@@ -66,7 +69,7 @@ def diagnosed(folder: Path, kind: str, name: str) -> Diagnosis:
     assert study.measurements is not None
     write(np.full((N_ROWS, 3), 20.0), np.full((N_ROWS, 3), 1000.0))
     case = case_of(study, study.measurements, read_measured(study))
-    pulley = next(e for e in all_effects(case.machine) if e.id == "pulley_radius")
+    pulley = next(e for e in SHIPPED.of(case.machine) if e.id == "pulley_radius")
     settings = [Setting(pulley, {"radius_m": RADIUS_M})] if kind == "pulley" else []
     readings = Predictor(case.machine, case.measured)(settings)
     tension = readings.tension_N + rng.normal(scale=4.0, size=(N_ROWS, 3))
@@ -95,7 +98,7 @@ def context_of(diagnosis: Diagnosis) -> DiagnosisContext:
 
 @pytest.fixture(scope="module")
 def pages(diagnoses: dict[str, Diagnosis]) -> Callable[[str], str]:
-    made = {kind: render_diagnosis_html(context_of(d)) for kind, d in diagnoses.items()}
+    made = {kind: render_html(context_of(d), DIAGNOSIS) for kind, d in diagnoses.items()}
     return made.__getitem__
 
 
@@ -173,12 +176,12 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     )
     context = context_of(doubtful)
     assert context.first_page.verdict.tone == "doubt"
-    text = visible(render_diagnosis_html(context))
+    text = visible(render_html(context, DIAGNOSIS))
     assert "cannot tell pulley_radius from drum_scale" in text
     assert "(9.00, 5.00, 2.00) m 41.5" in text
     assert "radius_m = 9 m is outside" in text
     assert (
-        "Creep withdrawn. It fits as a constant, but would have to change with time_s by 40 %"
+        "creep withdrawn. It fits as a constant, but would have to change with time_s by 40 %"
         in text
     )
 
@@ -194,6 +197,36 @@ def test_design_says_what_changes_and_what_does_not_reach_it(
     assert "(+4.0 %)" in design.numbers.replace("\xa0", " ")
     kept = dataclasses.replace(diagnoses["nothing"], design_before=before, design_after=before)
     assert "stays as it is: grade, 5 mm" in context_of(kept).first_page.design.sentence
+
+
+@pytest.mark.parametrize(
+    ("n_cables", "start"),
+    [
+        (2, "The robot has fewer cables than degrees of freedom;"),
+        (4, "The study has no workspace or no selection"),
+    ],
+)
+def test_a_robot_with_too_few_cables_is_told(
+    n_cables: int, start: str, diagnoses: dict[str, Diagnosis]
+) -> None:
+    study = diagnoses["nothing"].study
+    exits = frozen_array(np.arange(3.0 * n_cables).reshape(n_cables, 3))
+    robot = dataclasses.replace(study.robot, exit_points_m=exits)
+    other = dataclasses.replace(diagnoses["nothing"], study=dataclasses.replace(study, robot=robot))
+    sentence = design_section(other).sentence
+    assert sentence.startswith(start)
+
+
+def test_what_was_added_and_is_not_found_is_told(diagnoses: dict[str, Diagnosis]) -> None:
+    found = diagnoses["pulley"]
+    pruned = dataclasses.replace(found, findings=())
+    gone = dataclasses.replace(pruned, withdrawn=(Withdrawn("pulley_radius", "time_s", 0.4),))
+    for diagnosis, remark in (
+        (found, "added pulley_radius"),
+        (pruned, "added pulley_radius, which others made superfluous later"),
+        (gone, "added pulley_radius, withdrawn later"),
+    ):
+        assert search_section(diagnosis).table.groups[0].remark.endswith(f"; {remark}")
 
 
 def test_every_table_is_rectangular(diagnoses: dict[str, Diagnosis]) -> None:

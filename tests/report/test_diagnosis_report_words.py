@@ -55,6 +55,13 @@ def test_plain_words_tell_the_direction(scale: float, word: str) -> None:
     assert words.plain(other, {"scale": scale}) == "ice on the cable"
 
 
+@pytest.mark.parametrize(("offset", "word"), [(0.03, "lags"), (-0.03, "runs ahead of")])
+def test_the_sign_of_a_clock_offset_is_told(offset: float, word: str) -> None:
+    parameter = Parameter("offset_s", "s", 0.0, 0.05, (-60.0, 60.0), (-5.0, 5.0))
+    effect = Effect("clock_offset", "the length stream lags", "law", "source", (parameter,))
+    assert words.plain(effect, {"offset_s": offset}) == f"the length stream {word} the pose stream"
+
+
 def test_strongest_channel_and_its_trend() -> None:
     rng = np.random.default_rng(0)
     covariate = np.linspace(-1.0, 1.0, 200)

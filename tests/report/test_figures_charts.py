@@ -18,8 +18,10 @@ from designer.report.figures import canvas
 from designer.report.figures.charts_candidates import candidates_chart, rank
 from designer.report.figures.charts_edge import edge_chart
 from designer.report.figures.charts_loop import loop_chart
+from designer.report.figures.charts_pareto import pareto_chart
 from designer.report.figures.charts_served import served_chart
 from designer.report.figures.charts_slice import slice_chart, slice_panels
+from designer.report.figures.charts_usable import usable_chart
 from designer.report.figures.charts_verdicts import parts, spread, verdict_chart
 from designer.report.figures.colours import steps_for
 from designer.report.figures.maps import WorkspaceMaps
@@ -273,7 +275,13 @@ class TestCandidates:
 
     def test_no_section_holds(self, selection: SelectionResult) -> None:
         hopeless = tuple(
-            replace(o, continuous_diameter_m=float("nan"), candidates=(), outcome="no_finite_cable")
+            replace(
+                o,
+                continuous_diameter_m=float("nan"),
+                candidates=(),
+                outcome="no_finite_cable",
+                best=None,
+            )
             for o in selection.outcomes
         )
         svg = candidates_chart(SelectionResult(hopeless, None, "none"))
@@ -282,6 +290,39 @@ class TestCandidates:
 
     def test_no_grade_at_all(self) -> None:
         check(candidates_chart(SelectionResult((), None, "none")))
+
+
+class TestPareto:
+    def test_a_panel_for_each_other_objective(self, selection: SelectionResult) -> None:
+        svg = pareto_chart(selection)
+        assert svg is not None
+        check(svg)
+        assert {"drum diameter [m]", "largest tension [N]", "mass of all cables [kg]"} <= texts(svg)
+
+    def test_one_objective_has_nothing_to_be_drawn_over(self, selection: SelectionResult) -> None:
+        assert pareto_chart(replace(selection, objectives=("mass",))) is None
+
+    def test_nothing_holds(self, selection: SelectionResult) -> None:
+        thin = tuple(o for o in selection.outcomes if o.best is None)
+        assert pareto_chart(replace(selection, outcomes=thin, chosen=None)) is None
+
+
+class TestUsable:
+    def test_chosen_size_is_marked(self, selection: SelectionResult) -> None:
+        assert selection.usable is not None
+        svg = usable_chart(selection.usable, selection.chosen)
+        check(svg)
+        assert {"chosen", "20.5 mm"} <= texts(svg)
+
+    def test_nothing_chosen(self, selection: SelectionResult) -> None:
+        assert selection.usable is not None
+        svg = usable_chart(selection.usable, None)
+        check(svg)
+        assert "chosen" not in texts(svg)
+
+    def test_one_size(self, selection: SelectionResult) -> None:
+        assert selection.usable is not None
+        check(usable_chart(replace(selection.usable, sizes=selection.usable.sizes[-1:]), None))
 
 
 class TestSteps:

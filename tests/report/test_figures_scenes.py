@@ -6,8 +6,11 @@ import base64
 import io
 import json
 import re
+import subprocess
 import sys
+import tempfile
 import zipfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,7 @@ from designer.region import Prism
 from designer.report.figures import opengl, overlay, palette, stage
 from designer.report.figures.field import Field
 from designer.report.figures.interactive import workspace_scene_html
+from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.quantity import DIAMETER, RATIO, TENSION
 from designer.report.figures.robot_scene import robot_scene
 from designer.report.figures.view import (
@@ -237,14 +241,52 @@ class TestStage:
         assert scale_of(maps_of("unheld"), DIAMETER) is None
 
 
+_SHOWN = {
+    "served": "scale",
+    "exclude": "scale, left out",
+    "partly": "scale, no cable",
+    "partly_exclude": "scale, left out",
+    "found_by_search": "scale",
+    "box": "scale, no cable",
+    "six": "scale, no cable",
+    "points": "dots",
+    "one_point": "dots",
+    "lost_points": "dots",
+    "outside": "no cable",
+    "unheld": "no cable",
+    "all_left_out": "left out",
+    "flat": "scale",
+    "speck": "scale",
+}
+"""What covers areas in the picture of each case; single points cover none."""
+
+
+def scale_colours(maps: WorkspaceMaps) -> list[str]:
+    """Return the colours of the bands of a scene."""
+    steps = scale_of(maps, DIAMETER)
+    if steps is None:
+        return []
+    bands = [steps.colormap(band)[:3] for band in range(len(steps.levels) - 1)]
+    return ["#" + bytes(round(255 * part) for part in band).hex() for band in bands]
+
+
 @pytest.mark.usefixtures("graphics")
 class TestPictures:
     @pytest.mark.parametrize("name", CASES)
-    def test_every_case_can_be_drawn(self, name: str) -> None:
-        image = pixels(workspace_scene(maps_of(name)))
+    def test_every_case_shows_its_colours(self, name: str) -> None:
+        maps = maps_of(name)
+        image = pixels(workspace_scene(maps))
         assert image.shape == (HEIGHT_PX, WIDTH_PX, 3)
         assert (image[0, 0] == 255).all()
-        assert (image < 128).any()
+        assert (image < 255).any(axis=-1).sum() > 20_000
+        in_scene = image[:, : int(0.86 * WIDTH_PX)]
+        areas = {
+            "scale": sum(count(in_scene, colour) for colour in scale_colours(maps)),
+            "no cable": count(in_scene, palette.WARNING),
+            "left out": count(in_scene, palette.LEFT_OUT),
+        }
+        shown = {what for what, area in areas.items() if area > 5_000}
+        assert shown == set(_SHOWN[name].split(", ")) - {"dots"}
 
     def test_colours_are_those_of_the_scale(self) -> None:
         maps = maps_of("served")
@@ -288,9 +330,13 @@ class TestPictures:
         assert count(image, palette.WARNING) > 100
 
     def test_vertical_cable(self) -> None:
+        """Below an exit point one cable would hold it alone, which counts as no equilibrium."""
         pose = analyse_pose(pose_at("served", [1e-9, 0.0, -50.0]))
         assert pose is not None
-        assert pixels(robot_scene(pose)).shape == (HEIGHT_PX, WIDTH_PX, 3)
+        image = pixels(robot_scene(pose))
+        assert image.shape == (HEIGHT_PX, WIDTH_PX, 3)
+        assert (image[0, 0] == 255).all()
+        assert count(image, palette.WARNING) > 1_000
 
 
 @pytest.fixture(scope="module")
@@ -377,6 +423,29 @@ class TestOpenGL:
         monkeypatch.setattr(sys, "platform", system)
         monkeypatch.setattr(opengl, "_library", lambda name: None)
         opengl.require_opengl()
+
+    def test_where_it_finds_one_a_new_process_draws(self, graphics: None) -> None:
+        """Found is not enough: a picture comes out, in the colours asked for."""
+        code = (
+            "import sys\n"
+            "from designer.report.figures.opengl import prefer_offscreen, require_opengl\n"
+            "require_opengl()\n"
+            "prefer_offscreen()\n"
+            "import pyvista\n"
+            "plotter = pyvista.Plotter(off_screen=True, window_size=(90, 60))\n"
+            "plotter.set_background('white')\n"
+            "plotter.add_mesh(pyvista.Plane(), color='#3366cc', lighting=False)\n"
+            "plotter.view_xy()\n"
+            "plotter.screenshot(sys.argv[1])\n"
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "plane.png"
+            subprocess.run([sys.executable, "-c", code, str(file)], check=True, timeout=120)
+            image = pixels(file.read_bytes())
+        assert image.shape == (60, 90, 3)
+        assert (image[0, 0] == 255).all()
+        assert tuple(image[30, 45]) == rgb("#3366cc")
+        assert 500 < count(image, "#3366cc") < 90 * 60
 
     def test_a_library_that_is_not_there(self) -> None:
         assert opengl._library("libsurely-not-there.so.7") is None

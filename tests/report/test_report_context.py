@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 from markupsafe import escape
-from report_cases import CASES
+from report_cases import CASES, DEFAULTS, FAST
 
 from designer.analysis import Analysis
 from designer.report import sections
@@ -30,6 +30,9 @@ PICTURES = Pictures(
     pose_scene=SCENE,
     workspace=(PICTURE, SCENE),
     candidates=PICTURE,
+    pareto=PICTURE,
+    usable_chart=PICTURE,
+    usable_scene=SCENE,
 )
 
 
@@ -158,27 +161,80 @@ def test_a_loop_that_does_not_settle_is_cut_short() -> None:
 def test_candidates_begin_with_the_chosen_one(contexts: dict[str, ReportContext]) -> None:
     selection = contexts["positive"].selection
     assert selection is not None
-    groups = selection.candidates.groups
-    assert [group.title for group in groups] == ["gost-6x19s-iwrc-1960", "unirope-7x19-galvanised"]
-    assert groups[0].rows[-1].cells[-1] == "chosen"
-    assert "ends at 3/8 in" in groups[1].remark
+    assert selection.pareto is not None
+    assert selection.pareto.groups[0].title == "gost-6x19s-iwrc-1960"
+    assert "best in mass of all cables" in selection.pareto.groups[0].remark
+    assert selection.pareto.groups[0].tone == "good"
+    assert selection.best is not None
+    assert selection.best.groups[0].rows[0].cells[:3] == (
+        "gost-6x19s-iwrc-1960",
+        "steel",
+        "20.5\u00a0mm",
+    )
+    assert selection.thin is not None
+    assert selection.thin.groups[0].rows[0].cells[:2] == ("unirope-7x19-galvanised", "3/8 in")
+
+
+def test_every_size_is_accounted_for(analyses, contexts: dict[str, ReportContext]) -> None:
+    """Those that no other beats, and those that fell out, are all there are."""
+    for case in ("positive", "too_thin", "no_finite_cable"):
+        found, section = analyses[case].selection, contexts[case].selection
+        assert found is not None
+        assert section is not None
+        fallen = sum(int(row.cells[1]) for row in section.fallen.groups[0].rows)
+        assert fallen + len(found.front) == len(found.candidates)
+
+
+def test_what_each_size_serves(contexts: dict[str, ReportContext]) -> None:
+    selection = contexts["positive"].selection
+    assert selection is not None
+    assert selection.usable is not None
+    shares = [row.cells[2] for row in selection.usable.table.groups[0].rows]
+    assert shares[0] == "0\u00a0%"
+    assert shares[-1] == "100\u00a0%"
+    assert shares.count("100\u00a0%") == 1
+    assert "All thicker ones serve all of it" in selection.usable.table.caption
+
+
+def test_losses_of_strength_are_said(solve) -> None:
+    config = FAST.format(**DEFAULTS).replace(
+        "safety_factor: 2", "safety_factor: 2, termination_efficiency: 0.9, sheave_diameter: 1 m"
+    )
+    analysis = solve(config)
+    context = build_context(analysis, Pictures())
+    assert "the smaller share counts" in context.assumptions.losses
+    assert context.first_page.card is not None
+    facts = {fact.label: fact for fact in context.first_page.card.facts}
+    assert facts["Allowable tension"].note == "breaking load times 0.9 over 2"
+    assert context.selection is not None
+    assert context.selection.pareto is not None
+    columns = [column.title for column in context.selection.pareto.columns]
+    row = dict(zip(columns, context.selection.pareto.groups[0].rows[0].cells, strict=True))
+    load, allowable = (
+        float(row[name].replace("\u202f", "")) for name in ("Breaking load", "Allowable")
+    )
+    assert row["Efficiency"] == "0.9"
+    assert allowable == pytest.approx(0.45 * load, abs=1.0)
 
 
 def test_doubtful_figures_carry_their_doubt(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
     assert analysis.selection is not None
     outcome = analysis.selection.outcomes[0]
-    candidate = outcome.candidates[0]
-    doubtful = dataclasses.replace(candidate.size, doubt="looks misprinted")
-    changed = dataclasses.replace(candidate, size=doubtful)
+    assert outcome.best is not None
+    doubtful = dataclasses.replace(outcome.best.size, doubt="looks misprinted")
+    changed = dataclasses.replace(outcome.best, size=doubtful)
+    candidates = [changed if c is outcome.best else c for c in outcome.candidates]
     selection = dataclasses.replace(
         analysis.selection,
-        outcomes=(dataclasses.replace(outcome, candidates=(changed, *outcome.candidates[1:])),),
+        chosen=changed,
+        outcomes=(dataclasses.replace(outcome, candidates=tuple(candidates), best=changed),),
     )
     context = build_context(dataclasses.replace(analysis, selection=selection), Pictures())
     assert context.selection is not None
-    rows = context.selection.candidates.groups[0].rows
-    assert [row.note for row in rows] == ["Doubtful figures: looks misprinted", ""]
+    assert context.selection.pareto is not None
+    rows = context.selection.pareto.groups[0].rows
+    assert [row.note for row in rows] == ["Doubtful figures: looks misprinted"]
 
 
 def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> None:
@@ -189,6 +245,7 @@ def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> Non
         "pose",
         "workspace",
         "selection",
+        "stiffness",
         "left-out",
         "assumptions",
         "nomenclature",

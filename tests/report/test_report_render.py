@@ -87,7 +87,9 @@ def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
     swapped = dataclasses.replace(chosen, grade=evil)
     outcomes = tuple(
         dataclasses.replace(
-            o, candidates=tuple(swapped if c is chosen else c for c in o.candidates)
+            o,
+            candidates=tuple(swapped if c is chosen else c for c in o.candidates),
+            best=swapped if o.best is chosen else o.best,
         )
         for o in analysis.selection.outcomes
     )
@@ -201,7 +203,8 @@ def test_a_browser_is_told_to_load_nothing(context: ReportContext) -> None:
 
 def test_on_paper_a_group_heading_stays_with_its_first_row(context: ReportContext) -> None:
     assert context.selection is not None
-    title = context.selection.candidates.groups[0].title
+    assert context.selection.pareto is not None
+    title = context.selection.pareto.groups[0].title
     lifted = rf'<td><span class="lifted \w*">{re.escape(title)} '
     assert re.search(lifted, render_html(context, paged=True))
     assert not re.search(lifted, render_html(context))

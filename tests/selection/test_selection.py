@@ -4,34 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from ropes import rope
 
-from designer.catalogue.grade import Grade, Modulus, Reference, Size
+from designer.catalogue.grade import Grade
 from designer.region import Prism
 from designer.robot import Poses
-from designer.selection.select import select, try_grade
+from designer.selection.result import GradeOutcome
+from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Workspace
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
-
-
-def rope(name: str, diameters_mm: list[float], weaker: dict[float, float] | None = None) -> Grade:
-    """A grade after the law: 0.78 kN/mm² and 4.15 g/m per mm², some sizes weaker by a factor."""
-    sizes = tuple(
-        Size(
-            id=f"{d:g} mm",
-            diameter_m=d / 1e3,
-            minimum_breaking_load_N=780.0 * d**2 * (weaker or {}).get(d, 1.0),
-            linear_density_kg_per_m=4.15e-3 * d**2,
-        )
-        for d in diameters_mm
-    )
-    modulus = Modulus(62.7e9, "nominal", "borrowed", "a like rope", 0.15)
-    return Grade(
-        name, "maker", "rope", "7x19", "WSC", "galvanised", modulus, sizes, Reference("a", "b"), "B"
-    )
 
 
 @pytest.fixture(scope="module")
@@ -42,21 +27,25 @@ def workspace() -> Workspace:
 ALL = Selection(None, 2.0)
 
 
+def try_grade(robot, workspace, grade: Grade, safety_factor: float) -> GradeOutcome:
+    return select(robot, workspace, Selection(None, safety_factor), [grade]).outcomes[0]
+
+
 def test_snap_takes_the_next_size_up(fast_robot, workspace) -> None:
     outcome = try_grade(fast_robot, workspace, rope("a", list(np.arange(8.0, 40.0, 2.0))), 2.0)
     need = 1e3 * outcome.continuous_diameter_m
     assert outcome.best is not None
     assert 1e3 * outcome.best.size.diameter_m == pytest.approx(2 * np.ceil(need / 2))
-    below = outcome.candidates[0]
-    assert not below.verified
-    assert below.size.diameter_m < outcome.continuous_diameter_m
+    for candidate in outcome.candidates:
+        is_enough = candidate.size.diameter_m >= outcome.continuous_diameter_m
+        assert candidate.verification.holds == is_enough
 
 
 def test_size_at_the_continuous_optimum_is_used_fully(fast_robot, workspace) -> None:
     grade = rope("a", [10.0, 40.0])
     optimum = 1e3 * try_grade(fast_robot, workspace, grade, 2.0).continuous_diameter_m
     outcome = try_grade(fast_robot, workspace, rope("b", [optimum * 0.999, optimum * 1.0001]), 2.0)
-    assert [c.verified for c in outcome.candidates] == [False, True]
+    assert [c.verification.holds for c in outcome.candidates] == [False, True]
     assert outcome.candidates[1].verification.utilisation == pytest.approx(1.0, abs=1e-3)
 
 
@@ -80,7 +69,7 @@ def test_a_weak_size_is_passed_over(fast_robot, workspace) -> None:
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
     assert sound.best is not None
     first = 1e3 * sound.best.size.diameter_m
-    weak = try_grade(fast_robot, workspace, rope("b", sizes, {first: 0.6}), 2.0)
+    weak = try_grade(fast_robot, workspace, rope("b", sizes, weaker={first: 0.6}), 2.0)
     assert weak.best is not None
     assert 1e3 * weak.best.size.diameter_m > first
 
@@ -90,7 +79,7 @@ def test_a_strong_size_below_the_snap_is_found(fast_robot, workspace) -> None:
     sound = try_grade(fast_robot, workspace, rope("a", sizes), 2.0)
     assert sound.best is not None
     below = 1e3 * sound.best.size.diameter_m - 2
-    strong = try_grade(fast_robot, workspace, rope("b", sizes, {below: 1.5}), 2.0)
+    strong = try_grade(fast_robot, workspace, rope("b", sizes, weaker={below: 1.5}), 2.0)
     assert strong.best is not None
     assert 1e3 * strong.best.size.diameter_m == pytest.approx(below)
 
@@ -110,8 +99,9 @@ def test_grade_that_ends_too_thin_names_what_goes_on(fast_robot, workspace) -> N
     found = select(fast_robot, workspace, Selection(("thin",), 2.0), [thin, thick])
     assert found.chosen is None
     assert found.outcomes[0].outcome == "too_thin"
-    assert found.candidates[0].size.id == "12 mm"
-    assert found.candidates[0].verification.utilisation > 1.0
+    assert [c.size.id for c in found.candidates] == ["4 mm", "8 mm", "12 mm"]
+    assert all(c.verification.utilisation > 1.0 for c in found.candidates)
+    assert {c.standing for c in found.candidates} == {"too_thin"}
     assert "12 mm" in (found.reason or "")
     assert [outcome.grade.id for outcome in found.alternatives] == ["thick"]
 
@@ -137,3 +127,49 @@ def test_workspace_whose_every_pose_is_left_out_is_served_by_nothing(fast_robot)
     found = select(fast_robot, outside, ALL, [rope("a", [20.0, 40.0])])
     assert found.chosen is None
     assert found.reason
+
+
+def test_nominal_grades_are_no_products_unless_named(fast_robot, workspace) -> None:
+    grades = [rope("sold", [24.0, 28.0]), rope("nominal", [20.0, 22.0, 24.0], is_nominal=True)]
+    found = select(fast_robot, workspace, ALL, grades)
+    assert {c.grade.id for c in found.candidates} == {"sold"}
+    assert [(n.grade.id, n.size) for n in found.not_tried] == [("nominal", None)]
+    named = select(fast_robot, workspace, Selection(("nominal",), 2.0), grades)
+    assert {c.grade.id for c in named.candidates} == {"nominal"}
+
+
+def test_what_matters_is_searched_between_the_samples(fast_robot, workspace) -> None:
+    grades = [rope("a", list(np.arange(8.0, 60.0, 1.0))), rope("b", [30.0, 50.0])]
+    found = select(fast_robot, workspace, ALL, grades)
+    for candidate in found.candidates:
+        used = candidate.verification
+        matters = candidate.standing in ("chosen", "undominated") or 0.9 < used.utilisation <= 1.0
+        assert used.is_refined or not matters
+        assert candidate.verified == (used.is_refined and used.utilisation <= 1.0)
+    assert all(o.best is not None and o.best.verified for o in found.outcomes)
+    assert sum(c.verification.holds and not c.verified for c in found.candidates) > 10
+
+
+def test_every_candidate_has_its_reason(fast_robot, workspace) -> None:
+    sizes = [8.0, 16.0, 24.0, 32.0]
+    found = select(fast_robot, workspace, ALL, [rope("a", sizes), rope("b", sizes, strength=0.7)])
+    standings = {c.standing for c in found.candidates}
+    assert standings >= {"chosen", "too_thin", "dominated"}
+    for candidate in found.candidates:
+        if candidate.standing == "too_thin":
+            assert "%" in candidate.reason
+        if candidate.standing == "dominated":
+            assert candidate.reason.startswith(f"dominated by {found.chosen.size.id} of a")
+
+
+def test_search_turns_down_a_size_that_only_the_samples_let_pass(fast_robot) -> None:
+    """Few samples miss the worst pose; the size that is enough for them alone must not win."""
+    few = Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=40)
+    exact = select(fast_robot, few, ALL, [rope("a", [10.0, 60.0])])
+    need = 1e3 * exact.outcomes[0].continuous_diameter_m
+    found = select(fast_robot, few, ALL, [rope("b", [0.998 * need, 1.2 * need])])
+    below, above = found.candidates
+    assert below.standing == "too_thin"
+    assert below.verification.is_refined
+    assert 1.0 < below.verification.utilisation < 1.02
+    assert found.chosen is above

@@ -9,6 +9,7 @@ from designer.arrays import frozen_array
 from designer.region import PointList, Prism
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
+from designer.space import Orientations, Space
 from designer.study import Workspace
 from designer.workspace.refine import refine, spread_starts
 from designer.workspace.samples import CHUNK, positions_m, sample_count
@@ -60,7 +61,7 @@ def test_point_list_is_taken_whole() -> None:
 
 
 def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
-    box = Prism.box((0, 10), (0, 10), (0, 10))
+    box = Space(Prism.box((0, 10), (0, 10), (0, 10)), Orientations())
     peak = np.array([3.21, 7.654, 5.5])
 
     def inside(x):
@@ -70,25 +71,25 @@ def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
         return np.minimum(x[:, 0] + 2 * x[:, 1], 12 - x[:, 0]) - 0.1 * (x[:, 2] - 4) ** 2
 
     start = np.array([[1.0, 1, 1], [9, 9, 9]])
-    assert refine(box, inside, start).position_m == pytest.approx(peak, abs=1e-6)
+    assert refine(box, inside, start).place == pytest.approx(peak, abs=1e-6)
     worst = refine(box, kinked, start)
     assert worst.demand == pytest.approx(12.0, abs=1e-6)
-    assert worst.position_m[2] == pytest.approx(4.0, abs=1e-3)
+    assert worst.place[2] == pytest.approx(4.0, abs=1e-3)
 
 
 def test_refine_stops_where_nothing_is_enough() -> None:
-    box = Prism.box((0, 1), (0, 1), (0, 1))
+    box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
 
     def demand(x):
         return np.where(x[:, 0] > 0.999, np.inf, x[:, 0])
 
     worst = refine(box, demand, np.array([[0.5, 0.5, 0.5]]))
     assert np.isposinf(worst.demand)
-    assert worst.position_m[0] > 0.999
+    assert worst.place[0] > 0.999
 
 
 def test_starts_are_apart() -> None:
-    box = Prism.box((0, 1), (0, 1), (0, 1))
+    box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
     rng = np.random.default_rng(0)
     positions = rng.random((500, 3))
     starts = spread_starts(box, positions, positions[:, 0], 5)

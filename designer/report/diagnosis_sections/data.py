@@ -29,6 +29,8 @@ class DataSection:
         Readings that were given little weight.
     skipped : Table or None
         Effects that this data cannot show, and why.
+    left_out : tuple of str
+        Plugins and effects that could not be used, and why.
     """
 
     facts: tuple[Fact, ...]
@@ -36,6 +38,7 @@ class DataSection:
     unknown: Table | None
     outliers: Table | None
     skipped: Table | None
+    left_out: tuple[str, ...]
 
 
 def data_section(diagnosis: Diagnosis) -> DataSection:
@@ -46,6 +49,7 @@ def data_section(diagnosis: Diagnosis) -> DataSection:
         unknown=_unknown(diagnosis),
         outliers=_outliers(diagnosis),
         skipped=_skipped(diagnosis),
+        left_out=diagnosis.study.known_effects.problems,
     )
 
 

@@ -103,11 +103,11 @@ def _numbers(before: Choice, after: Choice) -> str:
 
 
 def _why_not(diagnosis: Diagnosis) -> str:
-    study = diagnosis.study
-    if not study.robot.is_square:
+    robot = diagnosis.study.robot
+    if not robot.has_enough_cables:
         return (
-            "The robot has more cables than degrees of freedom; designs are made for as many "
-            "cables as degrees of freedom only, so no cable was chosen."
+            "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
+            "pose that one chooses, so none was chosen."
         )
     return "The study has no workspace or no selection, so no cable was chosen."
 

@@ -100,7 +100,7 @@ def _drop(diagnosis: Diagnosis) -> str:
 
 def _finding(finding: Finding) -> Statement:
     title = words.capital(words.plain_finding(finding))
-    text = f"{words.capital(words.values(finding.effect, finding.parameters))}."
+    text = f"{words.values(finding.effect, finding.parameters)}."
     if finding.rivals:
         text += f" Or, as far as these data tell: {fmt.listing(finding.rivals, 'or')}."
     return Statement(title, text, "doubt" if finding.rivals or finding.warnings else "")

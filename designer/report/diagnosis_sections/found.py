@@ -30,7 +30,7 @@ class FoundSection:
     proposals : tuple of Table
         Poses that would tell rivals apart.
     withdrawn : tuple of Statement
-        Effects that fitted, but would have to drift.
+        Effects that fitted, but do not hold.
     """
 
     parameters: Table | None
@@ -49,9 +49,7 @@ def found_section(diagnosis: Diagnosis) -> FoundSection | None:
         laws=_laws(diagnosis),
         rivals=tuple(_rivals(diagnosis)),
         proposals=tuple(_proposal(item) for item in diagnosis.proposals),
-        withdrawn=tuple(
-            Statement(words.capital(w.effect), withdrawal(w)) for w in diagnosis.withdrawn
-        ),
+        withdrawn=tuple(Statement(w.effect, withdrawal(w)) for w in diagnosis.withdrawn),
     )
 
 
@@ -108,7 +106,7 @@ def _rivals(diagnosis: Diagnosis) -> Iterator[Statement]:
     for finding in diagnosis.findings:
         if finding.rivals:
             yield Statement(
-                words.capital(finding.effect.key),
+                finding.effect.key,
                 f"These data are explained as well with {fmt.listing(finding.rivals, 'or')} in its "
                 "place. Only one of them need be true.",
                 "doubt",

@@ -28,7 +28,7 @@ class SearchSection:
 
 def search_section(diagnosis: Diagnosis) -> SearchSection:
     """Return the search, round by round."""
-    groups = tuple(_group(k, step) for k, step in enumerate(diagnosis.steps, start=1))
+    groups = tuple(_group(diagnosis, k, step) for k, step in enumerate(diagnosis.steps, start=1))
     columns = (
         Column("Candidate", is_number=False),
         Column("Gain"),
@@ -40,17 +40,26 @@ def search_section(diagnosis: Diagnosis) -> SearchSection:
     return SearchSection(Table(caption, columns, groups))
 
 
-def _group(number: int, step: Step) -> Group:
+def _group(diagnosis: Diagnosis, number: int, step: Step) -> Group:
     added = step.added.key if step.added else ""
     remark = f"{fmt.plural(len(step.trials), 'candidate')}; "
-    remark += f"added {added}" if added else "nothing earned its place"
+    remark += f"added {added}{_later(diagnosis, added)}" if added else "nothing earned its place"
     rows = tuple(_row(trial, trial.effect.key == added) for trial in step.trials[:_MOST])
     return Group(rows, f"Round {number}", remark, "good" if added else "")
 
 
+def _later(diagnosis: Diagnosis, added: str) -> str:
+    """Say what became of an effect that was added and is not among the findings."""
+    if added in {finding.effect.key for finding in diagnosis.findings}:
+        return ""
+    if added in {gone.effect for gone in diagnosis.withdrawn}:
+        return ", withdrawn later"
+    return ", which others made superfluous later"
+
+
 def _row(trial: Trial, is_added: bool) -> Row:
     cells = (
-        trial.effect.key,
+        trial.effect.key.replace(" ", words.NO_BREAK),
         fmt.number(trial.gain, 3) if abs(trial.gain) >= 0.1 else "0",
         words.chance(trial.chance),
         fmt.number(trial.heldout_gain, 3),

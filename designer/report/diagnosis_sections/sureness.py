@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from designer.diagnosis.result import Diagnosis, Finding, Withdrawn
+from designer.diagnosis.result import Diagnosis, Finding, Reason, Withdrawn
 from designer.diagnosis.search import Trial
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -32,18 +32,22 @@ def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
 def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
     for finding in diagnosis.findings:
         yield _significance(diagnosis, finding)
+    yield from _without_rivals([f for f in diagnosis.findings if not f.rivals])
     for finding in diagnosis.findings:
-        yield _rivals(finding)
+        if finding.rivals:
+            yield _rivals(finding)
         for warning in finding.warnings:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
     for gone in diagnosis.withdrawn:
-        yield Statement(f"{words.capital(gone.effect)} withdrawn", withdrawal(gone), "doubt")
+        yield Statement(f"{gone.effect} withdrawn", withdrawal(gone), "doubt")
     yield _left(diagnosis)
     yield _noise(diagnosis)
 
 
 def withdrawal(gone: Withdrawn) -> str:
     """Say why an effect that fits was not kept."""
+    if gone.reason is not Reason.DRIFTS:
+        return f"{words.capital(gone.reason.value)}."
     size = f"{fmt.percent(gone.variation, 2)} of itself"
     if gone.variation > _MUCH:
         size = f"{fmt.number(gone.variation, 2)} times itself"
@@ -69,10 +73,14 @@ def _significance(diagnosis: Diagnosis, finding: Finding) -> Statement:
     return Statement(f"Significance of {finding.effect.key}", accident + gain)
 
 
+def _without_rivals(findings: Sequence[Finding]) -> Iterator[Statement]:
+    if findings:
+        keys = fmt.listing((f.effect.key for f in findings), "or")
+        text = f"No other single effect explains the data as well in place of {keys}."
+        yield Statement("No rivals", text, "good")
+
+
 def _rivals(finding: Finding) -> Statement:
-    if not finding.rivals:
-        text = f"No other single effect explains the data as well as {finding.effect.key}."
-        return Statement("No rivals", text, "good")
     text = (
         f"These data cannot tell {finding.effect.key} from {fmt.listing(finding.rivals, 'or')}. "
         "Poses that would are proposed below."

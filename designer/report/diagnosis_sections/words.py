@@ -19,10 +19,20 @@ _DIRECTIONS = {
     "linear_mass": ("scale", "the cable", "heavier", "lighter"),
     "platform_mass": ("offset_kg", "the platform with its payload", "heavier", "lighter"),
 }
+_SIGNED = {
+    "clock_offset": (
+        "offset_s",
+        "the length stream lags the pose stream",
+        "the length stream runs ahead of the pose stream",
+    ),
+}
 
 
 def plain(effect: Effect, values: Mapping[str, float]) -> str:
     """Return what an effect is, in a few words, with its direction where it has one."""
+    if effect.id in _SIGNED:
+        name, positive, negative = _SIGNED[effect.id]
+        return positive if values[name] > 0.0 else negative
     if effect.id not in _DIRECTIONS:
         return effect.summary
     name, what, more, less = _DIRECTIONS[effect.id]

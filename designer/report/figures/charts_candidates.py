@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.report.figures import canvas, palette
+from designer.report.material_class import CLASSES, class_of
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
 
 if TYPE_CHECKING:
@@ -15,11 +16,11 @@ if TYPE_CHECKING:
 
 _MOST = 25
 _ROW_MM = 4.6
-_RANGE = "#C9CED3"
+_PALE = 0.45
 
 
 def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
-    """Return a row for each grade: range of sizes, need, sizes tried, as SVG.
+    """Return a row for each grade: range of sizes, need, best size, as SVG.
 
     Grades that hold come first, the lightest on top; then those that end too thin, the nearest
     first; then those of which no section holds.
@@ -44,7 +45,7 @@ def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
             if selection.chosen is not None and outcome.best is selection.chosen:
                 axes.axhspan(row - 0.5, row + 0.5, color=palette.SAG, alpha=0.12, linewidth=0)
         _names(axes, shown, selection)
-        _legend(axes, left_out)
+        _legend(axes, shown, left_out)
         return canvas.svg(figure, "candidates", "Sizes of each grade and what it would need")
 
 
@@ -64,7 +65,7 @@ def rank(outcomes: Sequence[GradeOutcome]) -> list[GradeOutcome]:
 def _right_end(outcomes: Sequence[GradeOutcome]) -> float:
     """Right end of the axis: thick sizes that nobody needs may run out of the chart [mm]."""
     needs = [o.continuous_diameter_m for o in outcomes if np.isfinite(o.continuous_diameter_m)]
-    tried = [c.size.diameter_m for o in outcomes for c in o.candidates]
+    tried = [c.size.diameter_m for o in outcomes for c in marked(o)]
     sold = [o.grade.thickest.diameter_m for o in outcomes]
     if not needs:
         return 1.05e3 * max(sold, default=1e-3)
@@ -75,7 +76,11 @@ def _right_end(outcomes: Sequence[GradeOutcome]) -> float:
 def _row(axes: Axes, row: int, outcome: GradeOutcome, right: float) -> None:
     low, high = (1e3 * outcome.grade.sizes[k].diameter_m for k in (0, -1))
     axes.plot(
-        [low, min(high, right)], [row, row], color=_RANGE, linewidth=5.0, solid_capstyle="butt"
+        [low, min(high, right)],
+        [row, row],
+        color=_pale(outcome),
+        linewidth=5.0,
+        solid_capstyle="butt",
     )
     if high > right:
         axes.annotate(
@@ -86,9 +91,27 @@ def _row(axes: Axes, row: int, outcome: GradeOutcome, right: float) -> None:
         )
     need = 1e3 * outcome.continuous_diameter_m
     if np.isfinite(need):
-        axes.plot([need, need], [row - 0.4, row + 0.4], color=palette.SAG, linewidth=1.6, zorder=4)
-    for candidate in outcome.candidates:
+        axes.plot([need, need], [row - 0.4, row + 0.4], color=palette.INK, linewidth=1.6, zorder=4)
+    for candidate in marked(outcome):
         _size(axes, row, candidate, right)
+
+
+def _pale(outcome: GradeOutcome) -> str:
+    """Return the colour of the grade's material, mixed with white so that marks stand out."""
+    from matplotlib.colors import to_hex, to_rgb
+
+    colour = np.array(to_rgb(palette.CLASS_COLOURS[class_of(outcome.grade)]))
+    return to_hex(1.0 - _PALE * (1.0 - colour))
+
+
+def marked(outcome: GradeOutcome) -> list[Candidate]:
+    """Return the best size of a grade and the next thinner one that does not hold."""
+    best = [] if outcome.best is None else [outcome.best]
+    limit_m = best[0].size.diameter_m if best else np.inf
+    fails = [
+        c for c in outcome.candidates if not c.verification.holds and c.size.diameter_m < limit_m
+    ]
+    return [*fails[-1:], *best]
 
 
 def _size(axes: Axes, row: int, candidate: Candidate, right: float) -> None:
@@ -135,14 +158,22 @@ def _names(axes: Axes, shown: Sequence[GradeOutcome], selection: SelectionResult
 
 def _ending(outcome: GradeOutcome) -> str:
     if outcome.best is not None:
-        mass = f"{outcome.best.total_mass_kg:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
-        return f"{outcome.best.size.id}, {mass} kg"
+        return f"{outcome.best.size.id}, {_mass(outcome.best.total_mass_kg)} kg"
     if np.isfinite(outcome.continuous_diameter_m):
         return f"ends at {outcome.grade.thickest.id}"
     return "no section holds"
 
 
-def _legend(axes: Axes, left_out: int) -> None:
+def _mass(mass_kg: float) -> str:
+    return canvas.significant(mass_kg, max(3, len(f"{mass_kg:.0f}")))
+
+
+def _one_of_each_class(shown: Sequence[GradeOutcome]) -> list[tuple[str, GradeOutcome]]:
+    found = {class_of(outcome.grade): outcome for outcome in shown}
+    return [(kind, found[kind]) for kind in CLASSES if kind in found]
+
+
+def _legend(axes: Axes, shown: Sequence[GradeOutcome], left_out: int) -> None:
     from matplotlib.lines import Line2D
 
     mark: dict[str, Any] = {
@@ -152,19 +183,22 @@ def _legend(axes: Axes, left_out: int) -> None:
         "markeredgecolor": palette.INK,
     }
     entries = [
-        Line2D([], [], color=_RANGE, linewidth=5.0, label="sizes sold"),
+        *(
+            Line2D([], [], color=_pale(outcome), linewidth=5.0, label=f"sizes sold, {kind}")
+            for kind, outcome in _one_of_each_class(shown)
+        ),
         Line2D(
             [],
             [],
-            color=palette.SAG,
+            color=palette.INK,
             linestyle="none",
             marker="|",
             markersize=8,
             markeredgewidth=1.6,
             label="continuous optimum",
         ),
-        Line2D([], [], color=palette.INK, label="tried, holds", **mark),
-        Line2D([], [], color="white", label="tried, does not hold", **mark),
+        Line2D([], [], color=palette.INK, label="best size that holds", **mark),
+        Line2D([], [], color="white", label="next thinner, does not hold", **mark),
     ]
     more = f"{left_out} more grades are not shown" if left_out > 0 else None
     axes.figure.legend(

@@ -1,4 +1,4 @@
-"""Horizontal section through the workspace, as in Riehl et al., ICRA 2010, Fig. 9."""
+"""Section through the workspace, as in Riehl et al., ICRA 2010, Fig. 9."""
 
 from __future__ import annotations
 
@@ -67,11 +67,12 @@ def _colour_bar(figure: Figure, axes: Axes, steps: Steps, quantity: Quantity, pl
         "right": {"shrink": 0.9, "aspect": 26},
         "bottom": {"shrink": 0.92, "aspect": 30},
     }
+    crowded = place == "bottom" and canvas.decimals(steps.ticks) > 2
     bar = figure.colorbar(
         steps.mappable,
         ax=axes,
         location=place,
-        ticks=steps.ticks,
+        ticks=steps.ticks[:: 2 if crowded else 1],
         extendfrac=0.04,
         label=quantity.label,
         **shape[place],
@@ -87,6 +88,8 @@ def _legend(figure: Figure, maps: WorkspaceMaps) -> None:
 
 
 def _place(maps: WorkspaceMaps) -> str:
+    if maps.is_upright:
+        return "the region" if maps.has_area else "all poses"
     if maps.has_area:
         return f"top of the region, z = {canvas.number(maps.section.position_m[0, 0, 2])} m"
     return "all poses, seen from above"

@@ -40,6 +40,7 @@ def parts(census: Census) -> tuple[Part, ...]:
         ),
         Part("no finite cable", 0 if leaves_out else finite, palette.WARNING_PALE, "//////"),
         Part("no positive tensions", status["outside_hull"], palette.WARNING),
+        Part("rank deficient", status.get("rank_deficient", 0), palette.LEFT_OUT),
         Part("not converged", status["not_converged"], palette.INK),
     )
     return tuple(part for part in everything if part.count > 0)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import PointList, Prism
+from designer.region import PointList, Prism, Rectangle
 from designer.report.figures import grids
 from designer.report.figures.field import Field, field_at
 from designer.study import Study
@@ -56,10 +56,15 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     Returns
     -------
     EdgeProfile or None
-        None where the centre of the region lies outside the hull of the exit points.
+        None where the centre of the region lies outside the hull of the exit points, the region
+        or the robot lies in an upright plane, or things do not fall along z.
     """
     assert study.workspace is not None
     region = study.workspace.region
+    if isinstance(region, Rectangle) or study.robot.is_planar:
+        return None
+    if study.robot.gravity_direction[:2].any():
+        return None
     hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
     centre = _centre(region)
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):

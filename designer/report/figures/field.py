@@ -11,13 +11,15 @@ from designer.physics import catenary
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.study import Study
+from designer.study import Study, Workspace
 from designer.verdict import Verdict
-from designer.workspace.demand import is_left_out
+from designer.workspace.demand import is_left_out, size_worst
+from designer.workspace.samples import CHUNK
 
 _REASONS = {
     Verdict.OUTSIDE_HULL: "no positive tensions",
     Verdict.NO_FINITE_CABLE: "no finite cable",
+    Verdict.RANK_DEFICIENT: "rank deficient",
     Verdict.NOT_CONVERGED: "not converged",
 }
 
@@ -83,11 +85,30 @@ class Field:
 
 
 def field_at(study: Study, position_m: FloatArray) -> Field:
-    """Size the positions (..., 3) of a study's workspace."""
-    sizing = size_poses(study.robot, Poses.at(position_m), study.material)
+    """Size the positions (..., 3) of a study's workspace, each in its worst orientation."""
+    workspace = study.workspace
+    if workspace is None or workspace.orientations.count == 1:
+        return field_of(study, position_m if workspace is None else _turned(workspace, position_m))
+    flat = position_m.reshape(-1, 3)
+    step = max(CHUNK // workspace.orientations.count, 1)
+    worst = [
+        size_worst(study.robot, workspace, flat[at : at + step], study.material)[0]
+        for at in range(0, len(flat), step)
+    ]
+    return field_of(study, np.concatenate(worst).reshape(*position_m.shape[:-1], -1))
+
+
+def _turned(workspace: Workspace, position_m: FloatArray) -> FloatArray:
+    places = workspace.space.places(position_m.reshape(-1, 3))
+    return places.reshape(*position_m.shape[:-1], -1)
+
+
+def field_of(study: Study, place: FloatArray) -> Field:
+    """Size the places (..., n_coordinates) of a study's workspace."""
+    sizing = size_poses(study.robot, Poses.at(place), study.material)
     hangs_below = study.workspace.hangs_below if study.workspace else "include"
     return Field(
-        position_m=position_m,
+        position_m=place[..., :3],
         diameter_m=sizing.diameter_m,
         tension_N=sizing.statics.largest_tension_N,
         massless_diameter_m=sizing.massless_diameter_m,

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import Prism
+from designer.region import Prism, Rectangle
 
 _RINGS, _SPOKES, _LAYERS = 48, 180, 24
 _OPENING_RAD = np.radians(100.0)
@@ -42,6 +42,12 @@ def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> Flo
     """
     outline = outline_m(region.polygon_m, spokes)
     return _at_height(_rings(centroid_m(region.polygon_m), outline, rings), z_m)
+
+
+def upright_disc_m(region: Rectangle, rings: int = 90, spokes: int = 240) -> FloatArray:
+    """Return a rectangle as rings about its centre, like `disc_m` (rings, spokes + 1, 3) [m]."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    return region.at(_rings(np.array([0.5, 0.5]), outline_m(corners, spokes), rings))
 
 
 def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:

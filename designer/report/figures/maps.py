@@ -11,10 +11,10 @@ import numpy as np
 from designer.analysis import Analysis
 from designer.arrays import BoolArray, FloatArray
 from designer.effects.declared import as_built_by
-from designer.region import PointList, Region
+from designer.region import PointList, Rectangle, Region
 from designer.report.figures import grids
 from designer.report.figures.edge import EdgeProfile, edge_profile
-from designer.report.figures.field import Field, field_at
+from designer.report.figures.field import Field, field_at, field_of
 from designer.report.figures.quantity import Quantity
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
@@ -26,6 +26,7 @@ from designer.workspace.store import open_sweep
 
 _CURVE_POINTS = 300
 _MOST_POINTS = 3000
+_ALONG_AXIS = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,10 +97,12 @@ class WorkspaceMaps:
     focus : Focus
         The worst pose, or what stands for it.
     section : Field
-        The region at its greatest height (rings, spokes + 1), see `grids.disc_m`; for a list of
-        points the points themselves (n_points,), thinned out where there are very many.
+        The region at its greatest height (rings, spokes + 1), see `grids.disc_m`; a rectangle
+        itself; for a list of points the points themselves (n_points,), thinned out where there are
+        very many.
     shell : mapping of str to Field
-        Outside of the region and two cuts, see `grids.cutaway_m`; empty for a list of points.
+        Outside of the region and two cuts, see `grids.cutaway_m`; of a rectangle the section;
+        empty for a list of points.
     edge : EdgeProfile or None
         Along the line from the centre through the focus to the hull of the exit points; None
         where the centre lies outside that hull.
@@ -123,6 +126,32 @@ class WorkspaceMaps:
     def has_area(self) -> bool:
         """Whether the region is more than a list of points."""
         return bool(self.shell)
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the section is upright, and not level."""
+        return isinstance(self.region, Rectangle) or self.study.robot.is_planar
+
+    @property
+    def across(self) -> FloatArray:
+        """Unit vector (3,) to the right in maps of the section."""
+        if isinstance(self.region, Rectangle):
+            return np.append(self.region.along, 0.0)
+        upright = self.study.robot.upright if self.is_upright else np.eye(3)
+        return np.asarray(upright[0])
+
+    def flat_m(self, points_m: FloatArray) -> FloatArray:
+        """Return where points (..., 3) lie in maps of the section (..., 2) [m]."""
+        up = np.array([0.0, 0.0, 1.0] if self.is_upright else [0.0, 1.0, 0.0])
+        return np.asarray(points_m @ np.stack([self.across, up]).T)
+
+    @property
+    def axis_labels(self) -> tuple[str, str]:
+        """What the axes of such maps are."""
+        main = int(np.argmax(self.across))
+        is_axis = bool(self.across[main] > 1.0 - _ALONG_AXIS)
+        right = f"{'xyz'[main]} [m]" if is_axis else "along the plane [m]"
+        return right, "z [m]" if self.is_upright else "y [m]"
 
     def thinned(self) -> WorkspaceMaps:
         """Return the same with every second point of the shell, for a smaller scene."""
@@ -148,9 +177,13 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
         raise ValueError("the analysis has no workspace")
     region = _workspace(study).region
     focus = _focus(study, found)
+    shell: Mapping[str, Field]
     if isinstance(region, PointList):
         every = -(-len(region.points_m) // _MOST_POINTS)
         section, shell = field_at(study, region.points_m[::every]), {}
+    elif isinstance(region, Rectangle):
+        section = field_at(study, grids.upright_disc_m(region))
+        shell = {"section": section}
     else:
         section = field_at(study, grids.disc_m(region, region.z_m[1]))
         pieces = grids.cutaway_m(region, focus.position_m)
@@ -210,13 +243,14 @@ def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatAr
 def _focus(study: Study, found: WorkspaceMap) -> Focus:
     """The worst pose; else a pose that cannot be held; else, with all left out, the middle."""
     if found.sagging is not None:
-        position = found.sagging.position_m
-    elif found.infeasible_example_m is not None:
-        position = found.infeasible_example_m
+        pose = found.sagging.pose
+    elif found.infeasible_pose is not None:
+        pose = found.infeasible_pose
     else:
-        position = np.asarray(_workspace(study).region.bounds_m.mean(axis=0))
-    field = field_at(study, position)
-    statics = size_poses(study.robot, Poses.at(position), study.material).statics
+        pose = Poses.at(_workspace(study).region.bounds_m.mean(axis=0))
+    position = pose.position_m
+    field = field_of(study, pose.place)
+    statics = size_poses(study.robot, pose, study.material).statics
     if found.sagging is not None:
         label = "worst pose"
     else:

@@ -22,6 +22,16 @@ INK = "#222222"
 FAINT = "#B5B5B5"
 """Guides and whatever is not the subject."""
 
+CLASS_COLOURS = {
+    "steel": "#0072B2",
+    "stainless steel": "#009E73",
+    "fibre": "#E69F00",
+    "not stated": MASSLESS,
+}
+"""Of the classes of a rope's material."""
+CLASS_MARKERS = {"steel": "o", "stainless steel": "s", "fibre": "^", "not stated": "D"}
+"""Shapes, for those who cannot tell the colours apart."""
+
 PAPER_WIDTH_MM = 170.0
 """Column width of the printed report."""
 FONT_POINTS = 8.0

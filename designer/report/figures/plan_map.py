@@ -38,15 +38,16 @@ def draw_plan(
     """
     field = maps.section
     if maps.has_area:
-        _fill(axes, field, quantity, steps, room)
+        _fill(axes, maps, quantity, steps, room)
     else:
-        _scatter(axes, field, quantity, steps)
-    corners = maps.study.robot.exit_points_m[:, :2]
-    if _frame(axes, field.position_m[..., :2], corners):
-        _exit_points(axes, corners)
+        _scatter(axes, maps, quantity, steps)
+    corners = maps.flat_m(maps.study.robot.exit_points_m)
+    if set_limits(axes, maps.flat_m(field.position_m), corners):
+        mark_exit_points(axes, corners)
     _focus(axes, maps, quantity)
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
+    right, up = maps.axis_labels
+    axes.set_xlabel(right)
+    axes.set_ylabel(up)
 
 
 def keys(field: Field) -> list[Any]:
@@ -75,8 +76,11 @@ def keys(field: Field) -> list[Any]:
     return entries
 
 
-def _fill(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None, room: float) -> None:
-    x, y = field.position_m[..., 0], field.position_m[..., 1]
+def _fill(
+    axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, room: float
+) -> None:
+    field = maps.section
+    x, y = np.moveaxis(maps.flat_m(field.position_m), -1, 0)
     axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     _region_of(axes, x, y, field.is_infeasible)
     values = np.ma.masked_invalid(quantity.of(field))
@@ -137,10 +141,11 @@ def _contour_lines(
         label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.7, "alpha": 0.85})
 
 
-def _scatter(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) -> None:
+def _scatter(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None) -> None:
+    field = maps.section
     values = quantity.of(field)
     order = np.argsort(np.nan_to_num(values, nan=-1.0))
-    x, y = field.position_m[order, 0], field.position_m[order, 1]
+    x, y = maps.flat_m(field.position_m[order]).T
     shown = np.isfinite(values[order])
     if steps is not None:
         axes.scatter(
@@ -158,7 +163,7 @@ def _scatter(axes: Axes, field: Field, quantity: Quantity, steps: Steps | None) 
     axes.scatter(x[left], y[left], marker="o", s=10, color=palette.LEFT_OUT)
 
 
-def _frame(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
+def set_limits(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
     """Set the limits, around the exit points as well unless the region would be a speck."""
     flat = points.reshape(-1, 2)
     everything = np.concatenate([flat, corners])
@@ -175,7 +180,8 @@ def _frame(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
     return shows_corners
 
 
-def _exit_points(axes: Axes, corners: FloatArray) -> None:
+def mark_exit_points(axes: Axes, corners: FloatArray) -> None:
+    """Mark and name the exit points (n_cables, 2) [m]."""
     axes.plot(
         *corners.T, linestyle="none", marker="^", markersize=5, color=palette.INK, clip_on=False
     )
@@ -186,9 +192,10 @@ def _exit_points(axes: Axes, corners: FloatArray) -> None:
 
 def _focus(axes: Axes, maps: WorkspaceMaps, quantity: Quantity) -> None:
     focus = maps.focus
-    if maps.has_area and not np.isclose(focus.position_m[2], maps.section.position_m[0, 0, 2]):
+    top = maps.has_area and not maps.is_upright
+    if top and not np.isclose(focus.position_m[2], maps.section.position_m[0, 0, 2]):
         return
-    place = focus.position_m[:2]
+    place = maps.flat_m(focus.position_m)
     axes.plot(
         *place,
         marker="o",
@@ -199,7 +206,7 @@ def _focus(axes: Axes, maps: WorkspaceMaps, quantity: Quantity) -> None:
         clip_on=False,
         zorder=5,
     )
-    away = place - _middle(maps.section)
+    away = place - _middle(maps)
     _write_away(axes, focus.text(quantity), place, away, 9.0, fontweight="bold", zorder=6)
 
 
@@ -228,9 +235,9 @@ def _side(component: float, positive: Any, negative: Any) -> Any:
     return positive if component > 0.0 else negative
 
 
-def _middle(field: Field) -> FloatArray:
+def _middle(maps: WorkspaceMaps) -> FloatArray:
     """Centre of the region, or of the points."""
-    positions = field.position_m[..., :2]
+    positions = maps.flat_m(maps.section.position_m)
     middle = positions[0, 0] if positions.ndim == 3 else positions.mean(axis=0)
     return np.asarray(middle, dtype=np.float64)
 

@@ -11,7 +11,8 @@ from designer.arrays import FloatArray
 from designer.report.figures import canvas, overlay, palette, stage
 from designer.report.figures.field import Sag, cable_curves_m, chords_m, largest_sag
 from designer.report.figures.names import names_of
-from designer.report.figures.view import View, clear_azimuth_rad, fitting
+from designer.report.figures.view import View, clear_azimuth_rad, facing_azimuth_rad, fitting
+from designer.robot import Robot
 from designer.statics.inverse import Statics
 from designer.verdict import Verdict
 
@@ -56,7 +57,7 @@ def add_robot(plotter: Plotter, statics: Statics, view: View) -> None:
     stage.add_lines(plotter, list(chords_m(statics)), palette.MASSLESS, 1.5)
     if statics.is_solved:
         stage.add_lines(plotter, [view.nearer(c, 2.0) for c in curves], palette.SAG, 7.0)
-    stage.add_lines(plotter, [_base_outline_m(robot.exit_points_m)], palette.FAINT, 2.5)
+    stage.add_lines(plotter, [_base_outline_m(robot)], palette.FAINT, 2.5)
     tops = np.concatenate([robot.exit_points_m, statics.poses.position_m[None]])
     feet = tops * [1.0, 1.0, 0.0] + [0.0, 0.0, floor]
     stage.add_lines(plotter, list(np.stack([tops, feet], axis=1)), palette.FAINT, 1.5)
@@ -76,9 +77,12 @@ def _bounds_m(statics: Statics, curves: FloatArray) -> FloatArray:
 def _view(statics: Statics, curves: FloatArray, bounds: FloatArray) -> View:
     low, high = bounds
     floor = [[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])]
-    base = _base_outline_m(statics.robot.exit_points_m)
+    base = _base_outline_m(statics.robot)
     lines = np.concatenate([chords_m(statics), np.stack([base[:-1], base[1:]], axis=1)])
-    azimuth = clear_azimuth_rad(lines, _ELEVATION_RAD)
+    if statics.robot.is_planar:
+        azimuth = facing_azimuth_rad(statics.robot.upright[0, :2])
+    else:
+        azimuth = clear_azimuth_rad(lines, _ELEVATION_RAD)
     everything = np.concatenate([floor, curves.reshape(-1, 3), statics.robot.exit_points_m])
     return fitting(everything, azimuth, _ELEVATION_RAD, _FRAME)
 
@@ -88,12 +92,20 @@ def _size_m(statics: Statics) -> float:
     return float(np.ptp(ends, axis=0).max())
 
 
-def _base_outline_m(exit_points_m: FloatArray) -> FloatArray:
-    """Exit points on the hull in plan, in order, the first one again at the end (n, 3) [m]."""
-    from scipy.spatial import ConvexHull
+def _base_outline_m(robot: Robot) -> FloatArray:
+    """Exit points on the hull in plan, in order, the first one again at the end (n, 3) [m].
 
-    corners = ConvexHull(exit_points_m[:, :2]).vertices
-    return np.asarray(exit_points_m[[*corners, corners[0]]])
+    In the plane of a planar robot; where the points lie on a line, all of them in their order.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    points = robot.exit_points_m
+    flat = (points @ robot.upright.T)[:, [0, 2]] if robot.is_planar else points[:, :2]
+    try:
+        corners = ConvexHull(flat).vertices
+    except QhullError:
+        return points
+    return np.asarray(points[[*corners, corners[0]]])
 
 
 def _label(axes: Axes, view: View, statics: Statics, curves: FloatArray) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from designer.arrays import FloatArray
 
 WIDTH_PX, HEIGHT_PX = 1600, 1000
+_FROM_THE_SIDE_RAD = float(np.radians(25.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,3 +132,14 @@ def clear_azimuth_rad(lines_m: FloatArray, elevation_rad: float) -> float:
         return float(gaps[: len(lines_m)].sum())
 
     return float(max(azimuths, key=lambda azimuth: round(apart(float(azimuth)), 6)))
+
+
+def facing_azimuth_rad(along: FloatArray) -> float:
+    """Return the azimuth from which an upright plane is seen a little from the side [rad].
+
+    Parameters
+    ----------
+    along : array (2,)
+        Horizontal direction in the plane, which shall point to the right.
+    """
+    return float(np.arctan2(-along[0], along[1]) + _FROM_THE_SIDE_RAD)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import Prism
+from designer.region import Prism, Rectangle
 from designer.report.figures import canvas, grids, overlay, palette, stage
 from designer.report.figures.colours import Steps, steps_for
 from designer.report.figures.field import cable_curves_m
@@ -15,7 +15,7 @@ from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, Quantity
 from designer.report.figures.stage import PRINT, Pen
-from designer.report.figures.view import View, fitting
+from designer.report.figures.view import View, facing_azimuth_rad, fitting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,10 +98,15 @@ def add_workspace(
     _add_exit_points(plotter, maps, pen)
     if maps.focus.statics is not None:
         stage.add_cables(plotter, list(cable_curves_m(maps.focus.statics)), view, pen)
+        if not maps.study.robot.is_point_mass:
+            corners = maps.focus.statics.poses.attachment_points_m(maps.study.robot)
+            stage.add_hull(plotter, corners, palette.INK)
 
 
 def _azimuth_rad(maps: WorkspaceMaps) -> float:
     """Into the opening, but not along an axis, which would then be seen from its end."""
+    if isinstance(maps.region, Rectangle):
+        return facing_azimuth_rad(maps.region.along)
     if not isinstance(maps.region, Prism):
         return float(np.radians(-60.0))
     azimuth = grids.opening_azimuth_rad(maps.region, maps.focus.position_m)
@@ -130,6 +135,8 @@ def _add_region(
 
 def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
     """Return the edges of the opened region, each (n, 3) [m]."""
+    if isinstance(maps.region, Rectangle):
+        return [maps.section.position_m[-1]]
     assert isinstance(maps.region, Prism)
     wall = maps.shell["wall"].position_m
     cuts = [maps.shell[name].position_m for name in ("cut", "other_cut")]

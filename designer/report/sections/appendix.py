@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from designer.analysis import Analysis
 from designer.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.report import format as fmt
 from designer.report.parts import Column, Fact, Row, Table
+from designer.robot import Robot
+from designer.study import Selection
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,11 +22,14 @@ class LeftOutSection:
     ----------
     not_allowed : tuple of str
         Ids of grades in the catalogue that the study does not allow.
+    nominal : str
+        How many grades are no products and why they are left out; empty where none is.
     problems : tuple of str
-        What the catalogue could not load, and why.
+        Plugins, grades and effects that could not be loaded, and why.
     """
 
     not_allowed: tuple[str, ...]
+    nominal: str
     problems: tuple[str, ...]
 
 
@@ -34,20 +41,27 @@ class AssumptionsSection:
     ----------
     gravity : str
         Gravitational acceleration.
+    loads : str
+        What acts beside the weight, another direction of gravity, the least tension; empty
+        without any.
     safety : str
         What the safety factor is and what it is applied to; empty without a selection.
     platform : str
         A point mass, or a platform that can turn.
     exits : str
         Whether the cables leave from points or over pulleys.
+    losses : str
+        Which losses of strength are counted.
     effects : str
         Ids of the declared effects, which all results include; empty without any.
     """
 
     gravity: str
+    loads: str
     safety: str
     platform: str
     exits: str
+    losses: str
     effects: str
 
 
@@ -73,8 +87,23 @@ def left_out_section(analysis: Analysis) -> LeftOutSection | None:
     if selection is None:
         return None
     allowed = selection.grades
-    names = [g.id for g in catalogue.grades if allowed is not None and g.id not in allowed]
-    return LeftOutSection(tuple(sorted(names)), catalogue.problems)
+    names = [
+        g.id
+        for g in catalogue.grades
+        if allowed is not None and g.id not in allowed and not g.is_nominal
+    ]
+    return LeftOutSection(tuple(sorted(names)), _nominal(analysis), analysis.left_out)
+
+
+def _nominal(analysis: Analysis) -> str:
+    wanted = analysis.study.selection and analysis.study.selection.grades
+    grades = [g for g in analysis.catalogue.grades if g.is_nominal and g.id not in (wanted or ())]
+    if not grades:
+        return ""
+    return (
+        f"{fmt.plural(len(grades), 'grade')} computed from the factors of standards, such as "
+        f"{grades[0].id}, are no products. They are left out unless a study names them."
+    )
 
 
 def assumptions_section(analysis: Analysis) -> AssumptionsSection:
@@ -85,14 +114,63 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
     if selection is not None:
         factor = fmt.trimmed(selection.safety_factor)
         safety = f"The safety factor of {factor} applies to the minimum breaking load."
-    kind = "point mass" if robot.is_point_mass else "rigid platform that can turn"
     return AssumptionsSection(
         gravity=f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s²",
         safety=safety,
         exits=_exits(robot.pulley_radius_m),
+        losses=_losses(selection),
         effects=", ".join(dict.fromkeys(effect.id for effect in study.effects)),
-        platform=f"{kind} of {fmt.kilograms(robot.platform.mass_kg)} on {robot.n_cables} cables",
+        platform=_platform(robot),
+        loads=_loads(robot),
     )
+
+
+def _platform(robot: Robot) -> str:
+    kind = "point mass" if robot.is_point_mass else "rigid platform that can turn"
+    where = ", guided in a vertical plane" if robot.is_planar else ""
+    return f"{kind} of {fmt.kilograms(robot.platform.mass_kg)} on {robot.n_cables} cables{where}"
+
+
+def _loads(robot: Robot) -> str:
+    """Return what acts on the platform beside its weight, and where the weight points."""
+    parts = []
+    force, moment = robot.platform.wrench_N[:3], robot.platform.wrench_N[3:]
+    if force.any():
+        row = ", ".join(fmt.trimmed(float(x)) for x in force)
+        parts.append(f"A constant force of ({row})\u00a0N acts on the platform beside its weight.")
+    if moment.any():
+        row = ", ".join(fmt.trimmed(float(x)) for x in moment)
+        parts.append(f"A constant moment of ({row})\u00a0N·m acts on the platform.")
+    down = robot.gravity_direction / np.linalg.norm(robot.gravity_direction)
+    if not np.array_equal(down, [0.0, 0.0, -1.0]):
+        row = ", ".join(fmt.trimmed(float(x), 3) for x in down)
+        parts.append(f"Things fall along ({row}).")
+    if robot.tension_min_N > 0.0:
+        least = fmt.newtons(robot.tension_min_N)
+        parts.append(f"No cable has less than {least}, where it runs parallel to its chord.")
+    return " ".join(parts)
+
+
+def _losses(selection: Selection | None) -> str:
+    bends = selection is not None and selection.sheave_diameter_m is not None
+    ends = selection is not None and selection.termination_efficiency < 1.0
+    if selection is None or not (bends or ends):
+        return (
+            "Loss of strength by bending over a drum or a sheave (D/d) is not counted, nor are "
+            "terminations."
+        )
+    parts = []
+    if ends:
+        share = fmt.trimmed(selection.termination_efficiency, 3)
+        parts.append(f"the end fittings leave {share} of the breaking load")
+    if selection.sheave_diameter_m is not None:
+        sheave = fmt.millimetres(selection.sheave_diameter_m)
+        parts.append(
+            f"bending over {sheave} leaves a wire rope 1 − 0.5/√(D/d) of it, a fibre rope all, "
+            "down to the least D/d of its maker (Noble Denton 0027/ND, 7.8)"
+        )
+    text = f"{' and '.join(parts)}{'; the smaller share counts' if len(parts) > 1 else ''}"
+    return f"{text[0].upper()}{text[1:]}. Fatigue of a rope that runs over sheaves is not counted."
 
 
 def _exits(pulley_radius_m: float) -> str:
@@ -135,6 +213,8 @@ def _facts(analysis: Analysis) -> tuple[Fact, ...]:
         spread = study.workspace.sampling.replace("_", " ")
         facts.append(Fact("Samples", fmt.count(analysis.workspace.census.samples), spread))
         facts.append(Fact("Seed", str(study.workspace.seed)))
+    if analysis.selection is not None:
+        facts.append(Fact("Every candidate", "candidates.csv", "table, beside this report"))
     if analysis.sweep_file is not None:
         facts.append(Fact("Every sample", analysis.sweep_file.name, "NetCDF, beside this report"))
     return tuple(facts)

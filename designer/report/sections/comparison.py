@@ -39,7 +39,7 @@ def compare(analysis: Analysis, outcome: GradeOutcome) -> Comparison:
         raise ValueError(f"no size of {outcome.grade.id} fits")
     return Comparison(
         table=_table(analysis, outcome, best),
-        reasons=_reasons(analysis, outcome.family),
+        reasons=_reasons(analysis, outcome.family, best),
         snap=_snap(outcome, best),
     )
 
@@ -96,7 +96,7 @@ def _material_of(candidate: Candidate) -> Material:
     )
 
 
-def _reasons(analysis: Analysis, real: Material) -> tuple[str, ...]:
+def _reasons(analysis: Analysis, real: Material, best: Candidate) -> tuple[str, ...]:
     assert analysis.study.selection is not None
     ideal = analysis.built.material(analysis.study.material)
     safety = fmt.trimmed(analysis.study.selection.safety_factor)
@@ -110,9 +110,16 @@ def _reasons(analysis: Analysis, real: Material) -> tuple[str, ...]:
         f"weighs {fmt.factor(density)} times as much and is {fmt.factor(stiffness)} times as "
         f"stiff. Sag depends on strength over weight, where the rope has "
         f"{fmt.factor(stress / density)} times the configured value.",
-        "The allowable stress of the rope is its breaking load over the nominal circle, divided "
-        f"by the safety factor of {safety}.",
+        "The allowable stress of the rope is its breaking load over the nominal circle"
+        f"{_efficiency(best)}, divided by the safety factor of {safety}.",
     )
+
+
+def _efficiency(best: Candidate) -> str:
+    if best.efficiency == 1.0:
+        return ""
+    share = fmt.trimmed(best.efficiency, 3)
+    return f", times the {share} that end fittings and bending leave of it"
 
 
 def _snap(outcome: GradeOutcome, best: Candidate) -> tuple[Fact, ...]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from designer.analysis import Analysis
-from designer.catalogue.grade import TRUST_MEANING
+from designer.catalogue.grade import TRUST_MEANING, Grade, Size
 from designer.region import PointList
 from designer.report import format as fmt
 from designer.report.findings import Findings
+from designer.report.material_class import class_of
 from designer.report.parts import Statement
 from designer.selection.result import Candidate
 
@@ -20,8 +21,22 @@ def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     chosen = analysis.selection.chosen if analysis.selection else None
     statements = [*_margin(analysis, findings), *_sampling(analysis), *_hanging(analysis, findings)]
     if chosen is not None:
-        statements += [_trust(chosen), _modulus(chosen, findings), *_doubt(chosen)]
+        statements += [_trust(chosen), _modulus(chosen, findings)]
+    ropes = [*_ropes(analysis)]
+    for grade in {grade.id: grade for grade, _ in ropes}.values():
+        statements += _limits(grade)
+    for grade, size in ropes:
+        statements += _doubt(grade, size)
     return tuple(statements)
+
+
+def _ropes(analysis: Analysis) -> Iterator[tuple[Grade, Size]]:
+    """Yield the chosen rope and those of groups of cables, each grade and size once."""
+    chosen = analysis.selection.chosen if analysis.selection else None
+    found = analysis.groups.chosen if analysis.groups else None
+    ropes = [] if chosen is None else [(chosen.grade, chosen.size)]
+    ropes += [] if found is None else [(one.grade, one.size) for one in found.products]
+    yield from {(grade.id, size.id): (grade, size) for grade, size in ropes}.values()
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
@@ -86,9 +101,9 @@ def _trust(chosen: Candidate) -> Statement:
 
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:
-    modulus = chosen.grade.modulus
-    doubt = f"±\u00a0{fmt.trimmed(100 * modulus.uncertainty)}\u00a0%"
-    text = f"The modulus is {modulus.basis}, known to {doubt}."
+    elasticity = chosen.grade.elasticity
+    doubt = f"±\u00a0{fmt.trimmed(100 * elasticity.uncertainty)}\u00a0%"
+    text = f"The modulus is {elasticity.basis}, known to {doubt}."
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
         text += f" Over that range the utilisation at the worst pose is {_range(low, high)}."
@@ -102,6 +117,28 @@ def _range(low: float, high: float) -> str:
     return f"{first} throughout" if first == last else f"{first} to {last}"
 
 
-def _doubt(chosen: Candidate) -> Iterator[Statement]:
-    if chosen.size.doubt:
-        yield Statement(f"Doubt about {chosen.size.id}", f"{chosen.size.doubt}.", "doubt")
+def _limits(grade: Grade) -> Iterator[Statement]:
+    """Yield what the rope bears badly beside load, which nothing here computes."""
+    limits = grade.limits
+    creep = limits.creep if limits is not None else None
+    if creep is not None or class_of(grade) == "fibre":
+        known = f"Known of it: {creep}" if creep else "The source of its table says nothing of it"
+        text = (
+            f"Rope of {grade.material} may creep, which is to grow longer under lasting load. "
+            f"{known}. Creep is not computed here: where the rope does creep, its lengths must be "
+            "homed again."
+        )
+        yield Statement(f"Creep of {grade.id}", text, "doubt")
+    if limits is not None and limits.temperature_C is not None:
+        lowest, highest = (fmt.trimmed(limit) for limit in limits.temperature_C)
+        text = (
+            f"{grade.id} may be used from {lowest} to {highest}\u00a0°C. The temperature on site "
+            "is not part of the study."
+        )
+        yield Statement("Temperature", text, "doubt")
+
+
+def _doubt(grade: Grade, size: Size) -> Iterator[Statement]:
+    if size.doubt:
+        title = f"Doubt about {size.id} of {grade.id}"
+        yield Statement(title, f"{size.doubt}.", "doubt")

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from designer.analysis import Analysis
 from designer.report import format as fmt
 from designer.report.findings import Findings
+from designer.report.material_class import class_of
 from designer.report.parts import Fact, Picture, Statement
 from designer.report.sections.confidence import confidence
-from designer.report.sections.negative import actions, reasons
+from designer.report.sections.groups import groups_statement
+from designer.report.sections.negative import actions, objections, reasons
 from designer.report.sections.sag_cost import SagCost, sag_cost
 from designer.report.sections.selection import product_name
-from designer.selection.result import Candidate
+from designer.selection.objectives import MEANINGS
+from designer.selection.result import Candidate, SelectionResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +57,10 @@ class FirstPage:
         What could be done about it.
     sag : SagCost or None
         What ignoring sag would have cost; None where there is nothing to compare.
+    groups : Statement or None
+        What ropes for groups of cables save; None if the study has no groups.
+    group_ropes : tuple of Fact
+        The rope of each group; empty if none was found, or all get the chosen one.
     confidence : tuple of Statement
         How sure the answer is.
     picture : Picture or None
@@ -64,6 +72,8 @@ class FirstPage:
     reasons: tuple[Statement, ...]
     actions: tuple[str, ...]
     sag: SagCost | None
+    groups: Statement | None
+    group_ropes: tuple[Fact, ...]
     confidence: tuple[Statement, ...]
     picture: Picture | None
 
@@ -76,6 +86,8 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
         reasons=reasons(analysis, findings),
         actions=actions(analysis, findings),
         sag=sag_cost(analysis, findings),
+        groups=groups_statement(analysis.groups) if analysis.groups else None,
+        group_ropes=tuple(_group_ropes(analysis)),
         confidence=confidence(analysis, findings),
         picture=picture,
     )
@@ -83,13 +95,39 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
+    against = [*_open_points(analysis), *objections(analysis)]
     if analysis.is_positive:
         text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
-        return Statement("Yes", text, "good")
-    if chosen is not None:
-        text = f"{_holds(chosen)} But {_open_point(analysis)}."
-        return Statement("In part", text, "doubt")
-    return Statement("No", _negative(analysis), "bad")
+    elif chosen is not None:
+        text = _holds(chosen)
+    else:
+        return Statement("No", _negative(analysis), "bad")
+    text += _of_metal(analysis.selection, chosen)
+    if against:
+        return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
+    return Statement("Yes", text, "good")
+
+
+def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
+    """Name the best rope of steel beside a chosen one of fibre."""
+    if selection is None or chosen is None or class_of(chosen.grade) != "fibre":
+        return ""
+    solved = [o for o in selection.outcomes if class_of(o.grade) in ("steel", "stainless steel")]
+    if not solved:
+        return ""
+    text = f" It is a rope of {chosen.grade.material} fibre."
+    holding = [o.best for o in solved if o.best is not None]
+    if not holding:
+        return f"{text} No rope of steel that the study allows holds."
+    first = selection.objectives[0]
+    best = min(holding, key=lambda candidate: candidate.figures.burden(first))
+    kind = "stainless steel" if class_of(best.grade) == "stainless steel" else "steel"
+    most = "largest" if MEANINGS[first].more_is_better else "least"
+    return (
+        f"{text} The rope of {kind} that holds with the {most} {MEANINGS[first].word} is "
+        f"{best.size.id} of {best.grade.id}: {fmt.kilograms(best.total_mass_kg)} in all instead of "
+        f"{fmt.kilograms(chosen.total_mass_kg)}."
+    )
 
 
 def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
@@ -132,12 +170,12 @@ def _load(chosen: Candidate) -> str:
     return f"{text} There is hardly any reserve beyond it." if found.utilisation > 0.97 else text
 
 
-def _open_point(analysis: Analysis) -> str:
+def _open_points(analysis: Analysis) -> Iterator[str]:
     pose, workspace = analysis.pose, analysis.workspace
     if pose is not None and not pose.sizing.statics.is_solved:
-        return "no cable of the configured family can hold the configured pose"
-    assert workspace is not None
-    return "no cable of the configured family can serve the whole workspace"
+        yield "no cable of the configured family can hold the configured pose"
+    elif workspace is not None and not workspace.is_feasible:
+        yield "no cable of the configured family can serve the whole workspace"
 
 
 def _negative(analysis: Analysis) -> str:
@@ -175,7 +213,7 @@ def _card(analysis: Analysis) -> Card | None:
                 "of the configured cable family",
                 (
                     Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
-                    Fact("At the position", fmt.position(worst.position_m)),
+                    Fact("At the position", fmt.position(worst.place)),
                 ),
             )
         )
@@ -197,8 +235,9 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     assert analysis.study.selection is not None
     size, found = chosen.size, chosen.verification
     required = fmt.trimmed(analysis.study.selection.safety_factor)
-    actual = size.minimum_breaking_load_N / found.max_tension_N
-    longest = fmt.listing(fmt.fixed(float(x), 1) for x in found.longest_m)
+    actual = chosen.efficiency * size.minimum_breaking_load_N / found.max_tension_N
+    lengths = [fmt.fixed(float(x), 1) for x in found.longest_m]
+    longest = fmt.listing(lengths if len({*lengths}) > 1 else lengths[:1])
     return Card(
         heading="Chosen rope",
         size=size.id,
@@ -207,12 +246,28 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
             Fact("Grade", chosen.grade.id),
             Fact("Nominal diameter", fmt.millimetres(size.diameter_m)),
             Fact("Minimum breaking load", fmt.newtons(size.minimum_breaking_load_N)),
+            Fact("Allowable tension", *_allowable(chosen, required)),
             Fact("Largest tension", fmt.newtons(found.max_tension_N)),
             Fact("At the position", fmt.position(found.worst_position_m)),
             Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
             Fact("Utilisation", fmt.utilisation(found.utilisation)),
             Fact("Mass", fmt.kilograms_per_metre(size.linear_density_kg_per_m)),
-            Fact("Longest length of each cable", f"{longest}\u00a0m", "unstrained, no spare"),
+            Fact("Longest, each cable", f"{longest}\u00a0m", "unstrained, no spare"),
             Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
         ),
     )
+
+
+def _group_ropes(analysis: Analysis) -> Iterator[Fact]:
+    choice = analysis.groups
+    if choice is None or choice.chosen is None or len({*choice.chosen.products}) == 1:
+        return
+    for group, product in zip(choice.groups, choice.chosen.products, strict=True):
+        yield Fact(group.name, product.label)
+
+
+def _allowable(chosen: Candidate, required: str) -> tuple[str, str]:
+    """Return the allowable tension, and how it follows from the breaking load."""
+    share = "" if chosen.efficiency == 1.0 else f" times {fmt.trimmed(chosen.efficiency, 3)}"
+    allowable = fmt.newtons(chosen.cable.allowable_tension_N)
+    return allowable, f"breaking load{share} over {required}"

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from designer.analysis import Analysis
 from designer.report.parts import Column, Row, Table
+from designer.study import Entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +20,7 @@ class InputsSection:
     given : Table
         Fields that the file gives.
     defaults : Table or None
-        Fields that it leaves out; None if there are none.
+        Fields that it leaves out, in two columns for the appendix; None if there are none.
     """
 
     given: Table
@@ -38,11 +41,18 @@ def inputs_section(analysis: Analysis) -> InputsSection:
             (field, written, meaning),
             *(Row((e.field, e.given, e.value_SI)) for e in given),
         ),
-        defaults=Table.of(
-            "Fields left out, with the value used.",
-            (field, meaning),
-            *(Row((e.field, e.value_SI)) for e in defaults),
-        )
-        if defaults
-        else None,
+        defaults=_defaults(defaults) if defaults else None,
+    )
+
+
+def _defaults(entries: Sequence[Entry]) -> Table:
+    """Return the entries in two columns, the first half on the left."""
+    field, value = Column("Field", is_number=False), Column("Value used", is_number=False)
+    cells = [(e.field, e.value_SI) for e in entries]
+    half = (len(cells) + 1) // 2
+    pairs = zip_longest(cells[:half], cells[half:], fillvalue=("", ""))
+    return Table.of(
+        "Fields that the configuration file leaves out, in SI units.",
+        (field, value, field, value),
+        *(Row((*left, *right)) for left, right in pairs),
     )

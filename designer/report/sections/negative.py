@@ -8,6 +8,8 @@ from designer.analysis import Analysis
 from designer.report import format as fmt
 from designer.report.findings import Findings, Unserved
 from designer.report.parts import Statement
+from designer.report.sections.clearance import clearance_statement
+from designer.report.sections.stiffness import stiffness_statement
 from designer.verdict import Verdict
 from designer.workspace.result import WorkspaceMap
 
@@ -21,6 +23,9 @@ _UNSERVED = {
         "no cable of the configured family is thick enough, since its own weight alone exceeds "
         "the allowable stress"
     ),
+    Verdict.RANK_DEFICIENT: (
+        "the directions of the cables leave a force or moment that no tensions can take up"
+    ),
     Verdict.NOT_CONVERGED: "the solver found no solution and no proof that there is none",
 }
 
@@ -28,7 +33,22 @@ _UNSERVED = {
 def reasons(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     """Return why the answer is no, one statement for each part of it; empty if it is yes."""
     found = [*_pose_reason(analysis), *_workspace_reason(analysis, findings)]
-    return (*found, *_selection_reason(analysis))
+    return (*found, *_selection_reason(analysis), *_quality_reasons(analysis))
+
+
+def objections(analysis: Analysis) -> Iterator[str]:
+    """Yield what speaks against a rope that holds, such as ``the clearance is not kept``."""
+    for reason in _quality_reasons(analysis):
+        yield f"{reason.title[0].lower()}{reason.title[1:]}"
+
+
+def _quality_reasons(analysis: Analysis) -> Iterator[Statement]:
+    """Yield what the cables of the design make of the robot, where it is bad."""
+    found = analysis.qualities
+    if found is not None and found.interference is not None and found.interference.is_violated:
+        yield clearance_statement(found.interference)
+    if found is not None and found.stiffness is not None and found.stiffness.unstable:
+        yield stiffness_statement(found.stiffness)
 
 
 def _pose_reason(analysis: Analysis) -> Iterator[Statement]:
@@ -101,6 +121,7 @@ def actions(analysis: Analysis, findings: Findings) -> tuple[str, ...]:
             "Raise the exit points (higher masts), or lower the top of the region.",
             "Use a cable with more strength for its weight.",
         ]
+    advice += _keep_clear(analysis)
     if not advice and not analysis.is_positive:
         advice.append("Add a grade with thicker sizes to the catalogue, or carry less mass.")
     return tuple(advice)
@@ -132,6 +153,18 @@ def _move_pose(analysis: Analysis) -> Iterator[str]:
         yield "Move the configured pose below the exit points and inside their outline."
     else:
         yield "Move the configured pose away from the edge of the workspace, or lower."
+
+
+def _keep_clear(analysis: Analysis) -> Iterator[str]:
+    found = analysis.qualities
+    if found is None or found.interference is None or not found.interference.is_violated:
+        return
+    worst = found.interference.worst
+    assert worst is not None
+    yield (
+        f"Move exit points or attachments of {fmt.listing(worst.names)} apart, make the region "
+        "smaller, or ask for less clearance."
+    )
 
 
 def _real_figures(findings: Findings) -> Iterator[str]:

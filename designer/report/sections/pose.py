@@ -137,7 +137,8 @@ def _methods(pose: PoseAnalysis) -> Table | None:
         Column("Largest tension"),
         Column("Remark", is_number=False),
     )
-    return Table.of("The diameter of this pose by each way.", columns, *rows) if rows else None
+    caption = "The diameter of this pose by each way; sections are those of Riehl et al. (2010)."
+    return Table.of(caption, columns, *rows) if rows else None
 
 
 def _cables(pose: PoseAnalysis) -> Table:

@@ -2,16 +2,47 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from designer.analysis import Analysis
 from designer.catalogue.grade import TRUST_MEANING, Grade, Reference
 from designer.report import format as fmt
 from designer.report.findings import Findings
-from designer.report.parts import Column, Fact, Group, Picture, Row, Statement, Table
+from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.pictures import Pictures
+from designer.report.sections.candidates import (
+    alternatives_table,
+    best_table,
+    fallen_table,
+    front_sentence,
+    main_dominators,
+    pareto_table,
+    thin_table,
+)
 from designer.report.sections.comparison import Comparison, compare
-from designer.selection.result import Candidate, GradeOutcome, SelectionResult
+from designer.selection.objectives import MEANINGS
+from designer.selection.result import SelectionResult
+from designer.selection.usable import Usable, UsableSize
+
+
+@dataclass(frozen=True, slots=True)
+class UsablePart:
+    """Where each size of one grade may go.
+
+    Parameters
+    ----------
+    table : Table
+        Share and volume of each size.
+    chart : Picture or None
+        The same as a curve.
+    scene : Picture or None
+        Where some of the sizes serve, in space.
+    """
+
+    table: Table
+    chart: Picture | None
+    scene: Picture | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,27 +57,51 @@ class SelectionSection:
         What is known of the chosen grade, and where from; empty if none was chosen.
     comparison : Comparison or None
         The configured cable family beside the chosen rope; None if none was chosen.
-    candidates : Table
-        Every grade and size that was tried.
+    tried : str
+        What was solved and what it was compared by.
+    front : str
+        How many sizes no other beats, in a sentence; empty where none holds.
+    pareto : Table or None
+        These sizes; None where none holds.
+    pareto_chart : Picture or None
+        The same among all that hold.
+    best : Table or None
+        The best size of each grade; None where none holds.
+    chart : Picture or None
+        Sizes and need of each grade.
+    fallen : Table
+        Why the others fell out.
+    dominators : str
+        Who beats most of the others, and what was searched; may be empty.
+    thin : Table or None
+        Grades of which no size holds; None where there are none.
+    usable : UsablePart or None
+        What each size of the chosen grade serves; None where nothing was solved.
     notes : tuple of Statement
         Doubts about figures that the tables point to.
     alternatives : Table or None
         Grades outside the study's list that would hold; None where there are none to show.
-    chart : Picture or None
-        The candidates as a chart.
     """
 
     verdict: Statement
     sources: tuple[Fact, ...]
     comparison: Comparison | None
-    candidates: Table
+    tried: str
+    front: str
+    pareto: Table | None
+    pareto_chart: Picture | None
+    best: Table | None
+    chart: Picture | None
+    fallen: Table
+    dominators: str
+    thin: Table | None
+    usable: UsablePart | None
     notes: tuple[Statement, ...]
     alternatives: Table | None
-    chart: Picture | None
 
 
 def selection_section(
-    analysis: Analysis, findings: Findings, chart: Picture | None
+    analysis: Analysis, findings: Findings, pictures: Pictures
 ) -> SelectionSection | None:
     """Return the section on the choice; None if the study asks for none."""
     selection = analysis.selection
@@ -57,10 +112,18 @@ def selection_section(
         verdict=_statement(selection),
         sources=_sources(chosen.grade) if chosen else (),
         comparison=compare(analysis, outcome) if outcome else None,
-        candidates=_candidates(selection),
+        tried=_tried(selection),
+        front=front_sentence(selection),
+        pareto=pareto_table(selection) if selection.front else None,
+        pareto_chart=pictures.pareto,
+        best=best_table(selection) if selection.front else None,
+        chart=pictures.candidates,
+        fallen=fallen_table(selection),
+        dominators=main_dominators(selection),
+        thin=thin_table(selection.outcomes),
+        usable=_usable(selection, pictures),
         notes=_notes(selection),
-        alternatives=_alternatives(selection),
-        chart=chart,
+        alternatives=alternatives_table(selection),
     )
 
 
@@ -75,17 +138,19 @@ def _statement(selection: SelectionResult) -> Statement:
         reason = selection.reason or "no reason is known"
         return Statement("No rope was found", f"{reason[0].upper()}{reason[1:]}.", "bad")
     held = sum(outcome.outcome == "fits" for outcome in selection.outcomes)
+    first = MEANINGS[selection.objectives[0]]
+    most = "largest" if first.more_is_better else "least"
     text = (
-        f"{chosen.size.id} of {chosen.grade.id} is the lightest of the sizes that hold every "
-        f"pose: {fmt.plural(held, 'grade')} of {len(selection.outcomes)} can serve the workspace."
+        f"{chosen.size.id} of {chosen.grade.id} has the {most} {first.word} of the sizes that hold "
+        f"every pose: {fmt.plural(held, 'grade')} of {len(selection.outcomes)} can serve the "
+        "workspace."
     )
     return Statement("A rope was found", text, "good")
 
 
 def _sources(grade: Grade) -> tuple[Fact, ...]:
-    modulus = grade.modulus
-    area = {"nominal": "nominal circle", "metallic": "metallic area"}[modulus.reference_area]
-    doubt = f"±\u00a0{fmt.trimmed(100 * modulus.uncertainty)}\u00a0%"
+    elasticity = grade.elasticity
+    doubt = f"±\u00a0{fmt.trimmed(100 * elasticity.uncertainty)}\u00a0%"
     return (
         Fact("Grade", grade.id),
         Fact("Product", grade.product),
@@ -95,24 +160,27 @@ def _sources(grade: Grade) -> tuple[Fact, ...]:
         _reference(grade.source),
         Fact("Trust", f"{grade.trust}: {TRUST_MEANING[grade.trust]}"),
         Fact(
-            "Modulus",
-            f"{fmt.pascals(modulus.value_Pa)} {doubt} on the {area}",
-            f"{modulus.basis}: {modulus.source}",
+            "Modulus" if grade.modulus else "Stiffness",
+            f"{elasticity.figure}, {doubt}",
+            f"{elasticity.basis}: {elasticity.source}",
         ),
-        *(Fact("Note", note) for note in grade.notes),
+        *_limits(grade),
+        *(Fact("Computed", f"{c.figure.replace('_', ' ')}: {c.how}") for c in grade.computed),
+        *([Fact("Notes", " ".join(map(_sentence, grade.notes)))] if grade.notes else []),
     )
 
 
-_HEAD = (
-    Column("Size", is_number=False),
-    Column("Diameter", "mm"),
-    Column("Breaking load", "kN"),
-    Column("Largest tension", "kN"),
-    Column("Utilisation"),
-    Column("Mass", "kg/m"),
-    Column("All cables", "kg"),
-    Column("Holds", is_number=False),
-)
+def _sentence(note: str) -> str:
+    return note if note.endswith(".") else f"{note}."
+
+
+def _limits(grade: Grade) -> Iterator[Fact]:
+    limits = grade.limits
+    if limits is not None and limits.temperature_C is not None:
+        lowest, highest = limits.temperature_C
+        yield Fact("Temperature", f"{lowest:g} to {highest:g} °C", limits.source)
+    if limits is not None and limits.creep is not None:
+        yield Fact("Creep", limits.creep, limits.source)
 
 
 def _reference(source: Reference) -> Fact:
@@ -124,68 +192,6 @@ def _reference(source: Reference) -> Fact:
     return Fact("Table read from", text, note=url, link=url if is_web else "")
 
 
-def _candidates(selection: SelectionResult) -> Table:
-    caption = (
-        "Every grade that the study allows, lightest first, and the sizes tried. The mass of all "
-        "cables counts each at the longest length that it needs."
-    )
-    return _table_of(caption, selection.outcomes, selection.chosen)
-
-
-@dataclass(frozen=True, slots=True)
-class Decimals:
-    """Digits after the point in the columns of forces [kN] and of total masses [kg]."""
-
-    force: int
-    mass: int
-
-
-def _table_of(caption: str, outcomes: tuple[GradeOutcome, ...], chosen: Candidate | None) -> Table:
-    tried = [candidate for outcome in outcomes for candidate in outcome.candidates]
-    decimals = Decimals(
-        force=fmt.decimals(c.size.minimum_breaking_load_N / 1e3 for c in tried),
-        mass=fmt.decimals(c.total_mass_kg for c in tried),
-    )
-    ordered = sorted(outcomes, key=_rank)
-    return Table(caption, _HEAD, tuple(_grade_group(o, chosen, decimals) for o in ordered))
-
-
-def _rank(outcome: GradeOutcome) -> tuple[int, float]:
-    if outcome.best is not None:
-        return 0, outcome.best.total_mass_kg
-    if outcome.outcome == "too_thin":
-        return 1, outcome.continuous_diameter_m / outcome.grade.thickest.diameter_m
-    return 2, 0.0
-
-
-def _grade_group(outcome: GradeOutcome, chosen: Candidate | None, decimals: Decimals) -> Group:
-    grade = outcome.grade
-    is_chosen = chosen is not None and outcome.best is chosen
-    return Group(
-        rows=tuple(_row(c, decimals, is_chosen and c is chosen) for c in outcome.candidates),
-        title=grade.id,
-        remark=f"{grade.construction} {grade.core}, trust {grade.trust}: {outcome.sentence}",
-        tone="good" if is_chosen else "" if outcome.outcome == "fits" else "muted",
-    )
-
-
-def _row(candidate: Candidate, decimals: Decimals, is_chosen: bool) -> Row:
-    size, found = candidate.size, candidate.verification
-    can_hold = math.isfinite(found.max_tension_N)
-    cells = (
-        size.id,
-        fmt.fixed(1e3 * size.diameter_m, 1),
-        fmt.fixed(size.minimum_breaking_load_N / 1e3, decimals.force),
-        fmt.fixed(found.max_tension_N / 1e3, decimals.force) if can_hold else fmt.MISSING,
-        fmt.utilisation(found.utilisation),
-        fmt.fixed(size.linear_density_kg_per_m, 3),
-        fmt.fixed(candidate.total_mass_kg, decimals.mass) if can_hold else fmt.MISSING,
-        "chosen" if is_chosen else "yes" if candidate.verified else "no",
-    )
-    note = f"Doubtful figures: {size.doubt}" if size.doubt else ""
-    return Row(cells, "good" if is_chosen else "" if candidate.verified else "muted", note)
-
-
 def _notes(selection: SelectionResult) -> tuple[Statement, ...]:
     seen = {outcome.grade.trust for outcome in selection.outcomes}
     return tuple(
@@ -195,8 +201,59 @@ def _notes(selection: SelectionResult) -> tuple[Statement, ...]:
     )
 
 
-def _alternatives(selection: SelectionResult) -> Table | None:
-    if not selection.alternatives:
+def _tried(selection: SelectionResult) -> str:
+    """Return what was solved, in a sentence."""
+    candidates = selection.candidates
+    if not candidates:
+        return "No size was solved."
+    held = sum(c.verification.holds for c in candidates)
+    return (
+        f"{fmt.plural(len(candidates), 'size')} of {fmt.plural(len(selection.outcomes), 'grade')} "
+        f"were solved in every sample, each with its own mass, stiffness and breaking load; "
+        f"{fmt.count(held)} of them hold. They were compared by "
+        f"{fmt.listing(MEANINGS[o].title for o in selection.objectives)}; the first decides."
+    )
+
+
+def _usable(selection: SelectionResult, pictures: Pictures) -> UsablePart | None:
+    usable = selection.usable
+    if usable is None or not usable.sizes:
         return None
-    caption = "Grades that the study does not allow, but that would hold the whole workspace."
-    return _table_of(caption, selection.alternatives, None)
+    has_volume = usable.sizes[0].volume_m3 is not None
+    columns = [
+        Column("Size", is_number=False),
+        Column("Diameter", "mm"),
+        Column("Serves", "of the region" if has_volume else "of the points"),
+    ]
+    if has_volume:
+        columns.append(Column("Volume", "m³"))
+    shown = next(
+        (k for k, one in enumerate(usable.sizes, start=1) if _serves_on(one, usable)), None
+    )
+    thicker = " All thicker ones serve all of it." if shown not in (None, len(usable.sizes)) else ""
+    caption = (
+        f"How much of the workspace each size of {usable.grade.id} serves with its own figures, "
+        f"by the samples.{thicker}"
+    )
+    return UsablePart(
+        table=Table.of(caption, tuple(columns), *map(_usable_row, usable.sizes[:shown])),
+        chart=pictures.usable_chart,
+        scene=pictures.usable_scene,
+    )
+
+
+def _serves_on(one: UsableSize, usable: Usable) -> bool:
+    """Tell whether a size and all thicker ones serve everything."""
+    thicker = usable.sizes[usable.sizes.index(one) :]
+    return all(size.fraction == 1.0 for size in thicker)
+
+
+def _usable_row(one: UsableSize) -> Row:
+    some = 0.0 < one.fraction < 1.0
+    share = fmt.percent(one.fraction)
+    if some and round(one.fraction, 3) == 1.0:
+        share = f"over\u00a0{fmt.percent(0.999)}"
+    cells = [one.size.id, fmt.fixed(1e3 * one.size.diameter_m, 1), share]
+    if one.volume_m3 is not None:
+        cells.append(fmt.number(one.volume_m3))
+    return Row(tuple(cells), "" if one.fraction > 0.0 else "muted")

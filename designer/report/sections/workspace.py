@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
 
 from designer.analysis import Analysis
-from designer.region import PointList, Region
+from designer.region import PointList, Prism, Rectangle, Region
 from designer.report import format as fmt
 from designer.report.findings import Findings, OtherPolicy
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.report.pictures import Pictures
+from designer.robot import Robot
+from designer.space import Orientations
 from designer.study import HangsBelow, Workspace
 from designer.verdict import Verdict
 from designer.workspace.result import Census, Extreme, WorkspaceMap
+
+_MOST_LISTED = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +68,12 @@ def workspace_section(
         facts=_facts(study.workspace, found),
         extremes=_extremes(study.workspace.region, found),
         census=_census(found.census),
-        hanging=_hanging(study.workspace, found, findings.other_policy),
+        hanging=_hanging(
+            study.workspace,
+            found,
+            findings.other_policy,
+            comes_from_below=_comes_from_below(analysis.built.robot, study.workspace),
+        ),
         policies=_policies(study.workspace, found, findings.other_policy),
         verdicts=pictures.verdicts,
         maps=pictures.workspace,
@@ -73,6 +85,9 @@ def describe_region(region: Region) -> str:
     if isinstance(region, PointList):
         return f"a list of {fmt.plural(len(region.points_m), 'point')}"
     low, high = region.z_m
+    if isinstance(region, Rectangle):
+        ends = " to ".join(fmt.position(end) for end in region.ends_m)
+        return f"upright rectangle from {ends}, z from {fmt.metres(low)} to {fmt.metres(high)}"
     return (
         f"upright prism over {len(region.polygon_m)} corners, "
         f"z from {fmt.metres(low)} to {fmt.metres(high)}"
@@ -84,12 +99,12 @@ def _statement(found: WorkspaceMap) -> Statement:
         text = (
             f"A cable of {fmt.millimetres(found.sagging.diameter_m)} of the configured family "
             "serves every pose that counts. The worst is at "
-            f"{fmt.position(found.sagging.position_m)}."
+            f"{fmt.position(found.sagging.place)}."
         )
         return Statement("The workspace is served", text, "good")
     text = "There is no diameter of the configured family that serves every pose."
-    if found.infeasible_example_m is not None:
-        where = fmt.position(found.infeasible_example_m)
+    if found.infeasible_pose is not None:
+        where = fmt.position(found.infeasible_pose.place)
         text += f" An example of a pose that is not served is {where}."
         text += (
             " Toward such poses the needed diameter grows without bound, so the worst sample "
@@ -101,9 +116,12 @@ def _statement(found: WorkspaceMap) -> Statement:
 def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
     region = workspace.region
     facts = [Fact("Region", describe_region(region))]
+    orientations = workspace.orientations
+    if not orientations.is_level:
+        words = describe_orientations(orientations)
+        facts.append(Fact("Orientation", words, _how_tried(orientations)))
     if not isinstance(region, PointList):
-        facts.append(Fact("Base area", fmt.square_metres(region.area_m2)))
-        facts.append(Fact("Volume", fmt.cubic_metres(region.volume_m3)))
+        facts.extend(_size(region))
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
         facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
@@ -116,6 +134,33 @@ def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
             )
         )
     return tuple(facts)
+
+
+def _how_tried(orientations: Orientations) -> str:
+    if orientations.range_rad is None:
+        return "rotation vectors; a position counts in its worst orientation"
+    tried = f"{orientations.count} tried at each position, the worst searched between them"
+    return f"rotation vectors; {tried}"
+
+
+def _size(region: Prism | Rectangle) -> tuple[Fact, ...]:
+    if isinstance(region, Rectangle):
+        return (Fact("Area", fmt.square_metres(float(np.prod(region.size_m)))),)
+    return (
+        Fact("Base area", fmt.square_metres(region.area_m2)),
+        Fact("Volume", fmt.cubic_metres(region.volume_m3)),
+    )
+
+
+def describe_orientations(orientations: Orientations) -> str:
+    """Return in words how the platform is turned at every position."""
+    turns = np.degrees(orientations.turns_rad)
+    if orientations.range_rad is None:
+        listed = "; ".join(fmt.degrees(turn) for turn in turns[:_MOST_LISTED])
+        more = f"; {len(turns) - _MOST_LISTED} more" if len(turns) > _MOST_LISTED else ""
+        return f"turned by {listed}{more}" if len(turns) == 1 else f"each of {listed}{more}"
+    low, high = np.degrees(orientations.range_rad)
+    return f"all between {fmt.degrees(low)} and {fmt.degrees(high)}"
 
 
 def _extremes(region: Region, found: WorkspaceMap) -> Table:
@@ -140,7 +185,7 @@ def _extreme(name: str, extreme: Extreme | None, is_answer: bool) -> Row:
         return Row((name, fmt.MISSING, "none", "none"), "bad" if is_answer else "muted")
     cells = (
         name,
-        fmt.position(extreme.position_m),
+        fmt.position(extreme.place),
         fmt.millimetres(extreme.diameter_m),
         fmt.newtons(extreme.max_tension_N),
     )
@@ -169,7 +214,16 @@ def _census(census: Census) -> Table:
     return Table.of("Verdicts of all samples.", columns, *rows)
 
 
-def _hanging(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None) -> Statement:
+def _comes_from_below(robot: Robot, workspace: Workspace) -> bool:
+    """Tell whether an exit point lies below all positions of the platform."""
+    up = robot.upright[2]
+    corners = np.array(list(product(*workspace.region.bounds_m.T)))
+    return bool((robot.exit_points_m @ up).min() < (corners @ up).min())
+
+
+def _hanging(
+    workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None, *, comes_from_below: bool
+) -> Statement:
     census = found.census
     if census.hangs_below == 0:
         text = "In no solved sample does a cable hang below the platform."
@@ -179,6 +233,8 @@ def _hanging(workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | Non
         f"In {share} of the samples a cable hangs below the platform: it may touch the ground "
         "or what stands on it."
     )
+    if comes_from_below:
+        text += " Cables that come from below, as some of this robot do, are among them."
     if workspace.hangs_below == "include":
         title = "These poses count"
         text += " All results of this report include them."

@@ -1,0 +1,1 @@
+"""How near cables come to each other and to the platform."""

@@ -1,0 +1,190 @@
+r"""How the end force of a sagging cable changes as its end moves, at fixed unstrained length.
+
+With t the unit tangent of the cable and n its unit normal in the vertical plane, a small change
+of the end force moves the end by the flexibility
+
+.. math::
+
+    \frac{\partial(x, z)}{\partial(F_x, F_z)} =
+        \frac{l}{EA} I + \int_0^l \frac{n\, n^\mathsf{T}}{T(s)}\, ds
+
+the derivative of Irvine's catenary, Riehl et al., ICRA 2010, eqs. (7) and (8): the cable stretches
+and its arc turns. The integral has a closed form; the tangent stiffness is the inverse.
+
+Over a swivelling pulley (`designer.physics.pulley`) the free length l changes as the cable rolls
+off, so l becomes a third unknown beside the two forces:
+
+.. math::
+
+    x(l, F) + R (1 + \sin α) = X, \quad z(l, F) + R \cos α = -D, \quad
+    l + \frac{R (π/2 + α)}{1 + T_0 / EA} = l_\mathrm{total}
+
+with α the slope and T_0 the tension at the upper end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from designer.arrays import FloatArray
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+_SHORT_ARC = 0.5
+
+
+def flexibility_m_per_N(
+    length_m: ArrayLike,
+    force_x_N: ArrayLike,
+    force_z_N: ArrayLike,
+    axial_stiffness_N: ArrayLike,
+    weight_N_per_m: ArrayLike,
+) -> FloatArray:
+    """Return ∂(x, z)/∂(F_x, F_z) at the attachment point (..., 2, 2) [m/N].
+
+    Parameters
+    ----------
+    length_m : array (...)
+        Unstrained length [m].
+    force_x_N, force_z_N : array (...)
+        Force on the cable at the attachment point, as in `designer.physics.catenary` [N].
+    axial_stiffness_N, weight_N_per_m : array (...)
+        EA [N] and weight per unstrained length [N/m].
+
+    Returns
+    -------
+    array (..., 2, 2)
+        Symmetric. Infinite in x for a vertical cable that folds at its lowest point.
+    """
+    length, F_x, F_z, EA, w = np.broadcast_arrays(
+        *(
+            np.asarray(value, dtype=np.float64)
+            for value in (length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
+        )
+    )
+    V_0 = F_z - w * length
+    T_0, T_l = np.hypot(F_x, V_0), np.hypot(F_x, F_z)
+    angle, turn = _arc(length, F_x, F_z, V_0, T_0, T_l, w)
+    across = np.where(angle < _SHORT_ARC, _short_across(length, F_x, V_0, w), (angle - turn) / w)
+    stretch = length / EA
+    skew = -F_x * length * (F_z + V_0) / ((T_l + T_0) * T_l * T_0)
+    rows = [[stretch + across, skew], [skew, stretch + turn / w]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def stiffness_N_per_m(
+    length_m: FloatArray,
+    force_x_N: FloatArray,
+    force_z_N: FloatArray,
+    axial_stiffness_N: FloatArray,
+    weight_N_per_m: FloatArray,
+) -> FloatArray:
+    """Return ∂(F_x, F_z)/∂(x, z) of a cable from a fixed exit point (..., 2, 2) [N/m].
+
+    The inverse of `flexibility_m_per_N`, with the same parameters.
+    """
+    C = flexibility_m_per_N(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
+    return _inverse(C)
+
+
+def stiffness_over_pulley_N_per_m(
+    length_m: FloatArray,
+    force_x_N: FloatArray,
+    force_z_N: FloatArray,
+    axial_stiffness_N: FloatArray,
+    weight_N_per_m: FloatArray,
+    radius_m: ArrayLike,
+) -> FloatArray:
+    """Return ∂(F_x, F_z)/∂(x, z) of a cable over a pulley, at fixed total length (..., 2, 2) [N/m].
+
+    Parameters
+    ----------
+    length_m : array (...)
+        Unstrained length between pulley and attachment point [m].
+    force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m : array (...)
+        As for `flexibility_m_per_N`.
+    radius_m : float or array (...)
+        Pulley radius [m].
+    """
+    length, F_x, F_z, EA, w, R = np.broadcast_arrays(
+        length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m, np.asarray(radius_m)
+    )
+    V_0 = F_z - w * length
+    T_0 = np.hypot(F_x, V_0)
+    slope = np.arctan2(-V_0, F_x)
+    strain = T_0 / EA
+    end = flexibility_m_per_N(length, F_x, F_z, EA, w)
+    # Slopes of V_0, T_0 and α in the unknowns F_x, F_z and l.
+    V_by = np.stack([np.zeros_like(w), np.ones_like(w), -w], axis=-1)
+    F_by = np.broadcast_to([1.0, 0.0, 0.0], V_by.shape)
+    T_by = (F_x[..., None] * F_by + V_0[..., None] * V_by) / T_0[..., None]
+    slope_by = (V_0[..., None] * F_by - F_x[..., None] * V_by) / (T_0**2)[..., None]
+    along = np.stack([F_x, V_0], axis=-1) / T_0[..., None]
+    position_by = np.concatenate([end, ((1.0 + strain)[..., None] * along)[..., None]], axis=-1)
+    position_by = position_by + (R[..., None] * along)[..., None] * slope_by[..., None, :]
+    wrap = R * (0.5 * np.pi + slope) / (1.0 + strain)
+    total_by = (
+        np.array([0.0, 0.0, 1.0])
+        + (R / (1.0 + strain))[..., None] * slope_by
+        - (wrap / (EA + T_0))[..., None] * T_by
+    )
+    jacobian = np.concatenate([position_by, total_by[..., None, :]], axis=-2)
+    return _solve_or_nan(jacobian)[..., :2, :2]
+
+
+def _arc(
+    length: FloatArray,
+    F_x: FloatArray,
+    F_z: FloatArray,
+    V_0: FloatArray,
+    T_0: FloatArray,
+    T_l: FloatArray,
+    w: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return asinh(V/F_x) and V/T at the attachment point less the same at the exit point.
+
+    Where both ends slope the same way the differences are taken through their conjugates.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        conjugate = w * length * (F_z + V_0) / (F_z * T_0 + V_0 * T_l)
+        same = F_z * V_0 > 0.0
+        angle = np.where(same, np.arcsinh(conjugate), np.arcsinh(F_z / F_x) - np.arcsinh(V_0 / F_x))
+        turn = np.where(same, F_x**2 * conjugate / (T_0 * T_l), F_z / T_l - V_0 / T_0)
+    return angle, turn
+
+
+def _short_across(
+    length: FloatArray, F_x: FloatArray, V_0: FloatArray, w: FloatArray
+) -> FloatArray:
+    """Return the integral of n_x²/T over the cable by quadrature.
+
+    Its closed form is the difference of two nearly equal numbers where the cable is nearly
+    straight; there the integrand is smooth, so that a few nodes reach rounding.
+    """
+    total = np.zeros(length.shape)
+    for node, weight in zip(0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS, strict=True):
+        V = V_0 + node * w * length
+        with np.errstate(invalid="ignore", divide="ignore"):
+            total = total + weight * V**2 / np.hypot(F_x, V) ** 3
+    return np.asarray(length * total)
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """Return the inverse of symmetric matrices (..., 2, 2); an infinite entry gives a zero."""
+    a, b, c = matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 1, 1]
+    soft = np.isinf(a)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        determinant = a * c - b * b
+        rows = [[c / determinant, -b / determinant], [-b / determinant, a / determinant]]
+        inverse = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+        folded = np.stack(
+            [np.zeros((*c.shape, 2)), np.stack([np.zeros_like(c), 1.0 / c], axis=-1)], axis=-2
+        )
+    return np.where(soft[..., None, None], folded, inverse)
+
+
+def _solve_or_nan(matrix: FloatArray) -> FloatArray:
+    """Return inverses; NaN where the matrix has no finite entries."""
+    bad = np.asarray(~np.isfinite(matrix).all(axis=(-2, -1)))
+    safe = np.where(bad[..., None, None], np.eye(matrix.shape[-1]), matrix)
+    return np.where(bad[..., None, None], np.nan, np.linalg.inv(safe))

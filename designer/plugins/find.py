@@ -1,0 +1,164 @@
+"""Finds plugins and asks each for what it has, so that none of them can break the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import EntryPoint, entry_points
+
+import pluggy
+
+import designer
+from designer.plugins import hookspecs
+from designer.plugins.guard import attempt, one_line
+
+OWN_ENTRIES = (
+    EntryPoint("builtin", "designer.catalogue.builtin", hookspecs.ENTRY_POINT_GROUP),
+    EntryPoint("builtin-effects", "designer.effects.builtin", hookspecs.ENTRY_POINT_GROUP),
+)
+"""Our own plugins, as `pyproject.toml` declares them.
+
+They are taken from here, so that a checkout on Python's path, which declares nothing, has them too.
+"""
+OWN_NAMES = frozenset(entry.name for entry in OWN_ENTRIES)
+_OWN_MODULES = tuple(entry.value for entry in OWN_ENTRIES)
+
+
+@dataclass(frozen=True, slots=True)
+class Plugin:
+    """A plugin that could be loaded.
+
+    Parameters
+    ----------
+    name : str
+        Name of its entry point.
+    source : str
+        Its distribution and version.
+    hooks : mapping of str to callable
+        What it implements, by the names of the hooks.
+    """
+
+    name: str
+    source: str
+    hooks: Mapping[str, Callable[[], object]]
+
+    @property
+    def label(self) -> str:
+        """Name and source, for a line about a problem."""
+        return f"plugin {self.name} ({self.source})"
+
+
+@dataclass(frozen=True, slots=True)
+class Plugins:
+    """All plugins that could be loaded.
+
+    Parameters
+    ----------
+    found : tuple of Plugin
+        Ours first, then the others by name.
+    problems : tuple of str
+        One line for each that could not be loaded.
+    with_others : bool
+        Whether others than ours were looked for.
+    """
+
+    found: tuple[Plugin, ...]
+    problems: tuple[str, ...] = ()
+    with_others: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """What one plugin, or the user's folder, has to offer.
+
+    Parameters
+    ----------
+    name : str
+        Name of the plugin.
+    source : str
+        Its distribution and version, or the path of the folder.
+    label : str
+        Both, for a line about a problem.
+    items : tuple
+        What the hook gave, not looked at yet.
+    """
+
+    name: str
+    source: str
+    label: str
+    items: tuple[object, ...]
+
+
+def find_plugins(with_plugins: bool = True) -> Plugins:
+    """Load the entry points, ours first.
+
+    Parameters
+    ----------
+    with_plugins : bool
+        False: only our own.
+    """
+    problems: list[str] = []
+    found: dict[str, Plugin] = {}
+    for entry in _entries(with_plugins):
+        name, source = one_line(entry.name), _distribution(entry)
+        plugin = Plugin(name, source, {})
+        if name in found:
+            problems.append(f"{plugin.label} has the name of {found[name].source}: left out")
+            continue
+        hooks = attempt(partial(_hooks, entry), plugin.label, "cannot be loaded", problems)
+        if hooks is not None:
+            found[name] = Plugin(name, source, hooks)
+    return Plugins(tuple(found.values()), tuple(problems), with_plugins)
+
+
+def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
+    """Return what the plugins give in answer to a hook, and one line for each that fails."""
+    problems: list[str] = []
+    offers = []
+    for plugin in plugins.found:
+        if hook not in plugin.hooks:
+            continue
+        answer = partial(_listed, plugin.hooks[hook])
+        items = attempt(answer, plugin.label, f"fails in {hook}()", problems)
+        if items is not None:
+            offers.append(Offer(plugin.name, plugin.source, plugin.label, items))
+    return offers, problems
+
+
+def _entries(with_plugins: bool) -> Iterable[EntryPoint]:
+    installed = entry_points(group=hookspecs.ENTRY_POINT_GROUP)
+    strangers = [entry for entry in installed if entry.value not in _OWN_MODULES]
+    yield from OWN_ENTRIES
+    if with_plugins:
+        yield from sorted(strangers, key=lambda entry: (entry.name, entry.value))
+
+
+def _hooks(entry: EntryPoint) -> dict[str, Callable[[], object]]:
+    # A manager for each, so that pluggy looks at one stranger at a time.
+    manager = pluggy.PluginManager(hookspecs.PROJECT)
+    manager.add_hookspecs(hookspecs)
+    manager.register(entry.load(), entry.name)
+    manager.check_pending()  # a hook that is misspelt
+    hooks = {
+        name: implementation.function
+        for name in hookspecs.HOOKS
+        for implementation in getattr(manager.hook, name).get_hookimpls()
+    }
+    if not hooks:
+        raise TypeError("it has no hook " + " or ".join(f"{name}()" for name in hookspecs.HOOKS))
+    return hooks
+
+
+def _listed(hook: Callable[[], object]) -> tuple[object, ...]:
+    answer = hook()
+    if not isinstance(answer, list | tuple):
+        raise TypeError(f"it returned {type(answer).__name__}, not a list")
+    return tuple(answer)
+
+
+def _distribution(entry: EntryPoint) -> str:
+    if entry.value in _OWN_MODULES:
+        return f"cdpr-designer {designer.__version__}"
+    dist = entry.dist
+    return one_line(f"{dist.name} {dist.version}") if dist is not None else entry.value

@@ -1,0 +1,26 @@
+"""How long tasks tell how far they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from typing import Protocol
+
+Advance = Callable[[int], None]
+"""Called with the number of steps done since the last call."""
+
+
+class Reporter(Protocol):
+    """Shows progress: a context for each long task, which hands out a function to advance it."""
+
+    def task(self, name: str, total: int) -> AbstractContextManager[Advance]:
+        """Open a task of ``total`` steps."""
+
+
+class Silent:
+    """A reporter that shows nothing."""
+
+    @contextmanager
+    def task(self, name: str, total: int) -> Iterator[Advance]:
+        """Open a task that nobody watches."""
+        yield lambda _: None

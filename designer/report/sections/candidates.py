@@ -1,0 +1,263 @@
+"""The candidates as tables: whom none beats, the best of each grade, why the others fell out."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+from designer.report import format as fmt
+from designer.report.parts import Column, Group, Row, Table, Tone
+from designer.selection.objectives import MEANINGS
+from designer.selection.result import (
+    Candidate,
+    GradeOutcome,
+    NotTried,
+    SelectionResult,
+    Standing,
+)
+from designer.study import Objective
+
+_MOST_BEST = 20
+_MOST_NAMES = 3
+_Cell = Callable[[Candidate], str]
+
+
+def pareto_table(selection: SelectionResult) -> Table:
+    """Return the candidates that no other beats in everything, the chosen one first."""
+    names = fmt.listing(MEANINGS[objective].title for objective in selection.objectives)
+    caption = (
+        f"Sizes that hold everywhere and that no other size beats in {names} at once. The "
+        "allowable tension is the breaking load times the efficiency over the safety factor."
+    )
+    columns, cells = zip(*_columns(selection, selection.front), strict=True)
+    groups = tuple(
+        Group(
+            rows=(Row(tuple(cell(c) for cell in cells), _tone(c), _doubt(c)),),
+            title=c.grade.id,
+            remark=f"{c.grade.construction} {c.grade.core}, trust {c.grade.trust}: {c.reason}",
+            tone="good" if c.standing == "chosen" else "",
+        )
+        for c in selection.front
+    )
+    return Table(caption, columns, groups)
+
+
+def front_sentence(selection: SelectionResult) -> str:
+    """Return how many sizes no other beats, and which where it is one; empty where none holds."""
+    names = fmt.listing(MEANINGS[objective].title for objective in selection.objectives)
+    if not selection.front:
+        return ""
+    if len(selection.front) > 1:
+        return (
+            f"{fmt.plural(len(selection.front), 'size')} are left that no other size beats in "
+            f"{names} at once: who wants less of one has to take more of another."
+        )
+    if not any(c.standing == "dominated" for c in selection.candidates):
+        return f"Only {selection.front[0].name} holds, so there is nothing to weigh it against."
+    return (
+        f"One size alone is left: {selection.front[0].name} beats every other size that holds and "
+        f"of which all is known, by {names}. So nothing is to be weighed here."
+    )
+
+
+def best_table(selection: SelectionResult) -> Table:
+    """Return the best size of each grade that holds, the best first."""
+    best = _best(selection, selection.outcomes)
+    title = MEANINGS[selection.objectives[0]].title
+    caption = f"The best size of each grade that holds everywhere, by {title}."
+    if len(best) > _MOST_BEST:
+        more = fmt.plural(len(best) - _MOST_BEST, "more grade")
+        caption += f" {more} {_is(len(best) - _MOST_BEST)} in candidates.csv."
+    return _table_of_best(selection, best, caption, _tone)
+
+
+def alternatives_table(selection: SelectionResult) -> Table | None:
+    """Return the grades that the study does not allow, but that would hold; None without any."""
+    best = _best(selection, selection.alternatives)
+    if not best:
+        return None
+    caption = "Grades that the study does not allow, but that would hold the whole workspace."
+    if len(best) > _MOST_BEST:
+        caption += f" {fmt.plural(len(best) - _MOST_BEST, 'more grade')} would hold as well."
+    return _table_of_best(selection, best, caption, lambda _: "")
+
+
+def _best(selection: SelectionResult, outcomes: Sequence[GradeOutcome]) -> list[Candidate]:
+    """Return the best size of each grade that holds, the chosen one and then the best first."""
+    first = selection.objectives[0]
+    best = [o.best for o in outcomes if o.best is not None]
+    return sorted(best, key=lambda c: (c.standing != "chosen", c.figures.burden(first)))
+
+
+def _is(amount: int) -> str:
+    return "is" if amount == 1 else "are"
+
+
+def _table_of_best(
+    selection: SelectionResult,
+    best: Sequence[Candidate],
+    caption: str,
+    tone: Callable[[Candidate], Tone],
+) -> Table:
+    shown = best[:_MOST_BEST]
+    head: list[tuple[Column, _Cell]] = [
+        (Column("Grade", is_number=False), lambda c: c.grade.id),
+        (Column("Material", is_number=False), lambda c: c.grade.material or "not stated"),
+    ]
+    columns, cells = zip(*head, *_columns(selection, shown, full=False), strict=True)
+    rows = (Row(tuple(cell(c) for cell in cells), tone(c), _doubt(c)) for c in shown)
+    return Table.of(caption, columns, *rows)
+
+
+def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
+    """Return the grades of which no size holds; None where there are none."""
+    failing = [o for o in outcomes if o.best is None]
+    if not failing:
+        return None
+    failing.sort(key=_shortfall)
+    columns = (
+        Column("Grade", is_number=False),
+        Column("Thickest size", is_number=False),
+        Column("Needed", "mm"),
+        Column("Why not", is_number=False),
+    )
+    return Table.of(
+        "Grades of which no size holds, the nearest first.", columns, *map(_thin, failing)
+    )
+
+
+def fallen_table(selection: SelectionResult) -> Table:
+    """Return why sizes fell out, with how many and for example which."""
+    columns = (
+        Column("Why", is_number=False),
+        Column("Sizes"),
+        Column("Grades"),
+        Column("For example", is_number=False),
+    )
+    rows = [
+        _fallen_row(meaning, [c for c in selection.candidates if c.standing == standing])
+        for standing, meaning in _MEANINGS.items()
+    ]
+    reasons = dict.fromkeys(one.reason for one in selection.not_tried)
+    rows += [
+        _not_tried_row([n for n in selection.not_tried if n.reason == reason]) for reason in reasons
+    ]
+    caption = "Why the other sizes fell out. candidates.csv has the reason of each."
+    return Table.of(caption, columns, *(row for row in rows if row is not None))
+
+
+def main_dominators(selection: SelectionResult) -> str:
+    """Return who beats most of the dominated sizes, in a sentence; empty where none is."""
+    dominated = [c for c in selection.candidates if c.standing == "dominated"]
+    if not dominated:
+        return ""
+    beaten = Counter(c.reason.split(";")[0].removeprefix("dominated by ") for c in dominated)
+    parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
+    searched = sum(c.verification.is_refined for c in selection.candidates)
+    return (
+        f"Of the {fmt.plural(len(dominated), 'dominated size')}, {fmt.listing(parts)}. "
+        f"{fmt.plural(searched, 'size')} were searched between the samples: those that no other "
+        "beats, the best of each grade, and those above 90\u00a0% of their allowable tension. For "
+        "the others the samples are enough, since a search can only find more tension."
+    )
+
+
+_MEANINGS: dict[Standing, str] = {
+    "dominated": "holds, but another one is as good in everything and better in something",
+    "too_thin": "goes beyond its allowable tension",
+    "not_held": "no equilibrium was found somewhere",
+    "not_comparable": "holds, but what decides is not known of it",
+}
+
+
+def _columns(
+    selection: SelectionResult, shown: Sequence[Candidate], *, full: bool = True
+) -> list[tuple[Column, _Cell]]:
+    force = fmt.decimals(c.cable.allowable_tension_N / 1e3 for c in shown)
+    mass = fmt.decimals(c.total_mass_kg for c in shown)
+    strength: list[tuple[Column, _Cell]] = [
+        (
+            Column("Breaking load", "kN"),
+            lambda c: fmt.fixed(c.size.minimum_breaking_load_N / 1e3, force),
+        ),
+        (Column("Efficiency"), lambda c: fmt.trimmed(c.efficiency, 3)),
+        (
+            Column("Allowable", "kN"),
+            lambda c: fmt.fixed(c.cable.allowable_tension_N / 1e3, force),
+        ),
+    ]
+    own: dict[Objective, tuple[Column, _Cell]] = {
+        "drum_diameter": (
+            Column("Drum", "m"),
+            lambda c: _known(c.figures.drum_diameter_m, 2),
+        ),
+        "cost": (Column("Price", selection.currency or ""), lambda c: _known(c.figures.cost, 0)),
+        "stiffness": (
+            Column("Stiffness", "kN/m"),
+            lambda c: _known(c.figures.stiffness_N_per_m / 1e3, 2),
+        ),
+    }
+    return [
+        (Column("Size", is_number=False), lambda c: c.size.id.replace(" ", "\u00a0")),
+        (Column("Diameter", "mm"), lambda c: fmt.fixed(1e3 * c.size.diameter_m, 1)),
+        *(strength if full else ()),
+        (
+            Column("Largest tension", "kN"),
+            lambda c: fmt.fixed(c.verification.max_tension_N / 1e3, force),
+        ),
+        (Column("Used"), lambda c: fmt.utilisation(c.verification.utilisation)),
+        (Column("All cables", "kg"), lambda c: fmt.fixed(c.total_mass_kg, mass)),
+        *(own[objective] for objective in selection.objectives if objective in own),
+    ]
+
+
+def _known(value: float, decimals: int) -> str:
+    return fmt.fixed(value, decimals) if math.isfinite(value) else fmt.MISSING
+
+
+def _tone(candidate: Candidate) -> Tone:
+    return "good" if candidate.standing == "chosen" else ""
+
+
+def _doubt(candidate: Candidate) -> str:
+    return f"Doubtful figures: {candidate.size.doubt}" if candidate.size.doubt else ""
+
+
+def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:
+    needed = outcome.continuous_diameter_m / outcome.grade.thickest.diameter_m
+    return math.isnan(needed), 0.0 if math.isnan(needed) else needed
+
+
+def _thin(outcome: GradeOutcome) -> Row:
+    needed = outcome.continuous_diameter_m
+    why = "ends too thin" if math.isfinite(needed) else "its own weight is too much"
+    shown = fmt.fixed(1e3 * needed, 1) if math.isfinite(needed) else fmt.MISSING
+    return Row((outcome.grade.id, outcome.grade.thickest.id, shown, why))
+
+
+def _fallen_row(meaning: str, fallen: Sequence[Candidate]) -> Row | None:
+    if not fallen:
+        return None
+    example = min(fallen, key=lambda c: c.verification.utilisation)
+    return Row(
+        (
+            meaning,
+            fmt.count(len(fallen)),
+            fmt.count(len({c.grade.id for c in fallen})),
+            f"{example.name}: {example.reason}",
+        )
+    )
+
+
+def _not_tried_row(some: Sequence[NotTried]) -> Row:
+    sizes = sum(1 if one.size else len(one.grade.sizes) for one in some)
+    grades = dict.fromkeys(one.grade.id for one in some)
+    return Row(
+        (
+            f"not solved: {some[0].reason}",
+            fmt.count(sizes),
+            fmt.count(len(grades)),
+            next(iter(grades)),
+        )
+    )

@@ -1,0 +1,78 @@
+"""How far a force moves the platform."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.analysis import Analysis
+from designer.report import format as fmt
+from designer.report.parts import Fact, Picture, Statement
+from designer.workspace.stiffness import StiffnessSurvey
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessSection:
+    """Displacement under a force, with cables of fixed length.
+
+    Parameters
+    ----------
+    verdict : Statement
+        Whether the platform stays where it is put, and how far a force moves it at most.
+    facts : tuple of Fact
+        Which cable, the softest and the stiffest pose.
+    map : Picture or None
+        Over a section at the middle height.
+    """
+
+    verdict: Statement
+    facts: tuple[Fact, ...]
+    map: Picture | None
+
+
+def stiffness_section(analysis: Analysis, picture: Picture | None) -> StiffnessSection | None:
+    """Return the section on stiffness; None if the study has no workspace, or no cable holds."""
+    found = analysis.qualities
+    if found is None or found.stiffness is None:
+        return None
+    facts = _facts(found.stiffness, found.cable.name)
+    return StiffnessSection(stiffness_statement(found.stiffness), facts, picture)
+
+
+def displacement(value_m_per_N: float) -> str:
+    """Return a displacement under a unit force such as ``7 700 mm/kN``."""
+    return f"{fmt.number(1e6 * value_m_per_N, 3)}\u00a0mm/kN"
+
+
+def stiffness_statement(found: StiffnessSurvey) -> Statement:
+    """Return whether the platform stays where it is put, and how far a force moves it."""
+    farthest = displacement(found.softest_m_per_N)
+    text = (
+        f"A force moves the platform by at most {farthest}, "
+        "if the cables are held at their lengths: the force in its worst direction, the platform "
+        "at its softest pose among the samples, and the displacement taken as proportional to it."
+    )
+    if found.unstable == 0:
+        return Statement("Every pose is stable", text)
+    share = fmt.share(found.unstable, found.samples)
+    return Statement(
+        "Some poses are not stable",
+        f"In {share} of the samples the platform would not stay where it is put. Elsewhere: {text}",
+        "bad",
+    )
+
+
+def _facts(found: StiffnessSurvey, cable: str) -> tuple[Fact, ...]:
+    return (
+        Fact("Cable", cable),
+        Fact(
+            "Softest pose",
+            displacement(found.softest_m_per_N),
+            f"at {fmt.position(found.softest_position_m)}",
+        ),
+        Fact(
+            "Stiffest pose",
+            displacement(found.stiffest_m_per_N),
+            f"at {fmt.position(found.stiffest_position_m)}",
+        ),
+        Fact("Samples", fmt.count(found.samples)),
+    )

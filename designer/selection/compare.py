@@ -1,0 +1,150 @@
+"""Which of the candidates counts: holds, is not dominated, decides; and why the others do not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import Cable
+from designer.catalogue.grade import Grade, Size
+from designer.selection.objectives import MEANINGS, Figures
+from designer.selection.pareto import dominator_of, is_undominated
+from designer.selection.result import Standing
+from designer.selection.verify import Verification
+from designer.selection.verify_sizes import Sampled
+from designer.study import Objective
+
+_NEAR_LIMIT = 0.9
+
+
+@dataclass(slots=True, eq=False)
+class Entry:
+    """A candidate on its way: what is known of it grows.
+
+    Parameters
+    ----------
+    grade, size, cable, efficiency
+        The product, see `designer.selection.result.Candidate`.
+    sampled : Sampled
+        What it meets over the samples.
+    verification : Verification
+        The same, until it has been searched between the samples.
+    figures : Figures
+        What it is compared by.
+    """
+
+    grade: Grade
+    size: Size
+    cable: Cable
+    efficiency: float
+    sampled: Sampled
+    verification: Verification
+    figures: Figures
+
+    @property
+    def name(self) -> str:
+        return f"{self.size.id} of {self.grade.id}"
+
+    def key(self, objectives: Sequence[Objective]) -> tuple[float, ...]:
+        """Sort by the objective that decides; then by the others, in their order."""
+        return (*(self.figures.burden(o) for o in objectives), self.figures.mass_kg)
+
+
+Search = Callable[[Entry], Verification]
+"""Searches between the samples."""
+
+
+def settle(
+    entries: Sequence[Entry], objectives: Sequence[Objective], search: Search
+) -> list[Entry]:
+    """Return the Pareto set, the best first, each member searched between the samples.
+
+    The search can only raise a tension, so whoever is dominated before it is so after it as well.
+    Searched are the members of the set, the best of each grade, and whoever is near its limit;
+    for the others the samples are enough, since nothing depends on them.
+    """
+    pending = True
+    while pending:
+        holding = [e for e in entries if _may_win(e, objectives)]
+        front = [holding[k] for k in np.flatnonzero(is_undominated(burdens(holding, objectives)))]
+        pending = _search_all(front, search)
+    for grade in dict.fromkeys(entry.grade for entry in entries):
+        best_of([e for e in entries if e.grade is grade], objectives, search)
+    near = (e for e in entries if e.verification.holds)
+    _search_all([e for e in near if e.verification.utilisation > _NEAR_LIMIT], search)
+    return sorted(front, key=lambda e: e.key(objectives))
+
+
+def best_of(
+    entries: Sequence[Entry], objectives: Sequence[Objective], search: Search
+) -> Entry | None:
+    """Return the best entry that holds between the samples as well."""
+    while True:
+        holding = [e for e in entries if _may_win(e, objectives)]
+        best = min(holding, key=lambda e: e.key(objectives), default=None)
+        if best is None or not _search_all([best], search):
+            return best
+
+
+def burdens(entries: Sequence[Entry], objectives: Sequence[Objective]) -> FloatArray:
+    """Return what is compared (n, n_objectives); less is better."""
+    values = [[e.figures.burden(o) for o in objectives] for e in entries]
+    return np.array(values, dtype=np.float64).reshape(len(entries), len(objectives))
+
+
+def standing_of(
+    entry: Entry, front: Sequence[Entry], objectives: Sequence[Objective]
+) -> tuple[Standing, str]:
+    """Return what became of an entry, and why."""
+    found = entry.verification
+    if entry.sampled.not_held:
+        return "not_held", f"no equilibrium was found at {_place(found)}"
+    if np.isinf(found.utilisation):
+        return "not_held", "it serves no pose"
+    if not found.holds:
+        least = "" if entry.sampled.is_complete else "at least "
+        percent = f"{least}{100.0 * found.utilisation:.4g} %"
+        return "too_thin", f"meets {percent} of its allowable tension at {_place(found)}"
+    if not _may_win(entry, objectives):
+        return "not_comparable", f"its {MEANINGS[objectives[0]].word} is not known"
+    if entry in front:
+        return _standing_in_front(entry, front, objectives)
+    number = dominator_of(burdens([entry], objectives)[0], burdens(front, objectives))
+    assert number is not None  # else it would be in the set
+    unsearched = "" if found.is_refined else "; holds at the samples, not searched between them"
+    return "dominated", f"dominated by {front[number].name}{unsearched}"
+
+
+def _standing_in_front(
+    entry: Entry, front: Sequence[Entry], objectives: Sequence[Objective]
+) -> tuple[Standing, str]:
+    best = front[0]
+    if entry is best:
+        return "chosen", f"best in {MEANINGS[objectives[0]].title}"
+    better = [
+        MEANINGS[o].title for o in objectives if entry.figures.burden(o) < best.figures.burden(o)
+    ]
+    if not better:
+        return "undominated", "as good as the chosen one"
+    return "undominated", f"better than the chosen one in {' and '.join(better)}"
+
+
+def _may_win(entry: Entry, objectives: Sequence[Objective]) -> bool:
+    return entry.verification.holds and np.isfinite(entry.figures.burden(objectives[0]))
+
+
+def _search_all(entries: Sequence[Entry], search: Search) -> bool:
+    """Search for all that were not searched for yet; tell whether there were any."""
+    fresh = [e for e in entries if not e.verification.is_refined]
+    for entry in fresh:
+        entry.verification = search(entry)
+        tension = entry.verification.max_tension_N
+        entry.figures = replace(entry.figures, max_tension_N=tension)
+    return bool(fresh)
+
+
+def _place(found: Verification) -> str:
+    return f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m"

@@ -1,0 +1,72 @@
+"""The thinnest member of a grade's continuous family that serves the whole workspace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from designer.cable import Material
+from designer.catalogue.grade import Grade
+from designer.effects.design import AsBuilt
+from designer.robot import Poses
+from designer.selection.efficiency import Allowance
+from designer.selection.verify import worst_of
+from designer.sizing.newton import size_poses
+from designer.study import Workspace
+from designer.workspace.demand import diameter_demand
+from designer.workspace.refine import Worst
+
+_MOST_TURNS = 20
+_STILL = 1e-7
+
+_Family = Callable[[float], Material]
+"""From a diameter [m] to the family that is as strong as its member of that diameter."""
+
+
+def continuous_optimum(
+    workspace: Workspace, grade: Grade, allowance: Allowance, built: AsBuilt
+) -> tuple[Material, float]:
+    """Return the family of a grade, and the thinnest member that holds everywhere [m].
+
+    With a sheave the strength of the family depends on the diameter, so the thinnest member is a
+    fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
+    the worst pose alone. NaN where no member holds, or none that the sheave allows.
+    """
+    unbent = replace(allowance, sheave_diameter_m=None)
+
+    def family_at(diameter_m: float) -> Material:
+        is_allowed = not math.isnan(allowance.efficiency(grade, diameter_m))
+        return built.material((allowance if is_allowed else unbent).family(grade, diameter_m))
+
+    diameter = grade.sizes[0].diameter_m
+    for _ in range(_MOST_TURNS):
+        family = family_at(diameter)
+        demand = diameter_demand(built.robot, family, workspace.hangs_below)
+        worst = worst_of(workspace, demand, demand)
+        if not math.isfinite(worst.demand):
+            return family, math.nan
+        if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):
+            diameter = worst.demand
+            break
+        diameter = _settled(built, worst, family_at)
+    is_allowed = not math.isnan(allowance.efficiency(grade, diameter))
+    return family, diameter if is_allowed else math.nan
+
+
+def _settled(built: AsBuilt, worst: Worst, family_at: _Family) -> float:
+    """Return the diameter that a pose needs, as strong as a rope of that diameter [m]."""
+    needed = worst.demand
+    for _ in range(_MOST_TURNS):
+        last = needed
+        found = size_poses(built.robot, Poses.at(worst.place), family_at(last))
+        needed = float(found.diameter_m)
+        if not math.isfinite(needed):
+            return last
+        if _is_still(needed, last):
+            break
+    return needed
+
+
+def _is_still(diameter_m: float, before_m: float) -> bool:
+    return abs(diameter_m / before_m - 1.0) < _STILL

@@ -1,0 +1,207 @@
+"""Proof over the samples for many cables at once, and the search between the samples for one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.cable import Cable
+from designer.progress import Advance
+from designer.region import Region
+from designer.robot import Poses, Robot
+from designer.selection.verify import Verification
+from designer.space import Space
+from designer.statics.sizes import Meets, add_slowly, is_quick, meet
+from designer.study import Workspace
+from designer.workspace.demand import tension_demand
+from designer.workspace.refine import refine, spread_starts
+from designer.workspace.samples import places
+
+_PIECE, _SLOW_PIECE = 2**13, 2**9
+_CELLS_A_SIDE = 4
+_CELLS = _CELLS_A_SIDE**3
+_STARTS = 4
+_TRIES = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sampled:
+    """What one cable meets over the samples of a workspace.
+
+    Parameters
+    ----------
+    worst_m : array (n_starts, n_coordinates)
+        Places where it is used most, well apart, the worst first; where it is not held if there is
+        such a pose [m, rad].
+    utilisation : float
+        Largest over allowable tension; inf if a pose cannot be held, or none counts.
+    longest_m : array (n_cables,)
+        Longest unstrained length that each cable needs [m].
+    samples, counted, overloaded, not_held : int
+        Poses tried, those that count, those of them above the allowable tension; those that
+        cannot be held, at least.
+    is_complete : bool
+        Whether every sample was tried; else the figures are those of the samples up to where it
+        was settled that the cable does not serve the workspace.
+    """
+
+    worst_m: FloatArray
+    utilisation: float
+    longest_m: FloatArray
+    samples: int
+    counted: int
+    overloaded: int
+    not_held: int
+    is_complete: bool
+
+    @property
+    def served(self) -> float:
+        """Share of the samples that count and stay within the allowable tension."""
+        return (self.counted - self.overloaded) / self.samples if self.samples else 0.0
+
+    def verification(self, cable: Cable) -> Verification:
+        """Return what is known before the search between the samples."""
+        return Verification(
+            worst_position_m=self.worst_m[0] if len(self.worst_m) else np.full(3, np.nan),
+            max_tension_N=self.utilisation * cable.allowable_tension_N,
+            utilisation=self.utilisation,
+            longest_m=self.longest_m,
+            is_refined=False,
+        )
+
+
+def verify_sizes(
+    robot: Robot,
+    workspace: Workspace,
+    cables: Sequence[Cable],
+    *,
+    gives_up: bool = True,
+    progress: Advance = lambda _: None,
+) -> list[Sampled]:
+    """Solve every sample with every cable in one pass, each with its own figures.
+
+    Memory does not grow with the samples.
+
+    Parameters
+    ----------
+    robot, workspace
+        The problem.
+    cables : sequence of Cable
+        In any order.
+    gives_up : bool
+        Whether a cable is left alone after the first chunk of samples with one that it cannot
+        hold, which settles that it does not serve the workspace. Of a robot that is slow to solve
+        also after the first chunk in which it goes beyond its allowable tension.
+    progress : callable
+        Called with the number of samples done.
+    """
+    # The heavy ones first: slack cables are the harder, and start best from slack ones.
+    order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
+    totals = _Totals(len(cables), robot.n_cables, workspace.space.n_coordinates)
+    is_slow = not is_quick(robot)
+    for positions in _pieces(workspace, _SLOW_PIECE if is_slow else _PIECE):
+        settled = (totals.not_held > 0) | (is_slow & (totals.overloaded > 0))
+        alive = [k for k in order if not (gives_up and settled[k])]
+        cells = _cells(workspace.region, positions)
+        tried = [cables[k] for k in alive]
+        totals.add(alive, positions, _meet(robot, workspace, positions, tried, cells, gives_up))
+        progress(len(positions))
+    return [totals.of(k, workspace.space) for k in range(len(cables))]
+
+
+def refined(robot: Robot, workspace: Workspace, cable: Cable, sampled: Sampled) -> Verification:
+    """Search for the largest tension of a cable between the samples, from the worst of them."""
+    demand = tension_demand(robot, cable, workspace.hangs_below)
+    worst = refine(workspace.space, demand, sampled.worst_m)
+    return Verification(
+        worst_position_m=worst.place,
+        max_tension_N=worst.demand,
+        utilisation=worst.demand / cable.allowable_tension_N,
+        longest_m=sampled.longest_m,
+    )
+
+
+def _pieces(workspace: Workspace, most: int) -> Iterator[FloatArray]:
+    for positions in places(workspace):
+        for start in range(0, len(positions), most):
+            yield positions[start : start + most]
+
+
+def _cells(region: Region, positions: FloatArray) -> IntArray:
+    """Number the parts of the region's box, so that the worst poses can be had well apart."""
+    low, high = region.bounds_m
+    size = np.where(high > low, high - low, 1.0)
+    step = ((positions[:, :3] - low) / size * _CELLS_A_SIDE).astype(np.int64)
+    x, y, z = np.clip(step, 0, _CELLS_A_SIDE - 1).T
+    return np.asarray((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z)
+
+
+def _meet(
+    robot: Robot,
+    workspace: Workspace,
+    positions: FloatArray,
+    cables: Sequence[Cable],
+    cells: IntArray,
+    gives_up: bool,
+) -> Meets:
+    poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
+    found = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
+    if not is_quick(robot):
+        return found
+    for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
+        hard = np.flatnonzero(found.failed[row])
+        for start in range(0, len(hard), _TRIES):
+            some = hard[start : start + _TRIES]
+            add_slowly(found, row, robot, poses, cables[row], cells, exclude, some)
+            if gives_up and found.failed[row, some].any():
+                break
+    return found
+
+
+class _Totals:
+    """What all cables met so far."""
+
+    def __init__(self, n_tried: int, n_cables: int, n_coordinates: int) -> None:
+        self.samples = 0
+        self.tried = np.zeros(n_tried, dtype=np.int64)
+        self.utilisation = np.full((n_tried, _CELLS), -np.inf)
+        self.worst_m = np.full((n_tried, _CELLS, n_coordinates), np.nan)
+        self.longest_m = np.zeros((n_tried, n_cables))
+        self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
+        self.not_held_m = np.full((n_tried, n_coordinates), np.nan)
+
+    def add(self, rows: Sequence[int], positions: FloatArray, met: Meets) -> None:
+        self.samples += len(positions)
+        if not rows:
+            return
+        self.tried[rows] += len(positions)
+        higher = met.utilisation > self.utilisation[rows]
+        self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])
+        at_worst = positions[met.pose]
+        self.worst_m[rows] = np.where(higher[..., None], at_worst, self.worst_m[rows])
+        self.longest_m[rows] = np.maximum(self.longest_m[rows], met.longest_m)
+        self.counted[rows] += met.counted
+        self.overloaded[rows] += met.overloaded
+        fails = met.failed.sum(axis=1)
+        first = (self.not_held[rows] == 0) & (fails > 0)
+        at_first = positions[met.failed.argmax(axis=1)]
+        self.not_held_m[rows] = np.where(first[:, None], at_first, self.not_held_m[rows])
+        self.not_held[rows] += fails
+
+    def of(self, row: int, space: Space) -> Sampled:
+        not_held = int(self.not_held[row])
+        asked = self.utilisation[row]
+        worst = spread_starts(space, self.worst_m[row], asked, _STARTS)
+        return Sampled(
+            worst_m=self.not_held_m[row][None] if not_held else worst,
+            utilisation=np.inf if not_held or not len(worst) else float(asked.max()),
+            longest_m=self.longest_m[row],
+            samples=int(self.tried[row]),
+            counted=int(self.counted[row]),
+            overloaded=int(self.overloaded[row]),
+            not_held=not_held,
+            is_complete=bool(self.tried[row] == self.samples),
+        )

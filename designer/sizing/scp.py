@@ -1,0 +1,369 @@
+r"""The thinnest cable of a redundant robot by sequential convex programs: the readable reference.
+
+One pose at a time, in CVXPY. Each cable of unit weight has one free pull :math:`p_i`, horizontal
+force over weight and horizontal distance; its length, its upward pull :math:`v_i` and its top
+tension :math:`T_i` follow. With c the inverse of the weight per length,
+
+.. math::  \max c \quad \text{s.t.} \quad \sum_i W_i(p_i) = c\,w, \quad T_i(p_i) \le \sigma/(g\rho),
+           \quad p_i L_i \ge c\,t_{min}.
+
+Each turn linearises the cables at the last pulls, adds the convex part of the Lagrangian's
+curvature, which is diagonal, keeps the pulls within a trust region, puts a price on what is
+violated there, and ends with a step back into balance; the start is the massless solution. The
+full non-linear residuals and those of the optimality conditions come with the answer. The compiled
+solver of `designer.kernel.redundant` is tested against it. Lipp and Boyd, Optimization and
+Engineering 17, 2016, for the method.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.physics import catenary
+from designer.robot import Poses, Robot
+from designer.statics.distribution import distribute_evenly
+from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
+
+_START_PULL = 0.7
+_TRUST = 0.5
+_SMALLEST_TRUST = 1e-10
+_ALONG = 1e-4
+_PRICE = 100.0  # of a violation; above the sum of all multipliers
+_ROUNDING = 1e-13
+_STILL = 1e-8
+_AT_BOUND = 1e-7
+_CLARABEL = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScpSizing:
+    """The optimum and how well it meets its conditions.
+
+    Parameters
+    ----------
+    diameter_m : float
+        Nominal diameter [m]; NaN if the turns did not settle.
+    force_x_N, length_m : array (n_cables,)
+        Horizontal forces [N] and unstrained lengths [m].
+    feasibility_residual : float
+        Worst violation of any constraint by the full non-linear equations, over the strength.
+    optimality_residual : float
+        Worst violation of stationarity in scaled variables, with multipliers only of what is at
+        its bound: the non-negative ones that suit it best.
+    turns : int
+        Convex programmes that were solved.
+    has_converged : bool
+        Whether both residuals are below 1e-6.
+    """
+
+    diameter_m: float
+    force_x_N: FloatArray
+    length_m: FloatArray
+    feasibility_residual: float
+    optimality_residual: float
+    turns: int
+    has_converged: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _State:
+    """Cables of unit weight at scaled pulls y = p L / strength, with slopes in y.
+
+    Parameters
+    ----------
+    wrench, wrench_y, wrench_yy : array (dof, n_cables)
+        Over the strength length.
+    tension, tension_y, tension_yy : array (n_cables,)
+        Largest tension over the strength length.
+    length_m : array (n_cables,)
+        Unstrained lengths [m].
+    """
+
+    wrench: FloatArray
+    wrench_y: FloatArray
+    wrench_yy: FloatArray
+    tension: FloatArray
+    tension_y: FloatArray
+    tension_yy: FloatArray
+    length_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Turn:
+    """Solution of one convex programme: pulls, c and the multipliers of the balance."""
+
+    y: FloatArray
+    c: float
+    balance: FloatArray
+
+
+def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int = 60) -> ScpSizing:
+    """Return the thinnest cable for which some internal forces hold the pose.
+
+    Parameters
+    ----------
+    robot : Robot
+        With more cables than degrees of freedom, and no pulleys.
+    pose : Poses
+        A single pose that straight cables can hold.
+    material : Material
+        The family of cables.
+    max_turns : int
+        Gives up after so many.
+
+    Raises
+    ------
+    ValueError
+        If straight cables cannot hold the pose, or if the robot has pulleys.
+    """
+    if robot.pulley_radius_m != 0.0:
+        raise ValueError("the reference has no pulleys")
+    problem = _Problem.of(robot, pose, material)
+    y, c = problem.start()
+    state, trust, turns = problem.state(y), _TRUST, 0
+    multiplier = np.zeros(len(problem.load))
+    programme = _programme(len(problem.load), len(y))
+    while turns < max_turns and trust > _SMALLEST_TRUST:
+        turns += 1
+        found = _solve(programme, problem, state, y, multiplier, trust)
+        if found is None:
+            trust *= 0.25
+            continue
+        if float(np.abs(found.y / y - 1.0).max()) + abs(found.c - c) < _STILL:
+            break
+        found = problem.corrected(found)
+        moved = problem.state(found.y)
+        better = problem.merit(moved, found.y, found.c)
+        if better > problem.merit(state, y, c) + _ROUNDING:
+            trust *= 0.25
+            continue
+        y, c, state, multiplier = found.y, found.c, moved, found.balance
+        trust = min(2.0 * trust, _TRUST)
+    return problem.answer(state, y, c, turns)
+
+
+def optimality_of(
+    robot: Robot, pose: Poses, material: Material, diameter_m: float, force_x_N: FloatArray
+) -> tuple[float, float]:
+    """Return the residuals of feasibility and optimality of an answer, whoever found it.
+
+    Parameters
+    ----------
+    robot, pose, material
+        As for `size_by_scp`.
+    diameter_m : float
+        The thinnest cable's diameter [m].
+    force_x_N : array (n_cables,)
+        Horizontal forces on the cables at the platform [N].
+
+    Returns
+    -------
+    feasibility, optimality : float
+        As in `ScpSizing`.
+    """
+    problem = _Problem.of(robot, pose, material)
+    allowable = material.cable(diameter_m).weight_N_per_m * material.strength_length_m
+    c = problem.load_N / allowable
+    y = force_x_N * problem.chord_m / (problem.distance_m * allowable)
+    state = problem.state(y)
+    return problem.violation(state, y, c), problem.gap(state, y, c)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Problem:
+    """One pose, forces over the strength of the cable; moments over the reach."""
+
+    material: Material
+    distance_m: FloatArray
+    drop_m: FloatArray
+    chord_m: FloatArray
+    forces: FloatArray
+    load: FloatArray
+    load_N: float
+    least: FloatArray
+    straight: FloatArray
+
+    @classmethod
+    def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
+        geometry = cable_geometry(robot, pose)
+        massless = distribute_evenly(robot, pose)
+        if not massless.is_feasible:
+            raise ValueError("straight cables cannot hold this pose")
+        reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
+        rows = np.where(robot.balance_rows < 3, 1.0, reach)
+        wrench = load_wrench_N(robot, pose) / rows
+        size = float(np.abs(wrench).max())
+        return cls(
+            material,
+            geometry.horizontal_distance_m,
+            geometry.drop_m,
+            geometry.chord_m,
+            structure_matrix(robot, geometry) / rows[:, None],
+            wrench / size,
+            size,
+            np.full(robot.n_cables, robot.tension_min_N / size),
+            massless.tension_N / size,
+        )
+
+    def start(self) -> tuple[FloatArray, float]:
+        """The massless design, with no cable all but slack."""
+        c = 1.0 / float(self.straight.max())
+        slack = _START_PULL * self.chord_m / self.material.strength_length_m
+        return np.maximum(self.straight * c, slack), c
+
+    def state(self, y: FloatArray) -> _State:
+        """Return the cables at scaled pulls, their slopes by central differences."""
+        here, ahead, behind = (self._cables(y * f) for f in (1.0, 1.0 + _ALONG, 1.0 - _ALONG))
+        step = _ALONG * y
+        slopes = [(a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True)]
+        bends = [(a - 2.0 * h + b) / step**2 for a, h, b in zip(ahead, here, behind, strict=True)]
+        return _State(here[0], slopes[0], bends[0], here[1], slopes[1], bends[1], here[2])
+
+    def _cables(self, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        strength = self.material.strength_length_m
+        pull = y * strength / self.chord_m
+        kappa = self.material.elastic_compliance_per_m
+        length, force_z = catenary.length_and_force_z(
+            pull, self.distance_m, self.drop_m, 1.0 / kappa, 1.0
+        )
+        force_x = pull * self.distance_m
+        ends = catenary.end_tensions_N(length, force_x, force_z, 1.0)
+        wrench = self.forces[:, 0::2] * force_x + self.forces[:, 1::2] * force_z
+        return wrench / strength, np.maximum(*ends) / strength, length
+
+    def merit(self, state: _State, y: FloatArray, c: float) -> float:
+        """Return what each turn has to lower: -c, and the worst violation at its price."""
+        return -c + _PRICE * self.violation(state, y, c)
+
+    def corrected(self, turn: _Turn) -> _Turn:
+        """Bring the balance back by the least relative change, of cables with room for it.
+
+        Without this a full step of second-order violation is refused however good it is.
+        """
+        state = self.state(turn.y)
+        rest = state.wrench.sum(axis=1) - turn.c * self.load
+        slopes = np.column_stack([state.wrench_y, -self.load])
+        freedom = np.append(turn.y * np.maximum(1.0 - state.tension, 0.0), turn.c)
+        step = np.linalg.lstsq(slopes * freedom, rest, rcond=None)[0] * freedom
+        return replace(turn, y=np.maximum(turn.y - step[:-1], 0.5 * turn.y), c=turn.c - step[-1])
+
+    def violation(self, state: _State, y: FloatArray, c: float) -> float:
+        """Return the worst violation of the full equations."""
+        rest = state.wrench.sum(axis=1) - c * self.load
+        return max(
+            float(np.abs(rest).max()),
+            float(np.maximum(state.tension - 1.0, 0.0).max()),
+            float(np.maximum(c * self.least - y, 0.0).max()),
+        )
+
+    def gap(self, state: _State, y: FloatArray, c: float) -> float:
+        """Return the worst residual of stationarity, with the multipliers that suit it best.
+
+        Those of the balance are free, those of what is at its bound non-negative; least squares.
+        """
+        from scipy.optimize import nnls
+
+        n, dof = len(y), len(self.load)
+        full = np.nonzero(state.tension > 1.0 - _AT_BOUND)[0]
+        least = np.nonzero((self.least > 0.0) & (y < c * self.least + _AT_BOUND))[0]
+        in_y = np.hstack(
+            [state.wrench_y.T, np.eye(n)[:, full] * state.tension_y[full], -np.eye(n)[:, least]]
+        )
+        in_c = np.concatenate([-self.load, np.zeros(len(full)), self.least[least]])
+        slopes = np.vstack([in_y, in_c])
+        wanted = np.eye(n + 1)[n]
+        signed = np.hstack([slopes, -slopes[:, :dof]])
+        return float(np.abs(signed @ nnls(signed, wanted)[0] - wanted).max())
+
+    def answer(self, state: _State, y: FloatArray, c: float, turns: int) -> ScpSizing:
+        """Return the result in SI units."""
+        infeasible = self.violation(state, y, c)
+        gap = self.gap(state, y, c)
+        converged = infeasible < 1e-6 and gap < 1e-6 and c > 0.0
+        allowable_N = self.load_N / c
+        weight = allowable_N / self.material.strength_length_m
+        area = weight / (STANDARD_GRAVITY_M_PER_S2 * self.material.density_kg_per_m3)
+        return ScpSizing(
+            diameter_m=float(np.sqrt(4.0 * area / np.pi)) if converged else float("nan"),
+            force_x_N=y * allowable_N * self.distance_m / self.chord_m,
+            length_m=state.length_m,
+            feasibility_residual=infeasible,
+            optimality_residual=gap,
+            turns=turns,
+            has_converged=converged,
+        )
+
+
+@cache
+def _programme(dof: int, n: int) -> dict[str, Any]:
+    """State the convex programme once, with parameters for what changes from turn to turn."""
+    import cvxpy as cp
+
+    step, c, gap = cp.Variable(n), cp.Variable(), cp.Variable(nonneg=True)
+    data = {
+        "slope": cp.Parameter((dof, n)),
+        "rest": cp.Parameter(dof),
+        "tension": cp.Parameter(n),
+        "tension_slope": cp.Parameter(n),
+        "bend": cp.Parameter(n, nonneg=True),
+        "y": cp.Parameter(n),
+        "load": cp.Parameter(dof),
+        "least": cp.Parameter(n, nonneg=True),
+        "trust": cp.Parameter(n, nonneg=True),
+    }
+    balance = data["rest"] + data["slope"] @ step - c * data["load"]
+    constraints = [
+        balance <= gap,
+        -balance <= gap,
+        data["tension"] + cp.multiply(data["tension_slope"], step) - 1.0 <= gap,
+        c * data["least"] - data["y"] - step <= gap,
+        cp.abs(step) <= data["trust"],
+    ]
+    curved = 0.5 * cp.sum_squares(cp.multiply(data["bend"], step))
+    return {
+        **data,
+        "step": step,
+        "c": c,
+        "constraints": constraints,
+        "problem": cp.Problem(cp.Minimize(curved - c + _PRICE * gap), constraints),
+    }
+
+
+def _solve(
+    programme: dict[str, Any],
+    problem: _Problem,
+    state: _State,
+    y: FloatArray,
+    multiplier: FloatArray,
+    trust: float,
+) -> _Turn | None:
+    import cvxpy as cp
+
+    bend = multiplier @ state.wrench_yy
+    programme["slope"].value = state.wrench_y
+    programme["rest"].value = state.wrench.sum(axis=1)
+    programme["tension"].value = state.tension
+    programme["tension_slope"].value = state.tension_y
+    programme["bend"].value = np.sqrt(np.maximum(bend, 0.0))
+    programme["y"].value = y
+    programme["load"].value = problem.load
+    programme["least"].value = problem.least
+    programme["trust"].value = trust * y
+    try:
+        with warnings.catch_warnings():
+            # Of less than full accuracy; the residuals of the answer tell.
+            warnings.simplefilter("ignore", UserWarning)
+            programme["problem"].solve(solver=cp.CLARABEL, **_CLARABEL)
+    except cp.SolverError:
+        return None
+    if programme["step"].value is None:
+        return None
+    above, below = (one.dual_value for one in programme["constraints"][:2])
+    return _Turn(y + programme["step"].value, float(programme["c"].value), above - below)

@@ -1,0 +1,201 @@
+"""Many cables in the same poses: what each of them meets at worst, and nothing else of a pose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.cable import Cable
+from designer.robot import Poses, Robot
+from designer.statics.geometry import upright_exit_points_m, upright_poses
+from designer.statics.inverse import solve_sagging
+
+_SHARE = 64
+"""Sizes that one thread takes at a time; the first of them starts without a neighbour."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Meets:
+    """What cables meet in some poses.
+
+    Parameters
+    ----------
+    utilisation : array (n_cables_tried, n_cells)
+        Largest over allowable tension in each part of the region; -inf where no pose counts.
+    pose : array (n_cables_tried, n_cells)
+        Index of the pose that it was met in.
+    longest_m : array (n_cables_tried, n_cables)
+        Longest unstrained length of each cable of the robot [m].
+    counted, overloaded, left_out : array (n_cables_tried,)
+        Poses that count, those of them above the allowable tension, and those left out.
+    failed : array (n_cables_tried, n_poses)
+        Where no solution was found; such a pose is in none of the other results.
+    """
+
+    utilisation: FloatArray
+    pose: IntArray
+    longest_m: FloatArray
+    counted: IntArray
+    overloaded: IntArray
+    left_out: IntArray
+    failed: BoolArray
+
+
+def is_quick(robot: Robot) -> bool:
+    """Tell whether `meet` solves this robot in one compiled pass."""
+    return robot.is_square and robot.pulley_radius_m == 0.0
+
+
+def meet(
+    robot: Robot,
+    poses: Poses,
+    cables: Sequence[Cable],
+    cells: IntArray,
+    n_cells: int,
+    *,
+    leaves_out_hanging: bool = False,
+) -> Meets:
+    """Solve poses (n_poses,) with each of the cables on all winches, by `designer.kernel.sizes`.
+
+    The quick pass gives up on a pose early; what it marks as failed may still be found by
+    `designer.statics.inverse.solve_sagging`. Over pulleys, whose tangent points differ from cable
+    to cable, the latter is used throughout.
+
+    Parameters
+    ----------
+    robot, poses
+        The robot and its poses.
+    cables : sequence of Cable
+        In the order of their weight, so that each is like its neighbour.
+    cells : array (n_poses,)
+        Part of the region that each pose lies in, below ``n_cells``.
+    leaves_out_hanging : bool
+        Whether poses in which a cable hangs below the platform do not count.
+    """
+    found = _nothing(len(cables), robot.n_cables, n_cells, len(poses.position_m))
+    if not cables:
+        return found
+    if not is_quick(robot):
+        for row, cable in enumerate(cables):
+            add_slowly(found, row, robot, poses, cable, cells, leaves_out_hanging)
+        return found
+    _meet_quickly(found, robot, poses, cables, cells, leaves_out_hanging)
+    return found
+
+
+def add_slowly(
+    found: Meets,
+    row: int,
+    robot: Robot,
+    poses: Poses,
+    cable: Cable,
+    cells: IntArray,
+    leaves_out_hanging: bool,
+    indices: IntArray | None = None,
+) -> None:
+    """Solve poses one cable at a time, the hard ones with more patience, and add what they meet.
+
+    Parameters
+    ----------
+    found, row
+        What is added to, and the cable's place in it.
+    indices : array, optional
+        The poses to solve; all if left out.
+    """
+    at = np.arange(len(poses.position_m)) if indices is None else indices
+    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[at]
+    statics = solve_sagging(robot, Poses(poses.position_m[at], rotation), cable)
+    found.failed[row, at] = ~statics.is_solved
+    left_out = statics.hangs_below & statics.is_solved & leaves_out_hanging
+    counts = statics.is_solved & ~left_out
+    used = statics.largest_tension_N[counts] / cable.allowable_tension_N
+    found.left_out[row] += int(left_out.sum())
+    found.counted[row] += len(used)
+    found.overloaded[row] += int((used > 1.0).sum())
+    found.longest_m[row] = np.maximum(
+        found.longest_m[row], statics.length_m[counts].max(axis=0, initial=0.0)
+    )
+    # In ascending order the last of each cell, which is its largest, is what stays.
+    order = np.argsort(used, kind="stable")
+    best = np.full(found.utilisation.shape[1], -np.inf)
+    where = np.zeros(len(best), dtype=np.int64)
+    best[cells[at][counts][order]] = used[order]
+    where[cells[at][counts][order]] = at[counts][order]
+    higher = best > found.utilisation[row]
+    found.utilisation[row, higher] = best[higher]
+    found.pose[row, higher] = where[higher]
+
+
+def _nothing(n_tried: int, n_cables: int, n_cells: int, n_poses: int) -> Meets:
+    counts = np.zeros((3, n_tried), dtype=np.int64)
+    return Meets(
+        utilisation=np.full((n_tried, n_cells), -np.inf),
+        pose=np.zeros((n_tried, n_cells), dtype=np.int64),
+        longest_m=np.zeros((n_tried, n_cables)),
+        counted=counts[0],
+        overloaded=counts[1],
+        left_out=counts[2],
+        failed=np.zeros((n_tried, n_poses), dtype=np.bool_),
+    )
+
+
+def _meet_quickly(
+    found: Meets,
+    robot: Robot,
+    poses: Poses,
+    cables: Sequence[Cable],
+    cells: IntArray,
+    leaves_out_hanging: bool,
+) -> None:
+    from designer.kernel.sizes import sweep_sizes
+
+    upright = upright_poses(robot, poses)
+    weight = np.array([cable.weight_N_per_m for cable in cables])
+    stiffness = np.array([cable.axial_stiffness_N for cable in cables])
+    allowable = np.array([cable.allowable_tension_N for cable in cables])
+    arguments: tuple[Any, ...] = (
+        _plain(upright_exit_points_m(robot)),
+        _plain(robot.attachments_m),
+        _plain(robot.pull_N),
+        _plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        _plain(upright.position_m),
+        _plain(upright.rotation.reshape(-1, 3, 3)),
+        np.ascontiguousarray(cells, dtype=np.int64),
+        _plain(weight / stiffness),
+        _plain(1.0 / weight),
+        _plain(allowable / weight),
+        robot.balance_rows,
+        leaves_out_hanging,
+        found.utilisation,
+        found.pose,
+        found.longest_m,
+        found.counted,
+        found.overloaded,
+        found.left_out,
+        found.failed,
+    )
+    shares = [(at, min(at + _SHARE, len(cables))) for at in range(0, len(cables), _SHARE)]
+    for future in [_pool().submit(sweep_sizes, *share, *arguments) for share in shares]:
+        future.result()
+
+
+def _plain(values: Any) -> FloatArray:
+    """Return a copy as the one kind of array that the kernel is compiled for."""
+    plain = np.ascontiguousarray(values, dtype=np.float64).view()
+    plain.setflags(write=False)
+    return plain
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    """One thread a processor, kept between calls."""
+    import os
+
+    return ThreadPoolExecutor(os.cpu_count())

@@ -1,0 +1,174 @@
+r"""Stiffness of the platform with sagging cables, at fixed unstrained lengths.
+
+A small displacement :math:`(δx, δω)` of the platform moves the attachment point with lever b by
+:math:`δx + δω × b`; each cable answers with its own tangent stiffness K_i and with its force F_i
+about a turned lever, and the weight P about the turned lever c of the centre of mass:
+
+.. math::
+
+    δF_i = K_i (δx + δω × b_i), \qquad
+    δM = \sum_i b_i × δF_i + (δω × b_i) × F_i \; - \; (δω × c) × P
+
+F_i acts on the cable, so K is what the platform resists with. In equilibrium K is symmetric; it is
+positive definite where the equilibrium is stable. With straight cables of no weight this is the
+stiffness of Behzadipour and Khajepour, J. Mech. Des. 128 (2006), doi:10.1115/1.1999890; here the
+cables' own tangents bring in the sag.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.physics import tangent
+from designer.robot import Robot
+from designer.statics.geometry import cable_geometry, upright_poses
+from designer.statics.inverse import Statics
+
+_SOFT = 1e-12
+
+
+def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
+    """Return how the force on each cable grows as its end moves (..., n_cables, 3, 3) [N/m].
+
+    Upright frame, at fixed unstrained length. In the cable's vertical plane this is the closed form
+    of `designer.physics.tangent`; across it a cable swings about the vertical through its exit
+    point with the stiffness F_x / X.
+    """
+    robot = statics.robot
+    arguments = (
+        statics.free_length_m,
+        statics.force_x_N,
+        statics.force_z_N,
+        statics.axial_stiffness_N,
+        statics.weight_N_per_m,
+    )
+    if robot.pulley_radius_m == 0.0:
+        plane = tangent.stiffness_N_per_m(*arguments)
+    else:
+        plane = tangent.stiffness_over_pulley_N_per_m(*arguments, robot.pulley_radius_m)
+    chord = cable_geometry(robot, statics.poses)
+    X = chord.horizontal_distance_m
+    is_vertical = chord.chord_m * _SOFT >= X
+    with np.errstate(invalid="ignore", divide="ignore"):
+        swing = np.where(is_vertical, plane[..., 0, 0], statics.force_x_N / X)
+    outward = np.where(is_vertical[..., None], [1.0, 0.0], chord.outward)
+    return _in_space(plane, swing, outward)
+
+
+def platform_stiffness(statics: Statics) -> FloatArray:
+    """Return the stiffness of the platform in poses (...), (..., dof, dof) [N/m, N, N·m].
+
+    Rows are force and moment about the origin of the body frame, columns displacement and turn,
+    along the axes of the base frame; 3×3 for a point mass. For a planar robot, what its cables
+    balance: along x and z of the upright frame and, for a body, about y. NaN where the pose is not
+    solved.
+    """
+    robot = statics.robot
+    K = upright_stiffness(statics)
+    if robot.is_planar or robot.is_upright:
+        return K
+    turn = np.kron(np.eye(K.shape[-1] // 3), robot.upright)
+    return np.asarray(turn.T @ K @ turn)
+
+
+def upright_stiffness(statics: Statics) -> FloatArray:
+    """Return `platform_stiffness` along the axes of the upright frame, (..., dof, dof)."""
+    robot = statics.robot
+    K = cable_tangent_stiffness_N_per_m(statics)
+    if robot.is_point_mass:
+        return _balanced(robot, K.sum(axis=-3))
+    lever = statics.geometry().lever_m
+    B = _cross_matrix(lever)
+    F = _cross_matrix(_forces_N(statics))
+    turn = -K @ B
+    moment = B @ K
+    arm = np.einsum(
+        "...ij,j->...i",
+        upright_poses(robot, statics.poses).rotation,
+        robot.platform.centre_of_mass_m,
+    )
+    weight = _cross_matrix(np.array([0.0, 0.0, -robot.weight_N]))
+    turning = (B @ turn + F @ B).sum(axis=-3) - weight @ _cross_matrix(arm)
+    left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
+    right = np.concatenate([turn.sum(axis=-3), turning], axis=-2)
+    return _balanced(robot, np.concatenate([left, right], axis=-1))
+
+
+def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:
+    """Tell where a stiffness (..., dof, dof) of the robot is positive definite."""
+    eigenvalues = np.linalg.eigvalsh(_symmetric_or_zero(scaled(robot, stiffness)))
+    return np.asarray(eigenvalues[..., 0] > _SOFT * np.abs(eigenvalues).max(axis=-1))
+
+
+def scaled(robot: Robot, stiffness: FloatArray) -> FloatArray:
+    """Return the stiffness with turns as displacements at `reach_m`: all in one unit [N/m]."""
+    scale = np.where(robot.balance_rows < 3, 1.0, 1.0 / reach_m(robot))
+    return np.asarray(stiffness * scale * scale[:, None])
+
+
+def reach_m(robot: Robot) -> float:
+    """Return the distance of the farthest attachment from the origin of the body frame [m]."""
+    farthest = float(np.linalg.norm(robot.attachments_m, axis=-1).max())
+    return farthest if farthest > 0.0 else 1.0
+
+
+def compliance(statics: Statics) -> FloatArray:
+    """Return the displacement under a unit wrench (..., dof, dof) [m/N, 1/N, 1/(N·m)].
+
+    The inverse of `platform_stiffness`; NaN where the pose is not solved or not stable.
+    """
+    K = platform_stiffness(statics)
+    good = statics.is_solved & is_stable(statics.robot, K)
+    safe = np.where(good[..., None, None], K, np.eye(K.shape[-1]))
+    return np.where(good[..., None, None], np.linalg.inv(safe), np.nan)
+
+
+def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
+    """Return how far a unit force at the origin of the body frame can move it (...) [m/N].
+
+    The force may point anywhere, and the platform may turn; the inverse of this is the smallest
+    translational stiffness. NaN where the pose is not solved or not stable.
+    """
+    n = int((statics.robot.balance_rows < 3).sum())
+    C = compliance(statics)[..., :n, :n]
+    good = np.asarray(np.isfinite(C).all(axis=(-2, -1)))
+    largest = np.linalg.norm(np.where(good[..., None, None], C, 0.0), ord=2, axis=(-2, -1))
+    return np.where(good, largest, np.nan)
+
+
+def _forces_N(statics: Statics) -> FloatArray:
+    """Return the force on each cable at the platform, upright frame (..., n_cables, 3) [N]."""
+    outward = statics.geometry().outward
+    plan = statics.force_x_N[..., None] * outward
+    return np.concatenate([plan, statics.force_z_N[..., None]], axis=-1)
+
+
+def _in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
+    """Turn stiffness in the vertical plane and across it into three dimensions."""
+    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
+    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
+    axes = np.stack([out, up], axis=-1)
+    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
+    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
+    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
+
+
+def _cross_matrix(vector: FloatArray) -> FloatArray:
+    """Return the matrices of ``vector ×`` (..., 3, 3)."""
+    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _balanced(robot: Robot, stiffness: FloatArray) -> FloatArray:
+    """Return the rows and columns that the cables balance."""
+    rows = robot.balance_rows
+    return np.asarray(stiffness[..., rows[:, None], rows])
+
+
+def _symmetric_or_zero(matrix: FloatArray) -> FloatArray:
+    finite = np.asarray(np.isfinite(matrix).all(axis=(-2, -1)))
+    safe = np.where(finite[..., None, None], matrix, 0.0)
+    return np.asarray(0.5 * (safe + np.swapaxes(safe, -1, -2)))

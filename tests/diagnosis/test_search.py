@@ -1,0 +1,50 @@
+"""The search ends, and keeps no effect that does not foretell rows it has not seen."""
+
+from __future__ import annotations
+
+import pytest
+from twins.dataset import make, size_for
+from twins.robots import YARD3
+
+from designer.config import read_study
+from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.case import case_of
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Noise, Problem
+from designer.diagnosis.search import Searcher
+from designer.measured.read import read_measured
+
+
+@pytest.fixture
+def searcher(tmp_path) -> Searcher:
+    effect = {"platform_mass": YARD3.draw("platform_mass", size_for(YARD3, "platform_mass", 10.0))}
+    make(YARD3, effect, rows=60).write(tmp_path)
+    study = read_study(tmp_path / "config.yaml")
+    assert study.measurements is not None
+    case = case_of(study, study.measurements, read_measured(study))
+    predict = Predictor(case.machine, case.measured)
+    problem = Problem(case.measured, predict, Noise(YARD3.noise_m, YARD3.noise_N, "declared"))
+    return Searcher(problem, case.candidates, (), ~heldout_rows(case.measured.n_rows))
+
+
+def test_it_finds_and_ends(searcher) -> None:
+    found = searcher.run()
+    assert [effect.id for effect in found.found] == ["platform_mass"]
+    assert [step.added.id if step.added else None for step in found.steps] == [
+        "platform_mass",
+        None,
+    ]
+
+
+def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> None:
+    monkeypatch.setattr(searcher, "_pruned", lambda found: [])
+    found = searcher.run()
+    assert found.found == ()
+    assert len(found.steps) == 1
+
+
+def test_what_does_not_foretell_is_left_out(searcher) -> None:
+    by_id = {effect.id: effect for effect in searcher._candidates}
+    both = [by_id["platform_mass"], by_id["tension_bias"]]
+    kept = searcher._foretelling(both, searcher.fit(both))
+    assert [effect.id for effect in kept] == ["platform_mass"]

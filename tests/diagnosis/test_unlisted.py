@@ -1,0 +1,72 @@
+"""Effects that are not in the list: unexplained, and no listed effect bent to fit them."""
+
+from __future__ import annotations
+
+import pytest
+from twins.dataset import DataSet, make, size_for
+from twins.robots import YARD3
+
+from designer.config import read_study
+from designer.diagnosis.case import case_of
+from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.result import Diagnosis, Reason
+from designer.measured.read import read_measured
+
+
+def diagnosed(dataset: DataSet, folder) -> Diagnosis:
+    dataset.write(folder)
+    study = read_study(folder / "config.yaml")
+    assert study.measurements is not None
+    return diagnose(case_of(study, study.measurements, read_measured(study)))
+
+
+def sized(*effects: str, over_noise: float = 10.0) -> dict[str, dict[str, float]]:
+    return {e: YARD3.draw(e, size_for(YARD3, e, over_noise), 0) for e in effects}
+
+
+@pytest.mark.parametrize(
+    ("effect", "carriers"),
+    [
+        ("tower_settles", {"time_s"}),
+        ("cable_mass_drift", {"time_s"}),
+        # Where a cable is long, the pose is low or far, and what differs with tension goes with it.
+        ("mast_bending", {"z_m", "tension_1_N", "tension_2_N", "tension_3_N"}),
+        ("nonlinear_stiffness", {"y_m", "tension_1_N", "tension_2_N", "tension_3_N", "length_3_m"}),
+    ],
+)
+def test_what_is_not_in_the_list_is_unexplained(effect, carriers, tmp_path) -> None:
+    found = diagnosed(make(YARD3, sized(effect), rows=80), tmp_path)
+    assert found.is_unexplained
+    assert found.findings == ()
+    assert found.structure_after.carriers[0].name in carriers
+    assert len(found.stages) == 1
+    assert found.withdrawn
+    assert {step.added.key for step in found.steps if step.added}
+
+
+def test_what_is_withdrawn_says_why(tmp_path) -> None:
+    found = diagnosed(make(YARD3, sized("tower_settles")), tmp_path)
+    drifts = [one for one in found.withdrawn if one.reason is Reason.DRIFTS]
+    assert [one.covariate for one in drifts] == ["time_s"]
+    assert drifts[0].variation > 0.2
+    small = [one for one in found.withdrawn if one.reason is Reason.SMALL]
+    assert small
+    assert not any(one.covariate for one in small)
+
+
+def test_a_listed_effect_beside_it_is_kept(tmp_path) -> None:
+    effects = sized("platform_mass", "tower_settles")
+    found = diagnosed(make(YARD3, effects), tmp_path)
+    assert [finding.effect.id for finding in found.findings] == ["platform_mass"]
+    true = effects["platform_mass"]["offset_kg"]
+    assert found.findings[0].parameters["offset_kg"].value == pytest.approx(true, rel=0.1)
+    assert found.is_unexplained
+    assert found.structure_after.carriers[0].name == "time_s"
+
+
+def test_a_pair_that_the_data_cannot_tell_comes_with_rivals(tmp_path) -> None:
+    """Creep from another onset hides a wrong scale, until both are fitted anew together."""
+    found = diagnosed(make(YARD3, sized("creep", "drum_scale")), tmp_path)
+    assert {finding.effect.id for finding in found.findings} == {"creep", "drum_scale"}
+    (scale,) = [finding for finding in found.findings if finding.effect.id == "drum_scale"]
+    assert "thermal_expansion" in scale.rivals

@@ -1,0 +1,108 @@
+"""Figures of robots and regions that lie in a vertical plane, and of turned platforms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from designer.analysis import Analysis, Provenance, analyse_pose
+from designer.arrays import frozen_array
+from designer.catalogue.registry import Catalogue
+from designer.config import read_study
+from designer.region import PointList
+from designer.report.drawings import draw
+from designer.report.figures.maps import WorkspaceMaps, workspace_maps
+from designer.report.figures.workspace_scene import edges_m
+from designer.report.sections.workspace import describe_orientations, describe_region
+from designer.resources import example_file
+from designer.robot import Poses
+from designer.sizing.newton import size_poses
+from designer.space import Orientations
+from designer.study import Study
+from designer.workspace.sweep import map_workspace
+
+
+def analysed(study: Study, folder: Path) -> Analysis:
+    assert study.workspace is not None
+    path = folder / "sweep.nc"
+    found = map_workspace(study.robot, study.workspace, study.material, file=path)
+    pose = analyse_pose(study)
+    return Analysis(study, Catalogue((), (), ()), Provenance.now(), pose, found, path, None)
+
+
+@pytest.fixture(scope="module")
+def facade() -> Study:
+    study = read_study(example_file("facade"))
+    assert study.workspace is not None
+    return replace(study, workspace=replace(study.workspace, samples=200), selection=None)
+
+
+@pytest.fixture(scope="module")
+def flat(facade: Study, tmp_path_factory: pytest.TempPathFactory) -> Analysis:
+    return analysed(facade, tmp_path_factory.mktemp("facade"))
+
+
+@pytest.fixture(scope="module")
+def maps(flat: Analysis) -> WorkspaceMaps:
+    return workspace_maps(flat)
+
+
+def test_the_section_is_the_rectangle(maps: WorkspaceMaps) -> None:
+    position = maps.section.position_m
+    assert np.ptp(position[..., 1]) == 0.0
+    assert (position[..., 0].min(), position[..., 0].max()) == pytest.approx((-13, 13))
+    assert (position[..., 2].min(), position[..., 2].max()) == pytest.approx((3, 24))
+    np.testing.assert_allclose(maps.flat_m(position), position[..., [0, 2]])
+    assert maps.axis_labels == ("x [m]", "z [m]")
+    assert maps.edge is None
+    (outline,) = edges_m(maps)
+    np.testing.assert_array_equal(outline, position[-1])
+
+
+def test_maps_show_the_worst_orientation(maps: WorkspaceMaps, facade: Study) -> None:
+    assert facade.workspace is not None
+    position = maps.section.position_m[::30, ::60]
+    each = np.stack(
+        [
+            size_poses(
+                facade.robot,
+                Poses.at(position, np.broadcast_to(t, position.shape)),
+                facade.material,
+            ).diameter_m
+            for t in facade.workspace.orientations.turns_rad
+        ]
+    )
+    np.testing.assert_allclose(maps.section.diameter_m[::30, ::60], each.max(axis=0), rtol=1e-9)
+    assert (each.argmax(axis=0) != 0).any()
+
+
+def test_the_marked_pose_is_turned(maps: WorkspaceMaps, flat: Analysis) -> None:
+    assert flat.workspace is not None
+    assert flat.workspace.sagging is not None
+    assert maps.focus.statics is not None
+    needed = float(maps.focus.field.diameter_m)
+    assert needed == pytest.approx(flat.workspace.sagging.diameter_m, rel=1e-9)
+    assert not np.array_equal(maps.focus.statics.poses.rotation, np.eye(3))
+
+
+def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -> None:
+    assert facade.workspace is not None
+    points = PointList(frozen_array([[-5.0, 0, 10], [0, 0, 12], [5, 0, 10]]))
+    listed = analysed(replace(facade, workspace=replace(facade.workspace, region=points)), tmp_path)
+    for analysis in (flat, listed):
+        pictures = draw(analysis)
+        assert pictures.pose_scene is not None
+        charts = [picture.svg for picture in pictures.workspace if picture.svg]
+        assert any("z [m]" in svg for svg in charts)
+        assert not any("above" in picture.caption for picture in pictures.workspace)
+
+
+def test_words(facade: Study) -> None:
+    assert facade.workspace is not None
+    assert "upright rectangle from" in describe_region(facade.workspace.region)
+    assert describe_orientations(facade.workspace.orientations).startswith("each of (0.00,")
+    between = Orientations.within([-0.1, 0.0, 0.0], [0.1, 0.0, 0.0])
+    assert describe_orientations(between).startswith("all between (−5.73,")

@@ -1,0 +1,86 @@
+"""Nested layers of the region: each size serves its own and those of all thinner ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from figures_cases import STEEL, THREE, maps_of, solved
+
+from designer.arrays import FloatArray
+from designer.catalogue.grade import Grade, Modulus, Reference, Size
+from designer.report.figures.usable_scene import chosen_sizes, colours, layers_of, usable_scene
+from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
+from designer.robot import Poses
+from designer.selection.usable import Usable, usable
+from designer.sizing.newton import size_poses
+
+SIZES_MM = [10.0, 20.0, 24.0, 28.0, 32.0, 36.0, 40.0, 60.0]
+
+
+def steel_grade() -> Grade:
+    """The configured family in sizes, so that served is where the family needs no more."""
+    sizes = []
+    for d in SIZES_MM:
+        member = STEEL.cable(d / 1e3)
+        load = 2.0 * member.allowable_tension_N
+        sizes.append(Size(f"{d:g} mm", d / 1e3, load, member.linear_density_kg_per_m))
+    modulus = Modulus(STEEL.youngs_modulus_Pa, "nominal", "printed", "by law", 0.1)
+    source = Reference("a", "b")
+    return Grade("steel", "m", "p", "rod", "-", "-", tuple(sizes), source, "A", modulus)
+
+
+def usable_of(case: str) -> Usable:
+    workspace = solved(case)[0].study.workspace
+    assert workspace is not None
+    grade = steel_grade()
+    return usable(THREE, workspace, grade, [(s, grade.cable(s, 2.0)) for s in grade.sizes])
+
+
+def served(positions: FloatArray, diameter_m: float) -> FloatArray:
+    return size_poses(THREE, Poses.at(positions), STEEL).diameter_m <= diameter_m
+
+
+def test_sizes_are_spread_over_what_they_serve() -> None:
+    found = usable_of("served")
+    shown = chosen_sizes(found)
+    assert 2 <= len(shown) <= 5
+    fractions = [one.fraction for one in shown]
+    assert fractions == sorted(fractions)
+    assert fractions[0] > 0.0
+    assert fractions[-1] == 1.0
+    assert all(fraction < 1.0 for fraction in fractions[:-1])
+    assert len(colours_of("served")) == len(shown)
+
+
+def colours_of(case: str) -> list[tuple[float, ...]]:
+    layers = layers_of(maps_of(case), usable_of(case))
+    assert layers is not None
+    return colours(layers)
+
+
+def test_layers_are_where_the_family_needs_no_more() -> None:
+    layers = layers_of(maps_of("served"), usable_of("served"))
+    assert layers is not None
+    for one, used in zip(layers.sizes, layers.utilisation, strict=True):
+        expected = served(layers.position_m, one.size.diameter_m)
+        at_edge = np.isclose(used, 1.0, rtol=1e-6)
+        assert np.array_equal((used <= 1.0)[~at_edge], expected[~at_edge])
+    for thin, thick in zip(layers.utilisation, layers.utilisation[1:], strict=False):
+        assert np.all(thick[thin <= 1.0] <= 1.0)
+
+
+@pytest.mark.parametrize("case", ["served", "partly", "exclude", "box"])
+def test_picture_has_its_size(case: str) -> None:
+    import io
+
+    from PIL import Image
+
+    png = usable_scene(maps_of(case), usable_of(case))
+    assert png is not None
+    with Image.open(io.BytesIO(png)) as image:
+        assert image.size == (WIDTH_PX, HEIGHT_PX)
+        assert len(image.convert("RGB").getcolors(1 << 24) or ()) > 20
+
+
+def test_points_have_no_layers() -> None:
+    assert usable_scene(maps_of("points"), usable_of("points")) is None

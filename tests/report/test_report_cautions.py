@@ -1,0 +1,158 @@
+"""What a reviewer would object to stands on the first page; what is long, in the appendix."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import pytest
+from report_cases import DEFAULTS, FAST
+from test_report_groups import YARD
+from test_report_qualities import PRISM, SELECTION, SIX
+
+from designer.analysis import Analysis
+from designer.catalogue.grade import Limits
+from designer.report.context import ReportContext, build_context
+from designer.report.figures.charts_pareto import pareto_chart
+from designer.report.material_class import class_of
+from designer.report.pictures import Pictures
+from designer.report.render import render_html
+from designer.report.sections.candidates import front_sentence
+
+Solve = Callable[[str], Analysis]
+
+
+def context_of(analysis: Analysis) -> ReportContext:
+    return build_context(analysis, Pictures())
+
+
+@pytest.fixture(scope="module")
+def fibre(solve: Solve) -> Analysis:
+    grades = "[gost-6x19s-iwrc-1960, yale-ultrex-hmpe]"
+    return solve(FAST.format(**{**DEFAULTS, "grades": grades}))
+
+
+@pytest.fixture(scope="module")
+def grouped(solve: Solve) -> Analysis:
+    return solve(YARD.replace("GRADES", "unirope-7x19-galvanised, unirope-6x19-iwrc-eips"))
+
+
+def test_a_fibre_rope_is_named_beside_the_best_of_steel(fibre: Analysis) -> None:
+    assert fibre.selection is not None
+    steel = next(o.best for o in fibre.selection.outcomes if class_of(o.grade) == "steel")
+    assert steel is not None
+    text = context_of(fibre).first_page.verdict.text
+    assert "It is a rope of HMPE fibre." in text
+    assert "20.5 mm of gost-6x19s-iwrc-1960" in text
+    mass = f"{steel.total_mass_kg:,.0f}".replace(",", "\u202f")
+    assert f"{mass}\u00a0kg in all instead of" in text
+
+
+def test_a_steel_rope_is_not_called_fibre(analyses: dict[str, Analysis]) -> None:
+    page = context_of(analyses["positive"]).first_page
+    assert "fibre" not in page.verdict.text
+    assert not any("Creep" in statement.title for statement in page.confidence)
+
+
+def test_no_steel_rope_holds(solve: Solve) -> None:
+    grades = "[unirope-7x19-galvanised, yale-ultrex-hmpe]"
+    text = context_of(solve(FAST.format(**{**DEFAULTS, "grades": grades}))).first_page.verdict.text
+    assert text.endswith("No rope of steel that the study allows holds.")
+
+
+@pytest.mark.parametrize(
+    ("limits", "titles"),
+    [
+        (Limits("S", creep="high"), {"Creep of yale-ultrex-hmpe"}),
+        (None, {"Creep of yale-ultrex-hmpe"}),
+        (Limits("S", (-40.0, 70.0)), {"Creep of yale-ultrex-hmpe", "Temperature"}),
+    ],
+)
+def test_limits_of_the_grade_are_cautions(
+    limits: Limits | None, titles: set[str], fibre: Analysis
+) -> None:
+    assert fibre.selection is not None
+    chosen = fibre.selection.chosen
+    assert chosen is not None
+    grade = dataclasses.replace(chosen.grade, limits=limits)
+    other = dataclasses.replace(chosen, grade=grade)
+    outcomes = tuple(
+        dataclasses.replace(o, best=other) if o.best is chosen else o
+        for o in fibre.selection.outcomes
+    )
+    selection = dataclasses.replace(fibre.selection, chosen=other, outcomes=outcomes)
+    page = context_of(dataclasses.replace(fibre, selection=selection)).first_page
+    found = {s.title: s for s in page.confidence}
+    assert titles == {t for t in found if t.startswith("Creep") or t == "Temperature"}
+    assert all(found[title].tone == "doubt" for title in titles)
+    said = "Known of it: high." if limits and limits.creep else "says nothing of it"
+    assert said in found["Creep of yale-ultrex-hmpe"].text
+    if "Temperature" in titles:
+        assert "from −40 to 70\u00a0°C" in found["Temperature"].text
+
+
+@pytest.mark.parametrize("selection", ["", SELECTION])
+def test_a_violated_clearance_is_on_the_first_page(solve: Solve, selection: str) -> None:
+    analysis = solve(SIX.format(region=PRISM, clearance="2 m", selection=selection))
+    page = context_of(analysis).first_page
+    assert page.verdict.title == "In part"
+    assert page.verdict.text.endswith("But the clearance is not kept.")
+    assert [reason.title for reason in page.reasons] == ["The clearance is not kept"]
+    assert "2\u202f000\u00a0mm asked for" in page.reasons[0].text
+    assert "ask for less clearance" in page.actions[0]
+
+
+def test_a_kept_clearance_is_no_objection(solve: Solve) -> None:
+    analysis = solve(SIX.format(region=PRISM, clearance="0.01 m", selection=SELECTION))
+    page = context_of(analysis).first_page
+    assert page.verdict.title == "Yes"
+    assert page.reasons == page.actions == ()
+
+
+def test_ropes_of_groups_and_their_doubts_are_on_the_first_page(grouped: Analysis) -> None:
+    assert grouped.groups is not None and grouped.groups.chosen is not None
+    page = context_of(grouped).first_page
+    products = grouped.groups.chosen.products
+    assert page.groups is not None
+    assert "less than the best single product" in page.groups.text
+    assert [fact.value for fact in page.group_ropes] == [product.label for product in products]
+    doubtful = {product.size.id for product in products if product.size.doubt}
+    titles = " ".join(statement.title for statement in page.confidence)
+    assert all(f"Doubt about {name}" in titles for name in doubtful)
+
+
+def test_the_programme_solver_is_among_the_libraries_where_it_is_used(
+    grouped: Analysis, fibre: Analysis
+) -> None:
+    assert {"cvxpy", "highspy"} <= dict(grouped.provenance.libraries).keys()
+    assert {"cvxpy", "highspy"}.isdisjoint(dict(fibre.provenance.libraries))
+
+
+def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
+    context = context_of(fibre)
+    assert context.inputs.defaults is not None
+    rows = context.inputs.defaults.groups[0].rows
+    named = [cell for row in rows for cell in row.cells[::2] if cell]
+    expected = [e.field for e in fibre.study.source.entries if e.given == "default"]
+    assert sorted(named) == sorted(expected)
+    html = render_html(context)
+    assert html.index('id="provenance"') < html.index("workspace.sampling")
+
+
+def test_one_size_alone_is_said_in_words(fibre: Analysis, analyses: dict[str, Analysis]) -> None:
+    assert fibre.selection is not None
+    assert len(fibre.selection.front) == 1
+    assert "3/4 in beats every other size" in front_sentence(fibre.selection)
+    none = analyses["too_thin"].selection
+    assert none is not None
+    assert front_sentence(none) == ""
+
+
+def test_chart_tells_materials_apart(fibre: Analysis) -> None:
+    assert fibre.selection is not None
+    svg = pareto_chart(fibre.selection)
+    assert svg is not None
+    words = svg[svg.index("<desc>") : svg.index("</desc>")]
+    assert "steel" in words and "fibre" in words and "chosen" in words
+    assert "stainless" not in words
+    assert "no other beats it" not in words

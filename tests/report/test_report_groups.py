@@ -1,0 +1,100 @@
+"""Products for groups in report and result: the same figures, and what is proved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from designer.analysis import Analysis
+from designer.groups_json import groups_dict
+from designer.report.figures.charts_groups import groups_plan
+from designer.report.pictures import Pictures
+from designer.report.sections.groups import groups_section
+from designer.result_json import result_dict
+
+YARD = """
+name: Yard with a far mast
+robot:
+  anchors: [[0, 0, 11.5], [30, 0, 11.5], [15, 70, 25]]
+  platform: {mass: 900 kg}
+cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}
+workspace:
+  region: {box: [[8, 22], [4, 14], [1, 7]]}
+  samples: 200
+selection:
+  grades: [GRADES]
+  safety_factor: 5
+  groups: {'<b>near</b>': [1, 2], far: [3]}
+"""
+
+
+@pytest.fixture(scope="module")
+def found(solve: Callable[[str], Analysis]) -> Analysis:
+    return solve(YARD.replace("GRADES", "unirope-7x19-galvanised, unirope-6x19-iwrc-eips"))
+
+
+@pytest.fixture(scope="module")
+def none(solve: Callable[[str], Analysis]) -> Analysis:
+    return solve(YARD.replace("GRADES", "unirope-7x19-galvanised"))
+
+
+def test_result_has_the_groups_beside_the_single_choice(found: Analysis) -> None:
+    selection = result_dict(found)["selection"]
+    chosen, groups, choice = (selection[k] for k in ("chosen", "groups", "group_choice"))
+    assert [group["cables"] for group in groups] == [[1, 2], [3]]
+    assert choice["proof"] == "optimal"
+    assert choice["gap"] == 0.0
+    assert choice["bound_kg"] == choice["total_mass_kg"]
+    mass = sum(sum(g["longest_m"]) * g["linear_mass_kg_per_m"] for g in groups)
+    assert choice["total_mass_kg"] == pytest.approx(mass, rel=1e-12)
+    assert choice["single_product_mass_kg"] == pytest.approx(chosen["total_mass_kg"], rel=1e-12)
+    assert choice["saving_kg"] == pytest.approx(chosen["total_mass_kg"] - mass, rel=1e-9)
+    assert choice["saving_kg"] > 5.0
+    assert all(0.5 < group["utilisation"] <= 1.0 for group in groups)
+    held = [one for one in choice["proposals"] if one["outcome"] == "holds"]
+    assert held[-1]["products"][1] == {k: groups[1][k] for k in ("grade", "size_id")}
+
+
+def test_section_says_the_same(found: Analysis) -> None:
+    section = groups_section(found, None)
+    assert section is not None
+    assert section.verdict.tone == "good"
+    assert section.chosen is not None
+    rows = section.chosen.groups[0].rows
+    assert [row.cells[1] for row in rows] == ["1, 2", "3"]
+    assert found.groups is not None
+    assert found.groups.chosen is not None
+    for row, product in zip(rows, found.groups.chosen.products, strict=True):
+        assert row.cells[2] == product.label
+    assert section.proposals is not None
+    assert len(section.proposals.columns) == len(section.proposals.groups[0].rows[0].cells)
+    assert "proof" in {fact.label.lower() for fact in section.facts}
+
+
+def test_plan_names_each_group(found: Analysis) -> None:
+    assert found.groups is not None
+    assert found.groups.chosen is not None
+    assert found.study.workspace is not None
+    region = found.study.workspace.region
+    svg = groups_plan(found.built.robot, region, found.groups, found.groups.chosen)
+    assert "&lt;b&gt;near&lt;/b&gt;" in svg
+    assert "<b>" not in svg
+
+
+def test_nothing_found_is_said(none: Analysis) -> None:
+    part = groups_dict(none.groups)
+    assert part["groups"] == []
+    assert part["group_choice"]["proof"] == "infeasible"
+    assert part["group_choice"]["total_mass_kg"] is None
+    section = groups_section(none, None)
+    assert section is not None
+    assert section.verdict.tone == "bad"
+    assert section.chosen is None
+
+
+def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    assert groups_section(analysis, Pictures().groups) is None
+    assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
+    assert result_dict(analysis)["selection"]["group_choice"] is None

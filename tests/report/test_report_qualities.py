@@ -1,0 +1,186 @@
+"""Stiffness and clearance in the analysis, in result.json, in the report and its maps."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from designer.analysis import Analysis
+from designer.report.context import build_context
+from designer.report.drawings import draw
+from designer.report.figures import grids
+from designer.report.figures.height_map import HeightMap, height_map
+from designer.report.pictures import Pictures
+from designer.report.render import render_html
+from designer.result_json import result_dict
+
+SIX = """
+name: Six cables
+robot:
+  anchors:
+    - [30, 0, 12]
+    - [30, 0.8, 12]
+    - [-15, 26, 12]
+    - [-15.7, 25.6, 12]
+    - [-15, -26, 12]
+    - [-14.3, -26.4, 12]
+  platform:
+    mass: 900 kg
+    attachments: [[1, -1.73, 0], [1, 1.73, 0], [1, 1.73, 0], [-2, 0, 0], [-2, 0, 0], [1, -1.73, 0]]
+    centre_of_mass: [0, 0, -0.5]
+    hull: [[-2, 1], [-1.8, 1.8], [-1, 0]]
+cable: {{density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}}
+workspace:
+  region: {region}
+  samples: 60
+  clearance: {clearance}
+{selection}
+"""
+PRISM = "{prism: anchors, inset: 9 m, z: [1, 8]}"
+SELECTION = "selection: {grades: [lg-7x19-wsc-galvanised-2070], safety_factor: 2}"
+
+Solve = Callable[[str], Analysis]
+
+
+@pytest.fixture(scope="module")
+def kept(solve: Solve) -> Analysis:
+    return solve(SIX.format(region=PRISM, clearance="0.1 m", selection=SELECTION))
+
+
+@pytest.fixture(scope="module")
+def not_kept(solve: Solve) -> Analysis:
+    return solve(SIX.format(region=PRISM, clearance="0.4 m", selection=""))
+
+
+def test_the_cable_is_the_chosen_rope_or_that_of_the_family(
+    kept: Analysis, not_kept: Analysis
+) -> None:
+    assert kept.qualities is not None and kept.selection is not None
+    chosen = kept.selection.chosen
+    assert chosen is not None
+    assert kept.qualities.cable.cable is chosen.cable
+    assert chosen.grade.id in kept.qualities.cable.name
+    assert not_kept.qualities is not None
+    assert "configured family" in not_kept.qualities.cable.name
+
+
+def test_result_json(kept: Analysis, not_kept: Analysis) -> None:
+    for analysis, violated in ((kept, False), (not_kept, True)):
+        found = json.loads(json.dumps(result_dict(analysis)["workspace"], allow_nan=False))
+        interference = found["interference"]
+        assert interference["violated"] is violated
+        assert (interference["min_distance_m"] < interference["clearance_m"]) is violated
+        assert (interference["violating"] > 0) is violated
+        assert len(interference["pose"]) == 3
+        assert len(interference["pair"]) == 2
+        assert interference["pair"][0].startswith("cable ")
+        assert found["stiffness"]["unstable"] == 0
+        assert 0.0 < found["stiffness"]["largest_displacement_m_per_N"] < 1e-3
+
+
+def test_what_was_not_asked_for_is_null(yard: Analysis, pose_only: Analysis) -> None:
+    workspace = result_dict(yard)["workspace"]
+    assert workspace["interference"] is None
+    assert workspace["stiffness"]["samples"] == 300
+    assert pose_only.qualities is None
+
+
+def test_no_cable_has_no_qualities(analyses: dict[str, Analysis]) -> None:
+    assert analyses["no_finite_cable"].qualities is None
+    assert result_dict(analyses["no_finite_cable"])["workspace"]["stiffness"] is None
+    assert build_context(analyses["no_finite_cable"], Pictures()).stiffness is None
+
+
+def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None:
+    good, bad = (build_context(a, Pictures()) for a in (kept, not_kept))
+    assert good.clearance is not None and bad.clearance is not None
+    assert good.clearance.verdict.title == "The clearance is kept"
+    assert good.clearance.verdict.tone == "good"
+    assert bad.clearance.verdict.title == "The clearance is not kept"
+    assert "of the samples" in bad.clearance.verdict.text
+    assert bad.stiffness is not None
+    assert bad.stiffness.verdict.title == "Every pose is stable"
+    ids = [heading.id for heading in bad.headings]
+    assert ids.index("stiffness") + 1 == ids.index("clearance")
+    html = render_html(bad)
+    assert "Cables are checked against each other" in html
+    assert "this is not checked" not in html
+
+
+def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
+    found = not_kept.qualities
+    assert found is not None and found.interference is not None
+    none_of_the_samples = replace(found.interference, violating=0)
+    changed = replace(not_kept, qualities=replace(found, interference=none_of_the_samples))
+    section = build_context(changed, Pictures()).clearance
+    assert section is not None
+    assert "only between the samples" in section.verdict.text
+
+
+def test_unstable_poses_are_told(kept: Analysis) -> None:
+    found = kept.qualities
+    assert found is not None and found.stiffness is not None
+    shaky = replace(found, stiffness=replace(found.stiffness, unstable=3))
+    section = build_context(replace(kept, qualities=shaky), Pictures()).stiffness
+    assert section is not None
+    assert section.verdict.tone == "bad"
+    assert section.verdict.text.startswith("In 5.00\u00a0% of the samples")
+
+
+def test_maps_are_drawn(not_kept: Analysis) -> None:
+    pictures = draw(not_kept)
+    assert pictures.stiffness is not None and pictures.clearance is not None
+    assert "largest displacement [mm/kN]" in pictures.stiffness.svg
+    assert "the clearance that is asked for" in pictures.clearance.svg
+    html = render_html(build_context(not_kept, pictures))
+    assert 'id="stiffness-' in html and 'id="clearance-' in html
+
+
+def test_a_list_of_points_has_no_map(solve: Solve) -> None:
+    points = "{points: [[0, 0, 4], [2, 1, 5]]}"
+    pictures = draw(solve(SIX.format(region=points, clearance="0.1 m", selection="")))
+    assert pictures.stiffness is None
+    assert pictures.clearance is None
+
+
+def test_a_point_mass_has_nothing_to_compare(solve: Solve) -> None:
+    text = """
+robot: {anchors: [[0, 0, 12], [30, 0, 12], [15, 26, 12]], platform: {mass: 180 kg}}
+cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}
+workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
+"""
+    analysis = solve(text)
+    section = build_context(analysis, draw(analysis)).clearance
+    assert section is not None
+    assert section.verdict.title == "There is nothing to compare"
+    assert section.nearest is None
+    assert result_dict(analysis)["workspace"]["interference"]["min_distance_m"] is None
+
+
+@pytest.mark.parametrize("case", ["all", "some bad", "nothing", "limit"])
+def test_height_maps(case: str) -> None:
+    from designer.region import Prism
+
+    region = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
+    position = grids.disc_m(region, 1.5, 6, 24)
+    values = 1.0 + position[..., 0]
+    bad = np.zeros(values.shape, dtype=bool)
+    if case != "all":
+        bad = position[..., 0] > 3.0
+        values = np.where(bad, np.nan, values)
+    if case == "nothing":
+        values = np.full(values.shape, np.nan)
+    exits = np.array([[0.0, 0, 5], [4, 0, 5], [2, 3, 5]])
+    limit = 2.0 if case == "limit" else None
+    shown = HeightMap(position, values, bad, "not held", exits, "depth [m]", limit, "asked for")
+    svg = height_map(shown, "test")
+    assert ("not held" in svg) == (case != "all")
+    assert "depth [m]" in svg
+    assert ("; asked for" in svg) == (case == "limit")
+    assert ("left out" in svg) == (case == "nothing")
+    assert re.search(r"<title>depth \[m\], z = 1.5 m</title>", svg)

@@ -1,0 +1,157 @@
+"""What candidates are compared by, and the set that nothing beats."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from ropes import rope
+
+from designer.cable import Cable
+from designer.region import Prism
+from designer.selection.objectives import common_currency, smallest_stiffness_N_per_m
+from designer.selection.pareto import dominator_of, is_undominated
+from designer.selection.select import select
+from designer.study import Selection, Workspace
+
+TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+SIZES = [14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 28.0, 32.0]
+
+rows = st.lists(
+    st.tuples(*[st.integers(0, 4).map(float) | st.just(float("inf"))] * 3), min_size=1, max_size=12
+)
+
+
+def beats(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    return all(x <= y for x, y in zip(a, b, strict=True)) and a != b
+
+
+@given(rows)
+def test_pareto_set_is_that_of_its_definition(table: list[tuple[float, ...]]) -> None:
+    burdens = np.array(table)
+    expected = [not any(beats(other, row) for other in table) for row in table]
+    assert is_undominated(burdens).tolist() == expected
+
+
+@given(rows)
+def test_whoever_is_dominated_is_so_by_a_member_of_the_set(table: list[tuple[float, ...]]) -> None:
+    burdens = np.array(table)
+    front = burdens[is_undominated(burdens)]
+    for row, member in zip(burdens, is_undominated(burdens), strict=True):
+        number = dominator_of(row, front)
+        assert (number is None) == member
+        if number is not None:
+            assert beats(tuple(front[number]), tuple(row))
+
+
+@pytest.fixture(scope="module")
+def workspace() -> Workspace:
+    return Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=1000)
+
+
+def grades():
+    """A light one on large drums, a cheap heavy one on small drums, a stiff one."""
+    return [
+        rope("light", SIZES, weight=0.7, sheave_ratio=40.0, price_per_kg=9.0, currency="EUR"),
+        rope("cheap", SIZES, sheave_ratio=18.0, price_per_kg=2.0, currency="EUR"),
+        rope("stiff", SIZES, weight=0.705, stiffness=3.0, sheave_ratio=60.0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("objectives", "grade"),
+    [
+        (("mass",), "light"),
+        (("mass", "drum_diameter"), "light"),
+        (("drum_diameter", "mass"), "cheap"),
+        (("cost", "mass"), "cheap"),
+        (("max_tension",), "light"),
+        (("stiffness", "mass"), "stiff"),
+    ],
+)
+def test_first_objective_decides(objectives, grade: str, fast_robot, workspace) -> None:
+    found = select(fast_robot, workspace, Selection(None, 2.0, objectives), grades())
+    assert found.chosen is not None
+    assert found.chosen.grade.id == grade
+    best = found.chosen.figures.burden(objectives[0])
+    comparable = [c for c in found.candidates if c.verification.holds]
+    assert best == min(c.figures.burden(objectives[0]) for c in comparable)
+    assert found.front[0] is found.chosen
+
+
+def test_front_is_mutually_undominated_and_beats_the_rest(fast_robot, workspace) -> None:
+    objectives = ("mass", "drum_diameter", "cost", "stiffness")
+    found = select(fast_robot, workspace, Selection(None, 2.0, objectives), grades())
+
+    def burdens(candidate) -> tuple[float, ...]:
+        return tuple(candidate.figures.burden(o) for o in objectives)
+
+    assert len(found.front) > 2
+    for a, b in itertools.permutations(found.front, 2):
+        assert not beats(burdens(a), burdens(b))
+    for candidate in found.candidates:
+        if candidate.standing == "dominated":
+            assert any(beats(burdens(c), burdens(candidate)) for c in found.front)
+    assert all(c.verified for c in found.front)
+
+
+def test_figures_are_what_they_say(fast_robot, workspace) -> None:
+    found = select(fast_robot, workspace, Selection(None, 2.0, ("mass", "cost")), grades())
+    assert found.currency == "EUR"
+    for candidate in found.candidates:
+        length = candidate.verification.longest_m.sum()
+        mass = candidate.cable.linear_density_kg_per_m * length
+        assert candidate.figures.mass_kg == pytest.approx(mass)
+        assert candidate.figures.max_tension_N == candidate.verification.max_tension_N
+        ratio, price = {"light": (40, 9), "cheap": (18, 2), "stiff": (60, np.nan)}[
+            candidate.grade.id
+        ]
+        diameter = candidate.size.diameter_m
+        assert candidate.figures.drum_diameter_m == pytest.approx(ratio * diameter)
+        assert candidate.figures.cost == pytest.approx(price * mass, nan_ok=True)
+
+
+def test_without_a_price_nothing_can_be_the_cheapest(fast_robot, workspace) -> None:
+    unpriced = rope("unpriced", SIZES, weight=0.5)
+    dear = rope("dear", SIZES, price_per_kg=50.0, currency="EUR")
+    found = select(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [unpriced, dear])
+    assert found.chosen is not None
+    assert found.chosen.grade.id == "dear"
+    holding = [c for c in found.candidates if c.grade is unpriced and c.verification.holds]
+    assert {c.standing for c in holding} == {"not_comparable"}
+    assert {c.reason for c in holding} == {"its price is not known"}
+    none = select(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [unpriced])
+    assert none.chosen is None
+    assert "price" in (none.reason or "")
+
+
+def test_prices_in_another_currency_do_not_count(fast_robot, workspace) -> None:
+    euro = rope("euro", SIZES, price_per_kg=5.0, currency="EUR")
+    yen = rope("yen", SIZES[:3], price_per_kg=0.1, currency="JPY")
+    assert common_currency([yen, euro]) == "EUR"
+    assert common_currency([rope("free", SIZES)]) is None
+    found = select(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [euro, yen])
+    assert found.chosen is not None
+    assert found.chosen.grade.id == "euro"
+
+
+def test_stiffness_of_taut_cables_is_the_textbooks(fast_robot) -> None:
+    """Σ EA/l u uᵀ + T/l (1 - u uᵀ) for straight weightless cables."""
+    cable = Cable(0.01, 1e-7, 5e6, 1e6)
+    position = np.array([[250.0, 150.0, -50.0]])
+    chord = position - fast_robot.exit_points_m
+    length = np.linalg.norm(chord, axis=1)
+    u = chord / length[:, None]
+    tension = np.linalg.solve(-u.T, [0.0, 0.0, fast_robot.weight_N])
+    along = u[:, :, None] * u[:, None, :]
+    unstrained = length / (1.0 + tension / cable.axial_stiffness_N)
+    matrix = (cable.axial_stiffness_N / unstrained)[:, None, None] * along + (tension / length)[
+        :, None, None
+    ] * (np.eye(3) - along)
+    expected = np.linalg.eigvalsh(matrix.sum(axis=0))[0]
+    workspace = Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=10)
+    found = smallest_stiffness_N_per_m(fast_robot, workspace, cable, position)
+    assert found == pytest.approx(expected, rel=1e-6)

@@ -1,0 +1,54 @@
+"""How much of the workspace a size serves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from ropes import rope
+
+from designer.arrays import frozen_array
+from designer.region import PointList, Prism
+from designer.robot import Poses
+from designer.selection.select import select
+from designer.sizing.newton import size_poses
+from designer.study import Selection, Workspace
+from designer.workspace.samples import positions_m
+
+TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+SIZES = [8.0, 14.0, 16.0, 18.0, 20.0, 24.0, 32.0]
+
+
+def test_share_is_that_of_the_poses_that_need_no_more(fast_robot) -> None:
+    """In a grade after the law a size serves the poses whose needed diameter is not above it."""
+    workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=3000)
+    grade = rope("a", SIZES)
+    found = select(fast_robot, workspace, Selection(None, 2.0), [grade]).usable
+    assert found is not None
+    positions = np.concatenate(list(positions_m(workspace)))
+    needed = size_poses(fast_robot, Poses.at(positions), grade.family(2.0)).diameter_m
+    for one in found.sizes:
+        share = np.mean(needed <= one.size.diameter_m)
+        assert one.fraction == pytest.approx(share, abs=1e-12)
+        assert one.volume_m3 == pytest.approx(share * workspace.region.volume_m3)
+    shares = [one.fraction for one in found.sizes]
+    assert shares == sorted(shares)
+    assert shares[0] < 0.5
+    assert shares[-1] == 1.0
+
+
+def test_where_nothing_holds_it_is_shown_for_what_serves_most(fast_robot) -> None:
+    workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=500)
+    grades = [rope("thin", [4.0, 6.0]), rope("nearly", [12.0, 14.0])]
+    found = select(fast_robot, workspace, Selection(None, 2.0), grades)
+    assert found.chosen is None
+    assert found.usable is not None
+    assert found.usable.grade.id == "nearly"
+    assert 0.0 < found.usable.sizes[-1].fraction < 1.0
+
+
+def test_points_have_no_volume(fast_robot) -> None:
+    points = PointList(frozen_array([[250, 144, -190], [250, 40, -45], [250, -60, -50]]))
+    found = select(fast_robot, Workspace(points), Selection(None, 2.0), [rope("a", [14.0, 40.0])])
+    assert found.usable is not None
+    assert [one.fraction for one in found.usable.sizes] == pytest.approx([1 / 3, 2 / 3])
+    assert {one.volume_m3 for one in found.usable.sizes} == {None}

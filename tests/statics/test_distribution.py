@@ -1,0 +1,181 @@
+"""Straight cables of redundant robots: best tensions with their proofs, infeasibility with its."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from redundant_robots import COGIRO, FOUR, SEVEN, anywhere, cogiro_poses, four_poses, seven_poses
+from scipy.optimize import linprog, minimize
+
+from designer.arrays import frozen_array
+from designer.robot import Platform, Poses, Robot
+from designer.statics.distribution import distribute, distribute_evenly
+from designer.statics.geometry import cable_geometry, load_wrench_N
+from designer.statics.inverse import solve_massless
+from designer.verdict import Verdict
+
+CASES = {
+    "cogiro": (COGIRO, anywhere(150), 600.0),
+    "cogiro, taut": (replace(COGIRO, tension_min_N=100.0), anywhere(150), 600.0),
+    "four": (FOUR, four_poses(60), 8000.0),
+    "seven": (SEVEN, seven_poses(60), 40.0),
+}
+
+
+@pytest.fixture(params=CASES)
+def case(request) -> tuple[Robot, Poses, float]:
+    return CASES[request.param]
+
+
+def unit_wrenches(robot: Robot, poses: Poses) -> np.ndarray:
+    """Wrench on the platform per tension, written down once more: (poses, dof, cables)."""
+    geometry = cable_geometry(robot, poses)
+    ends = poses.attachment_points_m(robot)
+    pull = robot.exit_points_m - ends
+    pull /= np.linalg.norm(pull, axis=-1, keepdims=True)
+    assert np.linalg.norm(robot.exit_points_m - ends, axis=-1) == pytest.approx(geometry.chord_m)
+    if robot.is_point_mass:
+        return np.swapaxes(pull, 1, 2)
+    lever = ends - poses.position_m[:, None]
+    return np.swapaxes(np.concatenate([pull, np.cross(lever, pull)], axis=-1), 1, 2)
+
+
+def smallest_largest_N(matrix, load, low, high) -> float:
+    """SciPy's answer; infinite for none."""
+    dof, n = matrix.shape
+    answer = linprog(
+        np.eye(n + 1)[n],
+        A_ub=np.hstack([np.eye(n), -np.ones((n, 1))]),
+        b_ub=np.zeros(n),
+        A_eq=np.hstack([matrix, np.zeros((dof, 1))]),
+        b_eq=-load,
+        bounds=[(low, high)] * n + [(0, None)],
+    )
+    return answer.fun if answer.status == 0 else np.inf
+
+
+def test_smallest_largest_tension_is_that_of_linprog(case) -> None:
+    robot, poses, high = case
+    load, matrices = load_wrench_N(robot, poses), unit_wrenches(robot, poses)
+    expected = np.array(
+        [
+            smallest_largest_N(m, w, robot.tension_min_N, high)
+            for m, w in zip(matrices, load, strict=True)
+        ]
+    )
+    held = np.isfinite(expected)
+    assert held.any()
+    for found in (distribute(robot, poses, high), distribute_evenly(robot, poses, high)):
+        assert np.array_equal(found.is_feasible, held)
+        assert found.largest_tension_N[held] == pytest.approx(expected[held], rel=1e-9)
+        assert set(found.verdict[~held]) <= {Verdict.OUTSIDE_HULL}
+
+
+@pytest.mark.parametrize("objective", ["smallest_largest", "least_squares", "centred"])
+def test_every_answer_balances_within_bounds_and_proves_itself(case, objective) -> None:
+    robot, poses, high = case
+    found = distribute(robot, poses, high, objective)
+    t = found.tension_N[found.is_feasible]
+    rest = np.einsum("pij,pj->pi", unit_wrenches(robot, poses)[found.is_feasible], t)
+    load = load_wrench_N(robot, poses)
+    assert np.abs(rest + load[found.is_feasible]).max() < 1e-7 * np.abs(load).max()
+    assert t.min() >= robot.tension_min_N - 1e-6
+    assert t.max() <= high + 1e-6
+    assert found.optimality_residual[found.is_feasible].max() < 1e-6
+    assert np.isnan(found.tension_N[~found.is_feasible]).all()
+    assert Verdict.NOT_CONVERGED not in found.verdict
+
+
+@pytest.mark.parametrize("objective", ["least_squares", "centred"])
+def test_least_squares_are_those_of_slsqp(objective) -> None:
+    poses = cogiro_poses(4, 3)
+    high = 800.0
+    middle = high / 2 if objective == "centred" else 0.0
+    found = distribute(COGIRO, poses, high, objective)
+    load = load_wrench_N(COGIRO, poses)
+    for k, matrix in enumerate(unit_wrenches(COGIRO, poses)):
+        answer = minimize(
+            lambda t: 0.5e-4 * np.sum((t - middle) ** 2),
+            np.full(8, 300.0),
+            jac=lambda t: 1e-4 * (t - middle),
+            bounds=[(0.0, high)] * 8,
+            constraints={"type": "eq", "fun": lambda t, k=k, m=matrix: m @ t + load[k]},
+            method="SLSQP",
+            options={"ftol": 1e-14, "maxiter": 300},
+        )
+        assert found.tension_N[k] == pytest.approx(answer.x, abs=1e-3)
+
+
+def test_the_separating_wrench_separates(case) -> None:
+    robot, poses, high = case
+    found = distribute(robot, poses, high)
+    outside = found.verdict == Verdict.OUTSIDE_HULL
+    wrench = found.separating_wrench[outside]
+    # Of what the cables give, on the cables themselves; the load acts with the other sign.
+    gain = -np.einsum("pi,pij->pj", wrench, unit_wrenches(robot, poses)[outside])
+    most = np.maximum(gain * robot.tension_min_N, gain * high).sum(axis=1)
+    assert np.all(np.einsum("pi,pi->p", wrench, load_wrench_N(robot, poses)[outside]) > most)
+    assert np.all(found.separation[outside] > 0.0)
+
+
+def test_the_compiled_separating_wrench_separates_for_any_tension() -> None:
+    poses = anywhere(300, 2)
+    found = distribute_evenly(COGIRO, poses)
+    outside = found.verdict == Verdict.OUTSIDE_HULL
+    assert outside.sum() > 50
+    wrench = found.separating_wrench[outside]
+    gain = -np.einsum("pi,pij->pj", wrench, unit_wrenches(COGIRO, poses)[outside])
+    work = np.einsum("pi,pi->p", wrench, load_wrench_N(COGIRO, poses)[outside])
+    assert np.all(work > 0.0)
+    assert np.all(gain.max(axis=1) < 1e-9 * np.abs(gain).max(axis=1))
+
+
+def test_dependent_cables_are_told() -> None:
+    """All cables in one plane: no tension takes up a force across it."""
+    exits = frozen_array([[0, 0, 0], [10, 0, 0], [4, 0, 0], [7, 0, 0]])
+    robot = Robot(exits, Platform(100.0))
+    poses = Poses.at([[5.0, 0.0, -3.0], [5.0, 1.0, -3.0]])
+    for found in (distribute(robot, poses, 1e5), distribute_evenly(robot, poses)):
+        assert list(found.verdict) == [Verdict.RANK_DEFICIENT] * 2
+        assert np.isnan(found.tension_N).all()
+
+
+def test_any_leading_axes_and_an_extra_force() -> None:
+    position = cogiro_poses(6).position_m.reshape(2, 3, 3)
+    poses = Poses.at(position)
+    force = np.array([20.0, -10.0, -300.0])
+    for solve in (lambda p, f: distribute(COGIRO, p, 2000.0, force_N=f),
+                  lambda p, f: distribute_evenly(COGIRO, p, force_N=f)):  # fmt: skip
+        many, single = solve(poses, force), solve(Poses.at(position[1, 2]), force)
+        assert many.tension_N.shape == (2, 3, 8)
+        assert many.tension_N[1, 2] == pytest.approx(single.tension_N, rel=1e-9, abs=1e-6)
+    flat = Poses.at(position.reshape(-1, 3))
+    rest = np.einsum("pij,pj->pi", unit_wrenches(COGIRO, flat), many.tension_N.reshape(-1, 8))
+    load = load_wrench_N(COGIRO, flat) + np.array([*force, 0.0, 0.0, 0.0])
+    assert np.abs(rest + load).max() < 1e-9
+
+
+def test_a_tilted_base_and_pulleys() -> None:
+    robot = replace(COGIRO, tilt_rad=frozen_array([0.02, -0.01]), pulley_radius_m=0.1)
+    poses = cogiro_poses(20)
+    found, compiled = distribute(robot, poses, 5000.0), distribute_evenly(robot, poses)
+    assert compiled.largest_tension_N == pytest.approx(found.largest_tension_N, rel=1e-9)
+    assert compiled.largest_tension_N != pytest.approx(
+        distribute_evenly(COGIRO, poses).largest_tension_N, rel=1e-4
+    )
+
+
+def test_massless_statics_are_the_even_distribution() -> None:
+    poses = anywhere(100)
+    massless, even = solve_massless(COGIRO, poses), distribute_evenly(COGIRO, poses)
+    assert np.array_equal(massless.tension_N, even.tension_N, equal_nan=True)
+    assert np.array_equal(massless.largest_tension_N, even.largest_tension_N, equal_nan=True)
+
+
+def test_senseless_ranges_are_refused() -> None:
+    with pytest.raises(ValueError, match="above the allowable"):
+        distribute(SEVEN, seven_poses(1), 5.0)
+    with pytest.raises(ValueError, match="no middle"):
+        distribute(SEVEN, seven_poses(1), np.inf, "centred")

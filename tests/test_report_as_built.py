@@ -1,0 +1,131 @@
+"""`designer report` with declared effects, against physics that shares nothing with it."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from twins import physics
+from twins.robots import FAST3
+
+from designer.catalogue.registry import load_catalogue
+from designer.cli import main
+from designer.errors import MissingLibraryError
+from designer.report.figures.opengl import require_opengl
+
+DENSITY, MODULUS, STRESS = 7800.0, 200e9, 180e6
+GRADE = "unirope-6x36-iwrc-1960"
+STUDY = f"""
+name: as built
+robot:
+  anchors: {[list(point) for point in FAST3.exit_m]}
+  platform: {{mass: {FAST3.mass_kg} kg}}
+cable: {{density: {DENSITY}, youngs_modulus: {MODULUS:.0f}, allowable_stress: {STRESS:.0f}}}
+pose: {list(FAST3.pose_m)}
+workspace:
+  region: {{box: {[list(side) for side in FAST3.box_m]}}}
+  samples: 120
+selection: {{grades: [{GRADE}], safety_factor: 2}}
+"""
+EFFECTS = {
+    "nothing": "",
+    "pulley_radius": "effects: {pulley_radius: {radius_m: 0.8}}",
+    "elastic_modulus": "effects: {elastic_modulus: {scale: 0.6}}",
+    "linear_mass": "effects: {linear_mass: {scale: 1.15}}",
+}
+
+
+def machine(effect: str, linear_mass: float, stiffness_N: float) -> physics.Machine:
+    """Return the independent model with the effect."""
+    mass_scale = 1.15 if effect == "linear_mass" else 1.0
+    stiffness_scale = 0.6 if effect == "elastic_modulus" else 1.0
+    return replace(
+        FAST3.machine(),
+        linear_mass=np.full((1, 3), linear_mass * mass_scale),
+        stiffness_N=np.full((1, 3), stiffness_N * stiffness_scale),
+        pulley_radius_m=0.8 if effect == "pulley_radius" else 0.0,
+    )
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Return the ``result.json`` that the command writes for each effect."""
+    try:
+        require_opengl()
+    except MissingLibraryError as missing:
+        pytest.skip(str(missing))
+    found = {}
+    for effect, declared in EFFECTS.items():
+        folder = tmp_path_factory.mktemp(effect)
+        study = folder / "study.yaml"
+        study.write_text(STUDY + declared + "\n", encoding="utf-8")
+        with pytest.MonkeyPatch.context() as patch:
+            arguments = ["report", str(study), "-o", str(folder / "out"), "--no-plugins"]
+            patch.setattr(sys, "argv", ["designer", *arguments])
+            status = 0
+            try:
+                main()
+            except SystemExit as stop:
+                status = int(stop.code or 0)
+        assert status == 0
+        found[effect] = json.loads((folder / "out" / "result.json").read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_the_pose_is_what_the_other_physics_gives(effect: str, results: dict[str, Any]) -> None:
+    """The optimum's own cable, with the effect, has these lengths and tensions and no margin."""
+    sagging = results[effect]["pose"]["sagging"]
+    area = math.pi / 4.0 * sagging["diameter_m"] ** 2
+    other = physics.solve(
+        machine(effect, DENSITY * area, MODULUS * area), np.array([FAST3.pose_m]), np.eye(3)[None]
+    )
+    assert sagging["tensions_N"] == pytest.approx(other.exit_tension_N[0], rel=1e-6)
+    assert sagging["lengths_m"] == pytest.approx(other.length_m[0], rel=1e-6)
+    assert other.exit_tension_N.max() == pytest.approx(STRESS * area, rel=1e-6)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_the_worst_pose_is_what_the_other_physics_gives(
+    effect: str, results: dict[str, Any]
+) -> None:
+    worst = results[effect]["workspace"]["sagging"]
+    area = math.pi / 4.0 * worst["diameter_m"] ** 2
+    other = physics.solve(
+        machine(effect, DENSITY * area, MODULUS * area),
+        np.array([worst["pose"][:3]]),
+        np.eye(3)[None],
+    )
+    assert other.exit_tension_N.max() == pytest.approx(worst["max_tension_N"], rel=1e-6)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_the_product_is_verified_with_the_effect(effect: str, results: dict[str, Any]) -> None:
+    """At the region's worst pose the chosen rope has nearly its own largest tension."""
+    chosen = results[effect]["selection"]["chosen"]
+    grade = load_catalogue(with_plugins=False).grade(GRADE)
+    size = next(size for size in grade.sizes if size.id == chosen["size_id"])
+    rope = machine(effect, size.linear_density_kg_per_m, grade.axial_stiffness_N(size))
+    pose = np.array([results[effect]["workspace"]["sagging"]["pose"][:3]])
+    tension = physics.solve(rope, pose, np.eye(3)[None]).exit_tension_N.max()
+    assert tension <= chosen["max_tension_N"] * (1.0 + 1e-6)
+    assert tension == pytest.approx(chosen["max_tension_N"], rel=0.01)
+
+
+def test_each_effect_moves_the_numbers_its_own_way(results: dict[str, Any]) -> None:
+    """Heavier cables pull harder, softer ones are paid out shorter, pulleys carry some length."""
+    plain = results["nothing"]["pose"]["sagging"]
+
+    def of(effect: str) -> dict[str, Any]:
+        found: dict[str, Any] = results[effect]["pose"]["sagging"]
+        return found
+
+    assert of("linear_mass")["max_tension_N"] > 1.01 * plain["max_tension_N"]
+    assert of("linear_mass")["diameter_m"] > 1.005 * plain["diameter_m"]
+    assert sum(of("elastic_modulus")["lengths_m"]) < sum(plain["lengths_m"])
+    assert sum(of("pulley_radius")["lengths_m"]) > sum(plain["lengths_m"]) + 0.8
