@@ -10,7 +10,7 @@ from pathlib import Path
 
 from designer import __version__
 from designer.catalogue.registry import Catalogue
-from designer.effects.declared import as_built_by
+from designer.declared import as_built_by
 from designer.effects.design import AsBuilt
 from designer.progress import Reporter
 from designer.qualities import Qualities, qualities_of

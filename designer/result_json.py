@@ -13,8 +13,8 @@ from designer.analysis import Analysis, PoseAnalysis
 from designer.arrays import FloatArray
 from designer.groups_json import groups_dict
 from designer.interference.survey import Interference
+from designer.output import write_whole
 from designer.qualities import Qualities
-from designer.report.files import write_whole
 from designer.selection_json import selection_dict
 from designer.study import Study
 from designer.verdict import Verdict

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from designer.report.files import write_whole
+from designer.output import write_whole
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
 from designer.selection.usable import Usable
 from designer.space import turn_of

@@ -42,12 +42,16 @@ _SENTENCES = {
 }
 
 
-def hangs_below(force_z_N: FloatArray) -> BoolArray:
-    """Tell in which poses (...) a cable's lowest point lies below the platform end.
+def hangs_below(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
+    """Tell in which poses (...) a cable from above has its lowest point below the platform end.
+
+    A cable that comes from below pulls the platform down by design and does not count.
 
     Parameters
     ----------
     force_z_N : array (..., n_cables)
         Vertical force on each cable at the platform; above zero, the platform holds the cable up.
+    drop_m : array (..., n_cables)
+        From exit point to attachment point [m].
     """
-    return np.asarray(np.any(force_z_N > 0.0, axis=-1))
+    return np.asarray(np.any((force_z_N > 0.0) & (drop_m >= 0.0), axis=-1))

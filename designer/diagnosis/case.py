@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from designer.cable import Cable
+from designer.declared import declared_settings
 from designer.diagnosis.diagnose import Case
-from designer.effects.declared import declared_settings
 from designer.effects.effect import NEEDS, Effect, as_built
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.study import Measurements, Study
 
 

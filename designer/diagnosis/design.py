@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from designer.catalogue.grade import Grade
+from designer.declared import as_built_by
 from designer.diagnosis.result import Choice, Diagnosis
-from designer.effects.declared import as_built_by
 from designer.selection.select import select
 from designer.study import DeclaredEffect, Study
 from designer.workspace.sweep import map_workspace

@@ -22,7 +22,7 @@ from designer.diagnosis.structure import covariates_of, find_structure
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2

@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.problem import Noise
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.study import Measurements
 
 _MAD_TO_STD = 1.4826

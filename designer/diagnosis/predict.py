@@ -9,7 +9,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.effects.effect import Readings, Setting, as_built
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.nearest import solve_nearest

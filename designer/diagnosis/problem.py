@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import Setting
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 
 _UNHELD = 1e3
 """Residual of a reading at a pose that the model cannot hold, in units of noise."""

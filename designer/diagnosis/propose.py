@@ -13,7 +13,7 @@ from designer.diagnosis.problem import Noise
 from designer.diagnosis.result import Proposal
 from designer.effects.effect import Setting
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.region import PointList, Region
 from designer.robot import Poses
 from designer.study import Workspace

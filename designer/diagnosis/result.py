@@ -12,7 +12,7 @@ from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Effect, Readings, Setting
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.study import Study
 
 

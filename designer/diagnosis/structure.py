@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.diagnosis.blocks import block_of
 from designer.effects.effect import Readings
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 
 SIGNIFICANCE = 0.01
 _PERMUTATIONS = 999

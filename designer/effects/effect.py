@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from designer.arrays import FloatArray
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 
 Values = Mapping[str, float]
 

@@ -13,7 +13,7 @@ from designer.effects.effect import Effect, Readings, Values
 from designer.effects.kind import EffectKind
 from designer.errors import EffectError
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.plugins.guard import one_line
 
 Value = TypeVar("Value")

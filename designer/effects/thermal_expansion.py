@@ -8,7 +8,7 @@ from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
 from designer.effects.kind import EffectKind
 from designer.machine import Machine
-from designer.measured.data import Measured
+from designer.measured_data import Measured
 from designer.units import PER_TEMPERATURE
 
 

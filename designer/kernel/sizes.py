@@ -157,10 +157,10 @@ def _solve(
 
 @kernel
 def _hangs_below(cables: FloatArray, j: int) -> bool:
-    lowest = np.inf
+    found = False
     for i in range(cables.shape[0]):
-        lowest = min(lowest, cables[i, V, j])
-    return bool(lowest < 0.0)
+        found = found or (cables[i, V, j] < 0.0 and cables[i, D, j] >= 0.0)
+    return found
 
 
 @kernel

@@ -10,8 +10,8 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
-from designer.measured.data import Measured
 from designer.measured.names import POSITION, length_names
+from designer.measured_data import Measured
 from designer.robot import Robot
 from designer.statics.geometry import cable_geometry
 

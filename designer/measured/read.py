@@ -7,13 +7,13 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.errors import Fault, InputError
 from designer.measured.assign import Assigned, assign
-from designer.measured.data import Measured
 from designer.measured.names import POSITION, length_names, tension_names
 from designer.measured.orientation import orientation, quaternion_faults
 from designer.measured.plausible import unit_faults
 from designer.measured.rows import Rows, cell_faults, usable_rows
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
+from designer.measured_data import Measured
 from designer.robot import Poses
 from designer.study import Measurements, Study
 

@@ -6,9 +6,9 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from designer.output import write_whole
 from designer.report.context import build_context
 from designer.report.drawings import draw
-from designer.report.files import write_whole
 from designer.report.outline import add_outline
 from designer.resources import data_folder
 

@@ -74,8 +74,8 @@ class Statics:
 
     @property
     def hangs_below(self) -> BoolArray:
-        """Poses (...) in which a cable hangs below the platform."""
-        return hangs_below(self.force_z_N)
+        """Poses (...) in which a cable from above hangs below the platform."""
+        return hangs_below(self.force_z_N, self.geometry().drop_m)
 
     @property
     def exit_tension_N(self) -> FloatArray:

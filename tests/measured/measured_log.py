@@ -11,8 +11,8 @@ import pytest
 from designer.arrays import FloatArray
 from designer.config import read_study
 from designer.errors import Fault, InputError
-from designer.measured.data import Measured
 from designer.measured.read import read_measured
+from designer.measured_data import Measured
 
 POINT = """\
 robot:

@@ -15,9 +15,9 @@ from twins.robots import YARD3
 from designer import effects
 from designer.cli import main
 from designer.config import read_study
+from designer.declared import as_built_by, declared_settings
 from designer.diagnosis.plugin_effects import diagnose_study
 from designer.diagnosis_files import diagnosed_config, diagnosis_dict
-from designer.effects.declared import as_built_by, declared_settings
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.effects.registry import KINDS, SHIPPED

@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.analysis import Analysis
 from designer.arrays import BoolArray, FloatArray
-from designer.effects.declared import as_built_by
+from designer.declared import as_built_by
 from designer.region import PointList, Rectangle, Region
 from designer.report.figures import grids
 from designer.report.figures.edge import EdgeProfile, edge_profile
