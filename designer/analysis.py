@@ -134,7 +134,13 @@ class Analysis:
 
     @property
     def is_positive(self) -> bool:
-        """Whether the answer is yes: the pose is solved, the workspace served, a product found."""
+        """Whether the answer is yes: cables hold as asked, and keep the clearance asked for."""
+        clear = None if self.qualities is None else self.qualities.interference
+        return self.has_cable and (clear is None or not clear.is_violated)
+
+    @property
+    def has_cable(self) -> bool:
+        """Whether the pose is solved, the workspace served, a product found."""
         pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
         workspace_ok = self.workspace is None or self.workspace.is_feasible
         product_ok = self.selection is None or self.selection.chosen is not None

@@ -89,8 +89,8 @@ def report(
 
     Example:  designer report fast.yaml -o fast-report
 
-    Exit status 0: there is a cable. 1: there is none, and the report says why. 2: the input is
-    wrong, and nothing is written.
+    Exit status 0: there is a cable, and it keeps the clearance asked for. 1: there is none or it
+    does not, and the report says why. 2: the input is wrong, and nothing is written.
     """
     from designer.output import output_folder
     from designer.plugins.find import find_plugins

@@ -96,7 +96,7 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
     against = [*_open_points(analysis), *objections(analysis)]
-    if analysis.is_positive:
+    if analysis.has_cable:
         text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
     elif chosen is not None:
         text = _holds(chosen)
