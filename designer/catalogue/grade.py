@@ -9,6 +9,7 @@ does.
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from statistics import median
 from typing import Literal
@@ -35,6 +36,8 @@ ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"
 
 TYPICAL_LOAD_FRACTION = 0.2
 """Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
+
+_SINGLE_STRAND = re.compile(r"1\s*[x×]\s*\d")
 
 TRUST_MEANING = {
     "A": "the maker's own or a standard's own table",
@@ -292,6 +295,17 @@ class Grade:
     is_nominal: bool = False
     origin: str = ""
     file: str = ""
+
+    @property
+    def why_only_by_name(self) -> str | None:
+        """Why a selection takes this grade only where the study names it; None for others."""
+        if self.is_nominal:
+            return (
+                "computed from the factors of a standard, no product; taken where a study names it"
+            )
+        if _SINGLE_STRAND.match(self.construction):
+            return "a single strand, made for stays and not for drums; taken where a study names it"
+        return None
 
     @property
     def thickest(self) -> Size:

@@ -208,8 +208,8 @@ def _grade_row(grade: Grade) -> GradeRow:
 
 
 def _identity(grade: Grade) -> Iterator[tuple[str, str]]:
-    if grade.is_nominal:
-        yield "nominal", "computed by a standard's factors; `grades: all` leaves it out"
+    if grade.why_only_by_name:
+        yield "by name only", grade.why_only_by_name
     yield "manufacturer", grade.manufacturer
     yield "product", grade.product
     part = "core" if grade.material in (None, "steel", "stainless steel") else "fibre"

@@ -38,6 +38,7 @@ from designer.selection.groups_result import (
 )
 from designer.selection.groups_trials import Refutation, Trials
 from designer.selection.groups_verify import GroupVerification, verify_groups
+from designer.selection.select import is_allowed
 from designer.study import CableGroup, Selection, Workspace
 
 if TYPE_CHECKING:
@@ -144,7 +145,7 @@ def choose_groups_of(
     products = [
         Product(grade, size, built.cable(allowance.cable(grade, size)))
         for grade in grades
-        if (not grade.is_nominal if named is None else grade.id in named)
+        if is_allowed(grade, named)
         for size in grade.sizes
         if not math.isnan(allowance.efficiency(grade, size.diameter_m))
     ]

@@ -33,7 +33,6 @@ from designer.selection.verify_sizes import refined, verify_sizes
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.samples import sample_count
 
-_NOMINAL = "computed from the factors of a standard, no product; taken where a study names it"
 _SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
 
 
@@ -61,15 +60,15 @@ def select(
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
     named = selection.grades
-    allowed = [g for g in grades if (not g.is_nominal if named is None else g.id in named)]
+    allowed = [g for g in grades if is_allowed(g, named)]
     trial = _Trial(robot, workspace, selection, built, reporter, common_currency(allowed))
     outcomes, not_tried = trial.outcomes(allowed)
     if named is None:
-        not_tried += [NotTried(g, None, _NOMINAL) for g in grades if g.is_nominal]
+        not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
     chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
     alternatives: list[GradeOutcome] = []
     if chosen is None:
-        others = [g for g in grades if g not in allowed and not g.is_nominal]
+        others = [g for g in grades if g not in allowed and not g.why_only_by_name]
         found = trial.outcomes(others)[0] if others else []
         alternatives = [o for o in found if o.outcome == "fits"]
     return SelectionResult(
@@ -82,6 +81,11 @@ def select(
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen),
     )
+
+
+def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
+    """Tell whether a study that names these grades, or none, considers a grade."""
+    return grade.why_only_by_name is None if named is None else grade.id in named
 
 
 @dataclass(frozen=True, slots=True)

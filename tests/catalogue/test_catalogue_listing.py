@@ -116,7 +116,7 @@ def test_facts_tell_what_is_not_the_source_s_own():
     assert "at 0.1, 0.3, 0.5, 0.7, 0.9 of it, ±50%, computed" in fibre["stiffness"]
     assert fibre["creep"].startswith("high;")
     assert fibre["doubtful sizes"] == "120 mm"
-    assert "leaves it out" in nominal["nominal"]
+    assert "no product" in nominal["by name only"]
     assert "nominal" not in wire
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ropes import rope
@@ -129,13 +131,25 @@ def test_workspace_whose_every_pose_is_left_out_is_served_by_nothing(fast_robot)
     assert found.reason
 
 
-def test_nominal_grades_are_no_products_unless_named(fast_robot, workspace) -> None:
-    grades = [rope("sold", [24.0, 28.0]), rope("nominal", [20.0, 22.0, 24.0], is_nominal=True)]
+NOT_BY_DEFAULT = {
+    "nominal": rope("nominal", [20.0, 22.0, 24.0], is_nominal=True),
+    "stay": replace(rope("stay", [20.0, 22.0, 24.0]), construction="1x19 spiral strand"),
+}
+
+
+@pytest.mark.parametrize("kind", NOT_BY_DEFAULT)
+def test_some_grades_are_taken_only_by_name(kind: str, fast_robot, workspace) -> None:
+    grades = [rope("sold", [24.0, 28.0]), NOT_BY_DEFAULT[kind]]
     found = select(fast_robot, workspace, ALL, grades)
     assert {c.grade.id for c in found.candidates} == {"sold"}
-    assert [(n.grade.id, n.size) for n in found.not_tried] == [("nominal", None)]
-    named = select(fast_robot, workspace, Selection(("nominal",), 2.0), grades)
-    assert {c.grade.id for c in named.candidates} == {"nominal"}
+    assert [(n.grade.id, n.size) for n in found.not_tried] == [(kind, None)]
+    named = select(fast_robot, workspace, Selection((kind,), 2.0), grades)
+    assert {c.grade.id for c in named.candidates} == {kind}
+
+
+@pytest.mark.parametrize("construction", ["7x19", "19x7", "18x19, compacted strands", "1 braid"])
+def test_ropes_are_no_single_strands(construction: str) -> None:
+    assert replace(rope("a", [20.0]), construction=construction).why_only_by_name is None
 
 
 def test_what_matters_is_searched_between_the_samples(fast_robot, workspace) -> None:

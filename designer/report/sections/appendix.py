@@ -22,14 +22,14 @@ class LeftOutSection:
     ----------
     not_allowed : tuple of str
         Ids of grades in the catalogue that the study does not allow.
-    nominal : str
-        How many grades are no products and why they are left out; empty where none is.
+    by_name_only : tuple of str
+        Kinds of grades that a study must name, each with why; empty where none is left out.
     problems : tuple of str
         Plugins, grades and effects that could not be loaded, and why.
     """
 
     not_allowed: tuple[str, ...]
-    nominal: str
+    by_name_only: tuple[str, ...]
     problems: tuple[str, ...]
 
 
@@ -90,19 +90,20 @@ def left_out_section(analysis: Analysis) -> LeftOutSection | None:
     names = [
         g.id
         for g in catalogue.grades
-        if allowed is not None and g.id not in allowed and not g.is_nominal
+        if allowed is not None and g.id not in allowed and not g.why_only_by_name
     ]
-    return LeftOutSection(tuple(sorted(names)), _nominal(analysis), analysis.left_out)
+    return LeftOutSection(tuple(sorted(names)), _by_name_only(analysis), analysis.left_out)
 
 
-def _nominal(analysis: Analysis) -> str:
+def _by_name_only(analysis: Analysis) -> tuple[str, ...]:
     wanted = analysis.study.selection and analysis.study.selection.grades
-    grades = [g for g in analysis.catalogue.grades if g.is_nominal and g.id not in (wanted or ())]
-    if not grades:
-        return ""
-    return (
-        f"{fmt.plural(len(grades), 'grade')} computed from the factors of standards, such as "
-        f"{grades[0].id}, are no products. They are left out unless a study names them."
+    kinds: dict[str, list[str]] = {}
+    for grade in analysis.catalogue.grades:
+        if grade.why_only_by_name and grade.id not in (wanted or ()):
+            kinds.setdefault(grade.why_only_by_name, []).append(grade.id)
+    return tuple(
+        f"{fmt.plural(len(names), 'grade')} such as {names[0]}: {why}."
+        for why, names in kinds.items()
     )
 
 
