@@ -157,6 +157,13 @@ def run_on(
             "is out of range",
         ),
         (
+            "robocrane",
+            "  platform:",
+            "  tension_min: 100 N\n  platform:",
+            "robot.tension_min",
+            "6 cables and 6 degrees of freedom leave no tension to choose",
+        ),
+        (
             "stadium",
             "[[-85, -60, 40], [85, -60, 40], [85, 60, 40], [-85, 60, 40]]",
             "[[-85, -60, 40], [85, -60, 40]]",

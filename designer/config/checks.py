@@ -15,7 +15,7 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.config.document import Document
-from designer.config.fields import Distance, Point, Rotation
+from designer.config.fields import Distance, Point, Rotation, Tension
 from designer.config.group_checks import GROUP_CHECKS
 from designer.config.measured_checks import MEASURED_CHECKS
 from designer.config.orientation import Quaternion
@@ -89,6 +89,22 @@ def attachments_span_plane(parts: Parts) -> Iterator[Fault]:
     yield parts.fault(_ATTACHMENTS, problem, "attachments apart, or none for a point mass")
 
 
+def least_tension_is_a_choice(parts: Parts) -> Iterator[Fault]:
+    """Only spare cables leave tensions to choose."""
+    keys = ("robot", "tension_min")
+    anchors = parts.read(Anchors, *_ANCHORS)
+    least_N = parts.read(Tension, *keys)
+    if not anchors or not least_N:
+        return
+    is_point = parts.raw(*_ATTACHMENTS) is None
+    freedoms = (2 if is_point else 3) if is_planar(parts) else (3 if is_point else 6)
+    if len(anchors) <= freedoms:
+        problem = (
+            f"{len(anchors)} cables and {freedoms} degrees of freedom leave no tension to choose"
+        )
+        yield parts.fault(keys, problem, "more cables than degrees of freedom, or leave it out")
+
+
 def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
     """A point mass has neither a centre of mass of its own, nor a hull, nor an orientation."""
     if parts.raw(*_ATTACHMENTS) is not None:
@@ -152,6 +168,7 @@ CHECKS = (
     anchors_span_area,
     attachment_count,
     attachments_span_plane,
+    least_tension_is_a_choice,
     point_mass_has_no_body,
     prism_has_area,
     rectangle_has_area,

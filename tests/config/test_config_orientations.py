@@ -13,10 +13,10 @@ from designer.study import Study, Workspace
 
 BODY = """\
 robot:
-  anchors: [[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9]]
+  anchors: [[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9], [9, 4, 9]]
   platform:
     mass: 100
-    attachments: [[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0], [0, 0, 0]]
+    attachments: [[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0], [0, 0, 0], [1, 0, 1]]
     wrench: {force: [1 kN, 0, -50 N], moment: [0, 0, 2 N*m]}
   gravity: [0, 3, -4]
   tension_min: 0.2 kN

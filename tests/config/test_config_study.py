@@ -236,6 +236,10 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     choices = re.compile(r"(?m)^ *(planar|orientation|orientations|orientation_range):.*\n")
     assert len(choices.findall(text)) == 4
     text = choices.sub("", text)
+    spare = re.compile(r"(?m)^ *tension_min: 500 N.*\n")
+    with pytest.raises(InputError, match="leave no tension to choose"):
+        study_of(re.sub(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n", "", text))
+    text = spare.sub("", text)
     for_a_body = re.compile(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n")
     assert len(for_a_body.findall(text)) == 4
     study = study_of(for_a_body.sub("", text))
@@ -243,7 +247,6 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     assert study.workspace.sampling == "grid"
     assert study.workspace.hangs_below == "exclude"
     assert study.workspace.clearance_m == pytest.approx(0.1)
-    assert study.robot.tension_min_N == 500.0
     assert study.robot.is_upright
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)
