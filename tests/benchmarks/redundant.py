@@ -23,7 +23,8 @@ from scipy.optimize import minimize
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from redundant_robots import COGIRO, anywhere, cogiro_poses, one
+from redundant_robots import anywhere, cogiro_poses, one
+from sample_robots import COGIRO
 from sizing import STEEL, Paper, in_chunks, seconds_per_pose
 
 from designer.cable import Material

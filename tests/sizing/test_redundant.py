@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from redundant_robots import (
-    COGIRO,
     FOUR,
     SEVEN,
     anywhere,
@@ -17,6 +16,7 @@ from redundant_robots import (
     seven_poses,
     steel,
 )
+from sample_robots import COGIRO
 
 from designer.arrays import frozen_array
 from designer.cable import Cable, Cables, Material

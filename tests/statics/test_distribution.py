@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from redundant_robots import COGIRO, FOUR, SEVEN, anywhere, cogiro_poses, four_poses, seven_poses
+from redundant_robots import FOUR, SEVEN, anywhere, cogiro_poses, four_poses, seven_poses
+from sample_robots import COGIRO
 from scipy.optimize import linprog, minimize
 
 from designer.arrays import frozen_array
