@@ -120,6 +120,8 @@ class Robot:
 
         Its z axis is the true vertical; a planar robot lies in its x-z plane.
         """
+        if self.is_upright:
+            return np.eye(3)
         vertical = vertical_frame(self.gravity_direction)
         if self.is_planar:
             vertical = _heading_frame(self.exit_points_m @ vertical.T) @ vertical
@@ -149,6 +151,11 @@ class Robot:
         pull = -applied.ravel()
         pull[2] += self.weight_N
         return np.asarray(pull)
+
+    def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
+        """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""
+        pull = self.pull_N[None]
+        return pull if force_N is None else pull - np.pad(force_N, ((0, 0), (0, 3)))
 
 
 def vertical_frame(gravity_direction: FloatArray) -> FloatArray:

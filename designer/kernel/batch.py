@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray
 from designer.kernel import layout
+from designer.kernel.calling import plain, pool
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
 from designer.kernel.square import solve_range
 from designer.robot import Poses, Robot
@@ -93,16 +91,16 @@ def solve_batch(
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
     arguments: tuple[Any, ...] = (
-        _plain(exit_points_m.reshape(-1, n, 3)),
-        _plain(robot.attachments_m),
-        _plain(_load(robot, force_N)),
-        _plain(robot.platform.centre_of_mass_m),
+        plain(exit_points_m.reshape(-1, n, 3)),
+        plain(robot.attachments_m),
+        plain(robot.loads_N(force_N)),
+        plain(robot.platform.centre_of_mass_m),
         robot.weight_N,
-        _plain(poses.position_m),
-        _plain(poses.rotation.reshape(-1, 3, 3)),
-        _plain(kappa_per_m),
-        _plain(relative_weights),
-        _plain(strength_m),
+        plain(poses.position_m),
+        plain(poses.rotation.reshape(-1, 3, 3)),
+        plain(kappa_per_m),
+        plain(relative_weights),
+        plain(strength_m),
         -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N,
         robot.balance_rows,
         out_cables,
@@ -156,13 +154,13 @@ def solve_massless_batch(
     wrench = np.empty((count, robot.degrees_of_freedom))
     verdict = np.empty(count, dtype=np.int8)
     arguments = (
-        _plain(exit_points_m.reshape(-1, n, 3)),
-        _plain(robot.attachments_m),
-        _plain(_load(robot, force_N)),
-        _plain(robot.platform.centre_of_mass_m),
+        plain(exit_points_m.reshape(-1, n, 3)),
+        plain(robot.attachments_m),
+        plain(robot.loads_N(force_N)),
+        plain(robot.platform.centre_of_mass_m),
         robot.weight_N,
-        _plain(poses.position_m),
-        _plain(poses.rotation.reshape(-1, 3, 3)),
+        plain(poses.position_m),
+        plain(poses.rotation.reshape(-1, 3, 3)),
         robot.balance_rows,
         robot.tension_min_N,
         tension,
@@ -179,24 +177,5 @@ def _share_out(solve: Callable[..., None], count: int, arguments: tuple[Any, ...
     if len(shares) == 1:
         solve(0, count, *arguments)
     else:
-        for future in [_pool().submit(solve, *share, *arguments) for share in shares]:
+        for future in [pool().submit(solve, *share, *arguments) for share in shares]:
             future.result()
-
-
-def _plain(values: FloatArray) -> FloatArray:
-    """Return the array as the one kind that the kernel is compiled for: contiguous, read-only."""
-    plain = np.ascontiguousarray(values).view()
-    plain.setflags(write=False)
-    return plain
-
-
-def _load(robot: Robot, force_N: FloatArray | None) -> FloatArray:
-    """Return `Robot.pull_N` less a force in that frame (1 or n_poses, 6) [N, N·m]."""
-    pull = robot.pull_N[None]
-    return pull if force_N is None else pull - np.pad(force_N, ((0, 0), (0, 3)))
-
-
-@cache
-def _pool() -> ThreadPoolExecutor:
-    """Threads are kept: starting them anew costs as much as some thousand poses."""
-    return ThreadPoolExecutor(os.cpu_count())

@@ -127,9 +127,10 @@ def assemble(
 ) -> None:
     """Write the linearised balance: columns dp, then minus the present wrench, then the load.
 
-    `rows` are the components of the wrench that are balanced, n of 0 … 5.
+    `rows` are the components of the wrench that are balanced, of 0 … 5; with more cables than those
+    the matrix is wider than high.
     """
-    for m in range(n):
+    for m in range(rows.size):
         for j in range(LANES):
             A[m, n, j] = 0.0
             A[m, n + 1, j] = poses[LOAD + rows[m], j]

@@ -5,15 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.physics import catenary, pulley
+from designer.physics import catenary
 from designer.robot import Poses, Robot
-from designer.statics.geometry import cable_geometry, upright_exit_points_m
+from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics
-from designer.statics.task import PulleyRun
+from designer.statics.task import PulleyRun, over_pulleys
 from designer.verdict import Verdict
-
-_MOST_TURNS = 40
-_STILL_RAD = 1e-14
 
 
 def cables_of_length(
@@ -46,15 +43,16 @@ def cables_of_length(
         NaN where a cable cannot reach: no length is left beyond its pulley, or it is inextensible
         and too short.
     """
-    if robot.pulley_radius_m == 0.0:
-        run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-        _, force_x, force_z = _between(
+
+    def solve(run: PulleyRun) -> tuple[tuple[FloatArray, FloatArray], FloatArray, FloatArray]:
+        free, force_x, force_z = _between(
             robot, poses, run, length_m, axial_stiffness_N, weight_N_per_m
         )
-    else:
-        run, force_x, force_z = _over_pulleys(
-            robot, poses, length_m, axial_stiffness_N, weight_N_per_m
-        )
+        downward = weight_N_per_m * free - force_z
+        strain = np.hypot(force_x, downward) / axial_stiffness_N
+        return (force_x, force_z), np.arctan2(downward, force_x), strain
+
+    (force_x, force_z), run = over_pulleys(robot, poses, solve)
     held = np.isfinite(force_x).all(axis=-1)
     return Statics(
         robot=robot,
@@ -68,36 +66,6 @@ def cables_of_length(
         run=run,
         force_N=force_N,
     )
-
-
-def _over_pulleys(
-    robot: Robot,
-    poses: Poses,
-    length_m: FloatArray,
-    axial_stiffness_N: FloatArray,
-    weight_N_per_m: FloatArray,
-) -> tuple[PulleyRun, FloatArray, FloatArray]:
-    """Let the tangent points come to rest: each follows the slope of its cable's upper end."""
-    radius = robot.pulley_radius_m
-    exits = upright_exit_points_m(robot)
-    geometry = cable_geometry(robot, poses)
-    slope = pulley.straight_slope_rad(geometry.horizontal_distance_m, geometry.drop_m, radius)
-    strain = np.zeros(slope.shape)
-    for _ in range(_MOST_TURNS):
-        run = PulleyRun(
-            pulley.tangent_point_m(exits, geometry.outward, slope, radius),
-            pulley.wrap_length_m(slope, radius),
-        ).unstrained(strain)
-        free, force_x, force_z = _between(
-            robot, poses, run, length_m, axial_stiffness_N, weight_N_per_m
-        )
-        downward = weight_N_per_m * free - force_z
-        new = np.arctan2(downward, force_x)
-        change = np.nanmax(np.abs(new - slope), initial=0.0)
-        slope, strain = new, np.hypot(force_x, downward) / axial_stiffness_N
-        if change <= _STILL_RAD:
-            break
-    return run, force_x, force_z
 
 
 def _between(

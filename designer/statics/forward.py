@@ -23,7 +23,7 @@ from designer.cable import Cable, Cables
 from designer.robot import Poses, Robot
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics
-from designer.statics.stiffness import is_stable, reach_m, scaled, upright_stiffness
+from designer.statics.stiffness import is_stable, per_reach, reach_m, scaled, upright_stiffness
 from designer.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -184,9 +184,7 @@ class _Search:
 
 def _push(statics: Statics) -> FloatArray:
     """Return what is left on the platform, upright frame, moments over the reach (..., dof) [N]."""
-    robot = statics.robot
-    scale = np.where(robot.balance_rows < 3, 1.0, 1.0 / reach_m(robot))
-    return np.asarray(-statics.equilibrium_residual_N() * scale)
+    return np.asarray(-statics.equilibrium_residual_N() * per_reach(statics.robot))
 
 
 def _newton_step(

@@ -9,10 +9,10 @@ sag and elasticity. Good for taut cables; the full answer for redundant robots i
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
 from designer.cable import Cable
+from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
 from designer.statics.geometry import upright_poses
 from designer.statics.task import straight_run
@@ -44,21 +44,19 @@ def solve_nearest(
 
     run = straight_run(robot, poses)
     upright = upright_poses(robot, poses)
-    pull = robot.pull_N[None]
-    if force_N is not None:
-        pull = pull - np.pad(force_N @ robot.upright.T, ((0, 0), (0, 3)))
+    load = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
     n = robot.n_cables
     out = np.empty((len(upright.position_m), n, 3))
     kernel.solve_nearest_poses(
-        _plain(run.exit_points_m).reshape(-1, n, 3),
-        _plain(robot.attachments_m),
-        _plain(pull),
-        _plain(robot.platform.centre_of_mass_m),
+        plain(run.exit_points_m).reshape(-1, n, 3),
+        plain(robot.attachments_m),
+        plain(load),
+        plain(robot.platform.centre_of_mass_m),
         robot.weight_N,
-        _plain(upright.position_m),
-        _plain(upright.rotation).reshape(-1, 3, 3),
-        _plain(np.broadcast_to(cable.weight_N_per_m, (n,))),
-        _plain(np.broadcast_to(cable.axial_stiffness_N, (n,))),
+        plain(upright.position_m),
+        plain(upright.rotation).reshape(-1, 3, 3),
+        plain(np.broadcast_to(cable.weight_N_per_m, (n,))),
+        plain(np.broadcast_to(cable.axial_stiffness_N, (n,))),
         robot.balance_rows,
         _REGULAR,
         _SMALLEST_SHARE * robot.weight_N,
@@ -67,10 +65,3 @@ def solve_nearest(
     upper = out[..., kernel.EXIT_TENSION]
     wrap_m = run.unstrained(upper / cable.axial_stiffness_N).wrap_m
     return out[..., kernel.LENGTH] + wrap_m, upper, out[..., kernel.DISTANCE]
-
-
-def _plain(values: ArrayLike) -> FloatArray:
-    """Return the one kind of array that the kernel is compiled for: contiguous, read-only."""
-    plain = np.ascontiguousarray(values, dtype=np.float64).view()
-    plain.setflags(write=False)
-    return plain

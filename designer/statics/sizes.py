@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.cable import Cable
+from designer.kernel.calling import plain, pool
 from designer.robot import Poses, Robot
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 from designer.statics.inverse import solve_sagging
@@ -160,17 +159,17 @@ def _meet_quickly(
     stiffness = np.array([cable.axial_stiffness_N for cable in cables])
     allowable = np.array([cable.allowable_tension_N for cable in cables])
     arguments: tuple[Any, ...] = (
-        _plain(upright_exit_points_m(robot)),
-        _plain(robot.attachments_m),
-        _plain(robot.pull_N),
-        _plain(robot.platform.centre_of_mass_m),
+        plain(upright_exit_points_m(robot)),
+        plain(robot.attachments_m),
+        plain(robot.pull_N),
+        plain(robot.platform.centre_of_mass_m),
         robot.weight_N,
-        _plain(upright.position_m),
-        _plain(upright.rotation.reshape(-1, 3, 3)),
+        plain(upright.position_m),
+        plain(upright.rotation.reshape(-1, 3, 3)),
         np.ascontiguousarray(cells, dtype=np.int64),
-        _plain(weight / stiffness),
-        _plain(1.0 / weight),
-        _plain(allowable / weight),
+        plain(weight / stiffness),
+        plain(1.0 / weight),
+        plain(allowable / weight),
         robot.balance_rows,
         leaves_out_hanging,
         found.utilisation,
@@ -182,20 +181,5 @@ def _meet_quickly(
         found.failed,
     )
     shares = [(at, min(at + _SHARE, len(cables))) for at in range(0, len(cables), _SHARE)]
-    for future in [_pool().submit(sweep_sizes, *share, *arguments) for share in shares]:
+    for future in [pool().submit(sweep_sizes, *share, *arguments) for share in shares]:
         future.result()
-
-
-def _plain(values: Any) -> FloatArray:
-    """Return a copy as the one kind of array that the kernel is compiled for."""
-    plain = np.ascontiguousarray(values, dtype=np.float64).view()
-    plain.setflags(write=False)
-    return plain
-
-
-@cache
-def _pool() -> ThreadPoolExecutor:
-    """One thread a processor, kept between calls."""
-    import os
-
-    return ThreadPoolExecutor(os.cpu_count())

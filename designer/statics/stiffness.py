@@ -103,8 +103,13 @@ def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:
 
 def scaled(robot: Robot, stiffness: FloatArray) -> FloatArray:
     """Return the stiffness with turns as displacements at `reach_m`: all in one unit [N/m]."""
-    scale = np.where(robot.balance_rows < 3, 1.0, 1.0 / reach_m(robot))
+    scale = per_reach(robot)
     return np.asarray(stiffness * scale * scale[:, None])
+
+
+def per_reach(robot: Robot) -> FloatArray:
+    """Return the factors (dof,) that make forces of a wrench's moments: one over `reach_m`."""
+    return np.where(robot.balance_rows < 3, 1.0, 1.0 / reach_m(robot))
 
 
 def reach_m(robot: Robot) -> float:

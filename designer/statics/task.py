@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -15,8 +16,10 @@ from designer.statics.geometry import cable_geometry, upright_exit_points_m, upr
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-_MOST_TURNS = 20
+_MOST_TURNS = 40
 _STILL_RAD = 1e-13
+
+Answer = TypeVar("Answer")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +42,7 @@ class PulleyRun:
         """Whether there are pulleys at all."""
         return bool(self.wrap_m.any())
 
-    def unstrained(self, strain: FloatArray) -> PulleyRun:
+    def unstrained(self, strain: FloatArray | float) -> PulleyRun:
         """Return the run with the wrapped length taken back to no tension."""
         if not self.has_wrap:
             return self
@@ -91,42 +94,68 @@ def flat_poses(poses: Poses) -> Poses:
 
 
 def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, PulleyRun]:
-    """Solve poses (...), flattened to one axis; with pulleys, until their tangent points rest.
-
-    The tangent point follows the slope of the sagging cable at its upper end, which moves by about
-    radius over length of what the tangent point moved: a handful of turns reach rounding.
-    """
+    """Solve poses (...), flattened to one axis."""
     flat = flat_poses(poses)
     count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
     task = replace(task, force_N=None if force is None else force.reshape(count, 3))
+
+    def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
+        solution = _solve(robot, flat, task, run)
+        with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
+            weight = solution.weight_N_per_m[:, None] * task.relative_weights
+            downward = weight * solution.length_m - solution.force_z_N
+        return solution, np.arctan2(downward, solution.force_x_N), 0.0
+
+    solution, run = over_pulleys(robot, flat, solve)
     if robot.pulley_radius_m == 0.0:
-        run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-        return _solve(robot, flat, task, run), run
-    solution, run = _solve_over_pulleys(robot, flat, task)
+        return solution, run
     shape = (*poses.shape, robot.n_cables)
     points = run.exit_points_m.reshape(*shape, 3)
     return solution, PulleyRun(points, run.wrap_m.reshape(shape))
 
 
-def _solve_over_pulleys(robot: Robot, flat: Poses, task: Task) -> tuple[Solution, PulleyRun]:
-    geometry = cable_geometry(robot, flat)
+def over_pulleys(
+    robot: Robot,
+    poses: Poses,
+    solve: Callable[[PulleyRun], tuple[Answer, FloatArray, FloatArray | float]],
+) -> tuple[Answer, PulleyRun]:
+    """Solve until the tangent points on the pulleys rest; once, where there are none.
+
+    The tangent point follows the slope of the sagging cable at its upper end, which moves by about
+    radius over length of what the tangent point moved: a handful of turns reach rounding.
+
+    Parameters
+    ----------
+    robot, poses
+        The robot and its poses (...).
+    solve : callable
+        Takes the run of the cables, and returns an answer with the angle below the horizontal at
+        which each cable leaves [rad] and its strain there.
+
+    Returns
+    -------
+    answer, run
+        Of the last turn.
+    """
+    if robot.pulley_radius_m == 0.0:
+        run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
+        return solve(run)[0], run
+    geometry = cable_geometry(robot, poses)
     straight = pulley.straight_slope_rad(
         geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
     )
     slope = straight
+    strain: FloatArray | float = 0.0
     for _ in range(_MOST_TURNS):
-        run = _run(robot, geometry.outward, slope)
-        solution = _solve(robot, flat, task, run)
-        with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
-            weight = solution.weight_N_per_m[:, None] * task.relative_weights
-            downward = weight * solution.length_m - solution.force_z_N
-        found = np.arctan2(downward, solution.force_x_N)
+        run = _run(robot, geometry.outward, slope).unstrained(strain)
+        answer, found, strain = solve(run)
         new = np.where(np.isfinite(found), found, straight)
-        if np.nanmax(np.abs(new - slope), initial=0.0) <= _STILL_RAD:
-            break
+        change = np.nanmax(np.abs(new - slope), initial=0.0)
         slope = new
-    return solution, run
+        if change <= _STILL_RAD:
+            break
+    return answer, run
 
 
 def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:

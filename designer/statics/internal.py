@@ -1,0 +1,111 @@
+"""The internal forces that a pose's own readings tell, where cables outnumber degrees of freedom.
+
+A redundant robot holds a pose with many sets of tensions. Which of them a built machine has, its
+winches decide; it shows in the tensions, and in the lengths through elasticity and sag. Each pose
+gives up one reading for each cable to spare; the others test the model, whatever rule the winches
+follow.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import Cable
+from designer.kernel.calling import plain
+from designer.robot import Poses, Robot
+from designer.statics.geometry import cable_geometry, upright_poses
+from designer.statics.inverse import Statics
+from designer.statics.nearest import solve_nearest
+from designer.statics.stiffness import per_reach
+from designer.statics.task import PulleyRun, over_pulleys
+from designer.verdict import Verdict
+
+_LEAST_PULL = 1.0 / 16.0
+_CLOSES = 1e-9
+
+
+def solve_internal(
+    robot: Robot,
+    poses: Poses,
+    cable: Cable,
+    length_m: FloatArray,
+    tension_N: FloatArray,
+    noise: tuple[float, float],
+    force_N: FloatArray | None = None,
+) -> Statics:
+    """Return the balance of poses (n_poses,) that comes nearest to what was read of them.
+
+    Nearest is meant as in `designer.kernel.internal`: robust least squares in units of noise. What
+    the readings leave open is settled by a weak pull toward the smallest tensions that hold the
+    pose, as if these were known to within the platform's weight.
+
+    Parameters
+    ----------
+    robot, poses, cable
+        A robot with more cables than degrees of freedom, its poses (n_poses,), and its cables.
+    length_m, tension_N : array (n_poses, n_cables)
+        Unstrained lengths from the exit points, around pulleys where there are any [m], and
+        tensions at the exit points [N]; NaN where nothing was read.
+    noise : (float, float)
+        Standard deviation of a length [m] and of a tension [N].
+    force_N : array (n_poses, 3), optional
+        Force on the platform beside its weight, base frame [N].
+
+    Returns
+    -------
+    Statics
+        ``not converged`` where the balance does not close to 1e-9 of the largest tension.
+    """
+    from designer.kernel import internal as kernel
+
+    _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
+    weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
+    n, count = robot.n_cables, len(poses.position_m)
+    upright = upright_poses(robot, poses)
+    load = plain(robot.loads_N(None if force_N is None else force_N @ robot.upright.T))
+    each, scale, rest = np.ones(n), plain(per_reach(robot)), np.empty(count)
+
+    def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+        chord = cable_geometry(robot, poses, run.exit_points_m).chord_m
+        pull = np.fmax(start_N, robot.tension_min_N) / (weight * chord)
+        out = np.empty((count, n, 3))
+        kernel.solve_internal_poses(
+            plain(run.exit_points_m).reshape(-1, n, 3),
+            plain(robot.attachments_m),
+            load,
+            plain(robot.platform.centre_of_mass_m),
+            robot.weight_N,
+            plain(upright.position_m),
+            plain(upright.rotation).reshape(-1, 3, 3),
+            plain(weight * each),
+            plain(weight / stiffness * each),
+            robot.balance_rows,
+            plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
+            plain(noise),
+            plain(np.fmax(pull, _LEAST_PULL)),
+            robot.weight_N,
+            scale,
+            out,
+            rest,
+        )
+        downward = weight * out[..., 0] - out[..., 2]
+        strain = np.hypot(out[..., 1], downward) / stiffness
+        return out, np.arctan2(downward, out[..., 1]), strain
+
+    out, run = over_pulleys(robot, poses, solve)
+    closes = rest <= _CLOSES
+    out = np.where(closes[:, None, None], out, np.nan)
+    ones = np.ones((count, 1))
+    return Statics(
+        robot=robot,
+        poses=poses,
+        verdict=np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8),
+        weight_N_per_m=weight * ones,
+        axial_stiffness_N=stiffness * ones,
+        length_m=out[..., 0] + run.wrap_m,
+        force_x_N=out[..., 1],
+        force_z_N=out[..., 2],
+        run=run,
+        force_N=force_N,
+    )
