@@ -11,7 +11,7 @@ from typing import Any
 
 from designer import __version__
 from designer.diagnosis.design import declared_by
-from designer.diagnosis.result import Choice, Diagnosis, Error, Finding
+from designer.diagnosis.result import Choice, Diagnosis, Error, Finding, Foretold, Interval
 from designer.study import DeclaredEffect
 
 Json = dict[str, Any]
@@ -60,6 +60,10 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         "error": {
             "length_m": _before_after(before.length_m, after.length_m, noise.length_m),
             "tension_N": _before_after(before.tension_N, after.tension_N, noise.tension_N),
+        },
+        "forward": {
+            "before": _foretold(diagnosis.foretold_before),
+            "after": _foretold(diagnosis.foretold_after),
         },
         "noise": {"source": noise.source},
         "stages": [
@@ -159,6 +163,27 @@ def _error(error: Error | None) -> Json | None:
         "heldout_rms": _number(error.heldout.value),
         "heldout_interval": [_number(error.heldout.low), _number(error.heldout.high)],
         "heldout_rms_of_cable": [_number(float(x)) for x in error.heldout_of_cable],
+    }
+
+
+def _foretold(foretold: Foretold | None) -> Json | None:
+    if foretold is None:
+        return None
+    return {
+        "rows": foretold.n_rows,
+        "solved": foretold.n_solved,
+        "position_m": _interval(foretold.position_m),
+        "turn_rad": _interval(foretold.turn_rad),
+        "tension_N": _interval(foretold.tension_N),
+    }
+
+
+def _interval(interval: Interval | None) -> Json | None:
+    if interval is None:
+        return None
+    return {
+        "rms": _number(interval.value),
+        "interval": [_number(interval.low), _number(interval.high)],
     }
 
 

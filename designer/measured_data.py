@@ -58,3 +58,24 @@ class Measured:
         """Kinds of surroundings that were recorded: ``time``, ``temperature``, ``wind``."""
         found = {"time": self.time_s, "temperature": self.temperature_C, "wind": self.wind_m_per_s}
         return frozenset(name for name, values in found.items() if values is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard deviation of one reading.
+
+    Parameters
+    ----------
+    length_m, tension_N : float
+        Of a length [m] and of a tension [N].
+    source : str
+        ``declared``, or how it was estimated.
+    """
+
+    length_m: float
+    tension_N: float
+    source: str
+
+
+EVEN = Noise(1.0, 1.0, "none")
+"""A metre and a newton alike: before anything is known of the noise."""

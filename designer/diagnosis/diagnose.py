@@ -12,17 +12,18 @@ from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
 from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
 from designer.diagnosis.fit import Fit, fit
+from designer.diagnosis.foretell import foretell
 from designer.diagnosis.hold import Outcome, search_and_hold
 from designer.diagnosis.noise import noise_of, rescaled
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Noise, Problem
+from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
 from designer.diagnosis.structure import covariates_of, find_structure
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.measured_data import EVEN, Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2
@@ -75,7 +76,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     problem, search = outcome.problem, outcome.search
     base = fit(problem, case.given, ~heldout)
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
-    predicted = predict(search.fit.settings)
+    predicted = predict(search.fit.settings, problem.noise)
     covariates = covariates_of(measured, predicted)
     findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
     return Diagnosis(
@@ -101,6 +102,8 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         outliers=outliers_of(after, measured.row_numbers),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
+        foretold_before=foretell(problem, case.machine, base.settings, heldout),
+        foretold_after=foretell(problem, case.machine, search.fit.settings, heldout),
     )
 
 
@@ -109,7 +112,7 @@ def _with_settled_noise(
 ) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
-    unit = Problem(measured, predict, Noise(1.0, 1.0, "none"))
+    unit = Problem(measured, predict, EVEN)
     noise = noise_of(case.measurements, measured, unit.residual(_given_fit(unit, case, rows)))
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)

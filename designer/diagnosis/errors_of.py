@@ -55,13 +55,23 @@ def _error(residual: FloatArray, heldout: BoolArray) -> Error | None:
     unseen = residual[heldout]
     return Error(
         rms=rms(residual[~heldout]),
-        heldout=_bootstrap(unseen, block_of(len(residual))[heldout]),
+        heldout=bootstrap(unseen, block_of(len(residual))[heldout]),
         heldout_of_cable=np.array([rms(column) for column in unseen.T]),
     )
 
 
-def _bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
-    """Draw held-out blocks with replacement; within a block rows may be alike."""
+def bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
+    """Return the root mean square of held-out rows with its 95 % interval.
+
+    Blocks are drawn with replacement, since within a block rows may be alike.
+
+    Parameters
+    ----------
+    unseen : array (n_rows, n_channels)
+        Residuals; NaN where there is none.
+    block : array (n_rows,)
+        Number of the block of each row.
+    """
     square = np.nansum(unseen**2, axis=1)
     count = np.sum(~np.isnan(unseen), axis=1)
     names = np.unique(block)

@@ -32,7 +32,7 @@ class Fit:
     loss : float
         Robust sum of squares over the fitted rows, in units of noise.
     n_data : int
-        Number of readings fitted.
+        Number of readings fitted, less those that internal forces took.
     """
 
     settings: tuple[Setting, ...]
@@ -108,7 +108,7 @@ def fit(
     taken = rows[:, None] & ~np.isnan(problem.readings)
     if not effects:
         loss = float(huber(problem.residual(())[taken]).sum())
-        return Fit((), np.empty(0), np.empty(0), loss, int(taken.sum()))
+        return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(taken))
     anew = anew and any(effect.starts for effect in effects)
     turns = _ALL_TURNS if thorough or anew or not known else _TRIAL_TURNS
     tolerance = _TOLERANCE if thorough else _TRIAL_TOLERANCE
@@ -168,7 +168,7 @@ def _fit_from(
         ftol=tolerance,
         max_nfev=turns,
     )
-    loss, count = 2.0 * float(answer.cost), int(taken.sum())
+    loss, count = 2.0 * float(answer.cost), problem.free_readings(taken)
     variance = max(1.0, loss / max(count - len(start), 1))
     slopes = answer.jac  # scaled by Huber's weights, so that outliers add no certainty
     scale = np.linalg.norm(slopes, axis=0)

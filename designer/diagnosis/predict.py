@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.effects.effect import Readings, Setting, as_built
 from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.measured_data import EVEN, Measured, Noise
 from designer.robot import Poses
+from designer.statics.internal import solve_internal
 from designer.statics.inverse import solve_sagging
 from designer.statics.nearest import solve_nearest
 
 AIR_DENSITY_KG_PER_M3 = 1.225
 """Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
 
+_MOST_TURNS = 12
+_STILL = 1e-7
+
 
 class Predictor:
     """Predicts readings of one data set; remembers the last few machines it solved.
 
-    Effects on readings leave the machine alone, so that their slopes cost no statics.
+    Of a robot with as many cables as degrees of freedom the pose alone tells lengths and tensions,
+    and effects on readings leave the machine alone, so that their slopes cost no statics. With
+    more cables each row's internal forces are taken from its own readings, see
+    `designer.statics.internal`.
 
     Parameters
     ----------
     machine : Machine
         As declared.
     measured : Measured
-        The data; only poses and surroundings are used.
+        The data.
     fixed : sequence of Setting
         Effects on readings that are declared: they act before all others.
     """
@@ -37,33 +45,109 @@ class Predictor:
         self._machine = machine
         self._measured = measured
         self._fixed = tuple(fixed)
-        self._known: dict[tuple[object, ...], Readings] = {}
+        self._added: dict[tuple[str, ...], FloatArray] = {}
+        self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
 
-    def __call__(self, settings: Sequence[Setting]) -> Readings:
+    @property
+    def spare_cables(self) -> int:
+        """Cables beyond the degrees of freedom: internal forces of each row."""
+        robot = self._machine.robot
+        return max(robot.n_cables - robot.degrees_of_freedom, 0)
+
+    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what the sensors would show with these effects, applied in their order."""
-        readings = self._physical([s for s in settings if s.effect.on_machine is not None])
+        if self.spare_cables:
+            return self._remembered(settings, noise, self._nearest_to_readings)[1]
+        bodily = [s for s in settings if s.effect.on_machine is not None]
+        return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
+
+    def true_readings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return what was measured, less what sensors and stiff ends add to it in the model."""
+        shown = self(settings, noise)
+        if self.spare_cables:
+            true = self._remembered(settings, noise, self._nearest_to_readings)[0]
+        else:
+            limp = replace(as_built(self._machine, settings), flexural_rigidity_N_m2=0.0)
+            true = readings_of(limp, self._measured.poses, self._measured)
+        return Readings(
+            self._measured.length_m - shown.length_m + true.length_m,
+            self._measured.tension_N - shown.tension_N + true.tension_N,
+        )
+
+    def _remembered(
+        self,
+        settings: Sequence[Setting],
+        noise: Noise,
+        solve: Callable[[Sequence[Setting], Noise], tuple[Readings, Readings]],
+    ) -> tuple[Readings, Readings]:
+        key = (noise, *((s.effect.key, *s.values.values()) for s in settings))
+        if key not in self._known:
+            if len(self._known) > 64:
+                self._known.clear()
+            self._known[key] = solve(settings, noise)
+        return self._known[key]
+
+    def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
+        machine = as_built(self._machine, settings)
+        readings = readings_of(machine, self._measured.poses, self._measured)
+        return readings, readings
+
+    def _nearest_to_readings(
+        self, settings: Sequence[Setting], noise: Noise
+    ) -> tuple[Readings, Readings]:
+        """Take internal forces from what was read, less what sensors and stiff ends add to it.
+
+        What they add depends on the internal forces in turn, though little. Returns what is there,
+        and what is shown.
+        """
+        machine = as_built(self._machine, settings)
+        kind = tuple(s.effect.key for s in settings if s.effect.on_readings is not None)
+        added = self._added.get(kind, np.zeros((2, *self._measured.length_m.shape)))
+        for _ in range(_MOST_TURNS):
+            true, straightened = _balanced(machine, self._measured, added, noise)
+            shown = self._shown(straightened, settings)
+            more = (shown.length_m - true.length_m, shown.tension_N - true.tension_N)
+            found = np.nan_to_num(more)
+            change = np.abs(found - added).max(axis=(1, 2))
+            added = found
+            if change[0] <= _STILL * noise.length_m and change[1] <= _STILL * noise.tension_N:
+                break
+        self._added[kind] = added  # near what it will be for the next values of these effects
+        return true, shown
+
+    def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
         for setting in (*self._fixed, *settings):
             if setting.effect.on_readings is not None:
                 readings = setting.effect.on_readings(readings, setting.values, self._measured)
         return readings
 
-    def _physical(self, settings: Sequence[Setting]) -> Readings:
-        key = tuple((s.effect.key, *s.values.values()) for s in settings)
-        if key not in self._known:
-            if len(self._known) > 64:
-                self._known.clear()
-            machine = as_built(self._machine, settings)
-            self._known[key] = readings_of(machine, self._measured.poses, self._measured)
-        return self._known[key]
+
+def _balanced(
+    machine: Machine, measured: Measured, added: FloatArray, noise: Noise
+) -> tuple[Readings, Readings]:
+    """Return true lengths and tensions, and those of cables with stiff ends."""
+    statics = solve_internal(
+        machine.robot,
+        measured.poses,
+        machine.cable,
+        measured.length_m - added[0],
+        measured.tension_N - added[1],
+        (noise.length_m, noise.tension_N),
+        wind_force_N(machine, measured),
+    )
+    length, tension = statics.length_m, statics.exit_tension_N
+    span = statics.geometry().horizontal_distance_m
+    straightened = length - _straightened_m(machine, tension, span)
+    return Readings(length, tension), Readings(straightened, tension)
 
 
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
     """Return unstrained lengths and winch-side tensions of a machine in poses (n_rows,).
 
-    Robots with as many cables as degrees of freedom are solved exactly. For others the tensions
-    nearest to balance are taken, see `designer.statics.nearest`.
+    Robots with as many cables as degrees of freedom are solved exactly. With fewer cables the
+    tensions nearest to balance are taken, see `designer.statics.nearest`.
     """
-    force = None if measured is None else _wind_force_N(machine, measured)
+    force = None if measured is None else wind_force_N(machine, measured)
     if machine.robot.is_square:
         statics = solve_sagging(machine.robot, poses, machine.cable, force)
         length, tension = statics.length_m, statics.exit_tension_N
@@ -73,7 +157,8 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     return Readings(length - _straightened_m(machine, tension, span), tension)
 
 
-def _wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
+def wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
+    """Return the wind's force on the platform, base frame (n_rows, 3) [N]; None without."""
     if machine.drag_area_m2 == 0.0 or measured.wind_m_per_s is None:
         return None
     wind = measured.wind_m_per_s

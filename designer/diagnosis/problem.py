@@ -7,30 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import Setting
-from designer.measured_data import Measured
+from designer.measured_data import Measured, Noise
 
 _UNHELD = 1e3
 """Residual of a reading at a pose that the model cannot hold, in units of noise."""
-
-
-@dataclass(frozen=True, slots=True)
-class Noise:
-    """Standard deviation of one reading.
-
-    Parameters
-    ----------
-    length_m, tension_N : float
-        Of a length [m] and of a tension [N].
-    source : str
-        ``declared``, or how it was estimated.
-    """
-
-    length_m: float
-    tension_N: float
-    source: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,9 +45,17 @@ class Problem:
         """Measured lengths [m], then tensions [N] (n_rows, 2 n_cables); NaN where missing."""
         return np.hstack([self.measured.length_m, self.measured.tension_N])
 
+    def free_readings(self, taken: BoolArray) -> int:
+        """Return how many of the readings taken (n_rows, 2 n_cables) are left to test the model.
+
+        A row of a redundant robot gives up one for each cable to spare, for its internal forces.
+        """
+        spare = self.predict.spare_cables
+        return int(np.maximum(taken.sum(axis=1) - spare, 0).sum())
+
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
-        predicted = self.predict(settings)
+        predicted = self.predict(settings, self.noise)
         model = np.hstack([predicted.length_m, predicted.tension_N])
         residual = (self.readings - model) / self.sigma
         unheld = np.isnan(model) & ~np.isnan(self.readings)

@@ -9,11 +9,10 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Noise
 from designer.diagnosis.result import Proposal
 from designer.effects.effect import Setting
 from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.measured_data import Measured, Noise
 from designer.region import PointList, Region
 from designer.robot import Poses
 from designer.study import Workspace
@@ -49,7 +48,7 @@ def propose(
     positions = _candidates(measured, region)
     there = _measured_at(measured, positions)
     predict = Predictor(machine, there)
-    one, other = predict(found), predict(rival)
+    one, other = predict(found, noise), predict(rival, noise)
     gap = np.hstack(
         [
             (one.length_m - other.length_m) / noise.length_m,

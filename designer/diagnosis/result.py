@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from enum import Enum
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.problem import Noise
 from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Effect, Readings, Setting
 from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.measured_data import Measured, Noise
 from designer.study import Study
 
 
@@ -128,6 +127,29 @@ class Stage:
 
 
 @dataclass(frozen=True, slots=True)
+class Foretold:
+    """Root mean square errors of forward statics over rows that no fit has seen.
+
+    Parameters
+    ----------
+    n_rows, n_solved : int
+        Held-out rows with all lengths, and those of them in which a balance was found.
+    position_m : Interval
+        Distance of the platform from where it was [m].
+    turn_rad : Interval or None
+        Angle of the platform against where it was [rad]; None for one that cannot turn.
+    tension_N : Interval or None
+        Of the tensions at the winches [N]; None where none were measured.
+    """
+
+    n_rows: int
+    n_solved: int
+    position_m: Interval
+    turn_rad: Interval | None
+    tension_N: Interval | None
+
+
+@dataclass(frozen=True, slots=True)
 class Outlier:
     """A reading that no model here explains; shown, and given little weight."""
 
@@ -231,6 +253,9 @@ class Diagnosis:
         Where structure is left.
     proposals : tuple of Proposal
         For each pair of rivals.
+    foretold_before, foretold_after : Foretold or None
+        Pose and tensions from lengths alone, by the first and the last stage; None where no
+        held-out row has all lengths.
     design_before, design_after : Choice or None
         Where the study has a workspace and a selection.
     """
@@ -255,6 +280,8 @@ class Diagnosis:
     outliers: tuple[Outlier, ...]
     correction: Correction | None
     proposals: tuple[Proposal, ...]
+    foretold_before: Foretold | None = None
+    foretold_after: Foretold | None = None
     design_before: Choice | None = None
     design_after: Choice | None = None
 

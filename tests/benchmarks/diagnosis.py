@@ -1,6 +1,6 @@
 """How well the diagnosis names an effect that nobody declared, on simulated twins.
 
-    python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,hall6]
+    python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,hall6,hall8]
                                          [--sizes 2,5,10,30] [--only singles,nothing,pairs,unlisted]
 
 The twins come from physics that shares nothing with the product (`tests/twins`). Prints, for each
@@ -27,7 +27,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from twins import robots
 from twins.dataset import DataSet, make, size_for
 
-ROBOTS = {"yard3": robots.YARD3, "fast3": robots.FAST3, "hall6": robots.HALL6}
+ROBOTS = {
+    "yard3": robots.YARD3,
+    "fast3": robots.FAST3,
+    "hall6": robots.HALL6,
+    "hall8": robots.HALL8,
+}
 LISTED = (
     "pulley_radius", "thermal_expansion", "elastic_modulus", "linear_mass", "platform_mass",
     "centre_of_mass_offset", "anchor_offset", "length_offset", "drum_scale", "drum_layering",
@@ -164,7 +169,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--nothing", type=int, default=200)
-    parser.add_argument("--robots", default="yard3,fast3,hall6")
+    parser.add_argument("--robots", default=",".join(ROBOTS))
     parser.add_argument("--sizes", default=",".join(map(str, SIZES)))
     parser.add_argument("--only", default=",".join(PARTS), help="parts of the table")
     arguments = parser.parse_args()

@@ -10,9 +10,10 @@ from designer.config import read_study
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Noise, Problem
+from designer.diagnosis.problem import Problem
 from designer.diagnosis.search import Searcher
 from designer.measured.read import read_measured
+from designer.measured_data import Noise
 
 
 @pytest.fixture

@@ -185,7 +185,11 @@ def size_for(
     size = float(np.sqrt(np.prod(robot.sizes[effect])))
     for _ in range(12):
         trial = {effect: robot.draw(effect, size, seed)}
-        length, tension = predict(robot, trial, blank.scene)
+        try:
+            length, tension = predict(robot, trial, blank.scene)
+        except RuntimeError:  # so large that some pose has no equilibrium
+            size *= 0.3
+            continue
         found = effect_size(
             replace(blank, effects=trial, clean_length_m=length, clean_tension_N=tension)
         )

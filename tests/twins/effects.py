@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from twins.physics import Equilibrium, Machine, solve
+from twins.physics import Equilibrium, Machine, least_tensions_N, solve
 from twins.robots import TwinRobot
 
 AIR_KG_PER_M3 = 1.225
@@ -75,7 +75,16 @@ def _equilibrium(robot: TwinRobot, effects: Effects, scene: Scene) -> Equilibriu
         if name in effects:
             machine = change(machine, scene, effects[name])
     turn = Rotation.from_rotvec(scene.rotation_vector_rad).as_matrix()
+    if robot.set_cables:
+        machine = replace(machine, set_N=_set_N(robot, scene, turn))
     return solve(machine, scene.position_m, turn)
+
+
+def _set_N(robot: TwinRobot, scene: Scene, turn: np.ndarray) -> np.ndarray:
+    """Tensions of the winches under force control: a law that no model of the machine knows."""
+    least = least_tensions_N(robot.machine(), scene.position_m, turn)
+    swing = 1.1 + 0.15 * np.sin(2 * np.pi * scene.time_s / (7.3 * robot.period_s))
+    return least[:, list(robot.set_cables)] * swing[:, None]
 
 
 # --- the machine ---------------------------------------------------------------------------------

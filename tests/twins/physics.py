@@ -49,6 +49,9 @@ class Machine:
         Exit point's movement per horizontal cable force on it, along that force [m/N].
     bending_N_m2 : array
         Flexural rigidity of the cable, clamped along its chord at both ends [N m²].
+    set_cables, set_N : tuple of int; array (rows or 1, len(set_cables))
+        Cables, counted from 0, whose winches hold a tension at the exit instead of a length [N]:
+        as many as there are cables beyond the degrees of freedom.
     """
 
     exit_m: np.ndarray
@@ -65,6 +68,8 @@ class Machine:
     pulley_radius_m: np.ndarray | float = 0.0
     mast_m_per_N: np.ndarray | float = 0.0
     bending_N_m2: np.ndarray | float = 0.0
+    set_cables: tuple[int, ...] = ()
+    set_N: np.ndarray = field(default_factory=lambda: np.zeros((1, 0)))
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,7 @@ def _newton(
         end, reach, slope, along = _cable(machine, pull, length, nodes)
         support, wrap = _support(machine, point, pull, end, length)
         held = load + _wrench(machine, pull, arm)
-        steps = _newton_step(machine, point + reach - support, held, slope, along, arm)
+        steps = _newton_step(machine, point + reach - support, held, slope, along, arm, end)
         size = np.linalg.norm(pull, axis=-1)
         change = np.maximum(np.linalg.norm(steps[0], axis=-1) / size, abs(steps[1]) / length)
         # A step may change no pull and no length by more than half.
@@ -229,8 +234,9 @@ def _newton_step(
     slope: np.ndarray,
     along: np.ndarray,
     arm: np.ndarray,
+    end: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve closure and balance linearised, the support held still.
+    """Solve closure, balance and set tensions linearised, the support held still.
 
     The pulls are eliminated cable by cable: step = -slope⁻¹ (gap + along × dlength).
     """
@@ -240,8 +246,35 @@ def _newton_step(
     per_length = -(compliance @ along[..., None])[..., 0]
     matrix = np.einsum("rdni,rni->rdn", balance, per_length)
     right = -held - np.einsum("rdni,rni->rd", balance, free)
+    if machine.set_cables:
+        holds, wanted = _set_tensions(machine, end, free, per_length)
+        matrix = np.concatenate([matrix, holds], axis=1)
+        right = np.concatenate([right, wanted], axis=1)
     step_length = np.linalg.solve(matrix, right[..., None])[..., 0]
     return free + per_length * step_length[..., None], step_length
+
+
+def _set_tensions(
+    machine: Machine, end: np.ndarray, free: np.ndarray, per_length: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Slope of the set tensions in the lengths, and what they lack."""
+    rows, cables, _ = end.shape
+    chosen = list(machine.set_cables)
+    size = np.linalg.norm(end, axis=-1, keepdims=True)
+    linear_mass = np.broadcast_to(machine.linear_mass, (rows, cables))[..., None]
+    slope = ((end / size) * (per_length - linear_mass * machine.gravity)).sum(-1)
+    reached = size[..., 0] + ((end / size) * free).sum(-1)
+    holds = np.eye(cables)[chosen] * slope[:, None, :]
+    return holds, machine.set_N - reached[:, chosen]
+
+
+def least_tensions_N(machine: Machine, position_m: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    """Return the smallest tensions of straight cables that carry the load (rows, cables) [N]."""
+    arm = np.einsum("rij,nj->rni", rotation, machine.attachment_m)
+    chord = machine.exit_m - (position_m[:, None, :] + arm)
+    unit = chord / np.linalg.norm(chord, axis=-1, keepdims=True)
+    matrix = np.einsum("rdni,rni->rdn", _balance_matrix(machine, arm), unit)
+    return (np.linalg.pinv(matrix) @ -_load(machine, rotation)[..., None])[..., 0]
 
 
 def _straight_start(
@@ -253,6 +286,11 @@ def _straight_start(
     half = 0.5 * _weight(machine, length)
     matrix = np.einsum("rdni,rni->rdn", _balance_matrix(machine, arm), chord / length[..., None])
     right = -(load + _wrench(machine, half, arm))
+    if machine.set_cables:
+        holds = np.eye(length.shape[1])[list(machine.set_cables)]
+        matrix = np.concatenate([matrix, np.broadcast_to(holds, (len(arm), *holds.shape))], axis=1)
+        wanted = np.broadcast_to(machine.set_N, (len(arm), len(holds)))
+        right = np.concatenate([right, wanted], axis=1)
     tension = np.linalg.solve(matrix, right[..., None])[..., 0]
     tension = np.maximum(tension, 0.02 * np.abs(tension).max(1, keepdims=True))
     return (tension / length)[..., None] * chord + half, length

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twins.physics import Machine, solve
+from twins.physics import Machine, least_tensions_N, solve
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,8 @@ class TwinRobot:
         Body frame [m]; empty for a point mass.
     turn_rad : float
         Standard deviation of the rotation vector's components [rad].
+    set_cables : tuple of int
+        Cables, counted from 0, whose winches hold a tension; see `twins.physics.Machine`.
     noise_m, noise_N : float
         Standard deviation of a length and of a tension reading [m], [N].
     period_s : float
@@ -47,6 +49,7 @@ class TwinRobot:
     sizes: dict[str, tuple[float, float]]
     attachment_m: tuple[tuple[float, float, float], ...] = ()
     turn_rad: float = 0.0
+    set_cables: tuple[int, ...] = ()
 
     @property
     def cables(self) -> int:
@@ -63,12 +66,15 @@ class TwinRobot:
             linear_mass=np.full((1, self.cables), self.linear_mass),
             stiffness_N=np.full((1, self.cables), self.stiffness_N),
             has_moments=bool(self.attachment_m),
+            set_cables=self.set_cables,
         )
 
     @cached_property
     def reference_length_m(self) -> np.ndarray:
         """Lengths at the homing pose (cables,) [m]."""
-        return solve(self.machine(), np.array([self.pose_m]), np.eye(3)[None]).length_m[0]
+        pose, turn = np.array([self.pose_m]), np.eye(3)[None]
+        set_N = least_tensions_N(self.machine(), pose, turn)[:, list(self.set_cables)]
+        return solve(replace(self.machine(), set_N=set_N), pose, turn).length_m[0]
 
     def draw(self, effect: str, size: float, seed: int = 0) -> dict[str, float]:
         """Return parameters of an effect of this size; seed picks sign, cable and direction.
@@ -231,6 +237,24 @@ HALL6 = TwinRobot(
         "encoder_backlash": (0.002, 0.02),
     },
 )  # fmt: skip
+
+HALL8 = replace(
+    HALL6,
+    name="hall8",
+    exit_m=(
+        (-7.2, -5.2, 5.5), (-7.3, -5.1, 5.5), (-7.3, 5.2, 5.5), (-7.2, 5.4, 5.5),
+        (7.2, 5.3, 5.5), (7.3, 5.2, 5.5), (7.3, -5.1, 5.5), (7.2, -5.3, 5.5),
+    ),
+    attachment_m=(
+        (0.5, -0.5, 0.0), (-0.5, 0.35, 1.0), (-0.5, -0.27, 0.0), (0.5, 0.35, 1.0),
+        (-0.5, 0.5, 0.0), (0.5, -0.34, 1.0), (0.5, 0.27, 0.0), (-0.5, -0.35, 1.0),
+    ),
+    pose_m=(0.0, 0.0, 1.2),
+    box_m=((-2, 2), (-1.5, 1.5), (0.6, 1.8)),
+    noise_N=4.0,
+    set_cables=(1, 4),
+)  # fmt: skip
+"""Eight cables: six winches follow lengths, two a tension."""
 
 FAST3_WIDE = replace(FAST3, box_m=((150, 350), (80, 260), (-180, -60)))
 """With poses at the very edge, where a cable hangs slack and a few rows carry any effect."""

@@ -1,0 +1,76 @@
+"""Where the platform would be, and how tense its cables, by the measured lengths alone.
+
+This is what a user of the machine sees of a model: winches give lengths, forward statics makes a
+pose of them. Nothing is fitted to it; the poses of the rows are used as starts, and compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.diagnosis.blocks import block_of
+from designer.diagnosis.errors_of import bootstrap, without_outliers
+from designer.diagnosis.predict import wind_force_N
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.result import Foretold
+from designer.effects.effect import Setting, as_built
+from designer.machine import Machine
+from designer.robot import Poses
+from designer.statics.forward import solve_forward
+
+
+def foretell(
+    problem: Problem, machine: Machine, settings: Sequence[Setting], heldout: BoolArray
+) -> Foretold | None:
+    """Return how well lengths alone foretell pose and tensions; None where no row has all.
+
+    Rows with a length that stands off are left out, as from all errors.
+
+    Parameters
+    ----------
+    problem, machine, settings
+        Data, the machine as declared, and the effects in the model.
+    heldout : array (n_rows,) of bool
+        Rows to compare.
+    """
+    measured = problem.measured
+    true = problem.predict.true_readings(settings, problem.noise)
+    n = true.length_m.shape[1]
+    fit_to_use = np.isfinite(without_outliers(problem.residual(settings))[:, :n]).all(axis=1)
+    rows = np.flatnonzero(heldout & fit_to_use)
+    if not rows.size:
+        return None
+    built = as_built(machine, settings)
+    force = wind_force_N(built, measured)
+    there = _rows_of(measured.poses, rows)
+    found = solve_forward(
+        built.robot, built.cable, true.length_m[rows], there, None if force is None else force[rows]
+    )
+    block = block_of(len(heldout))[rows]
+    away = np.linalg.norm(found.poses.position_m - there.position_m, axis=-1)
+    tension = true.tension_N[rows] - found.statics.exit_tension_N
+    return Foretold(
+        n_rows=rows.size,
+        n_solved=int(found.statics.is_solved.sum()),
+        position_m=bootstrap(away[:, None], block),
+        turn_rad=None
+        if built.robot.is_point_mass
+        else bootstrap(_turn_rad(found.poses, there)[:, None], block),
+        tension_N=None if np.isnan(tension).all() else bootstrap(tension, block),
+    )
+
+
+def _rows_of(poses: Poses, rows: IntArray) -> Poses:
+    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[rows]
+    return Poses(poses.position_m[rows], rotation)
+
+
+def _turn_rad(found: Poses, there: Poses) -> FloatArray:
+    """Return the angle between two sets of poses (n_rows,); NaN where there is none."""
+    between = np.swapaxes(there.rotation, -1, -2) @ found.rotation
+    cosine = 0.5 * (np.trace(between, axis1=-2, axis2=-1) - 1.0)
+    axis = np.stack([between[..., i, j] - between[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
+    return np.asarray(np.arctan2(0.5 * np.linalg.norm(axis, axis=0), cosine))

@@ -1,0 +1,71 @@
+"""Pose and tensions from lengths alone, on twins whose physics shares nothing with the model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from twins.dataset import make
+from twins.robots import HALL6, HALL8, YARD3
+
+from designer.config import read_study
+from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.case import case_of
+from designer.diagnosis.foretell import foretell
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Problem
+from designer.effects.effect import Setting
+from designer.measured.read import read_measured
+from designer.measured_data import Noise
+
+
+def problem_and_case(robot, effects, folder, **how):
+    make(robot, effects, rows=48, seed=3, **how).write(folder)
+    study = read_study(folder / "config.yaml")
+    measured = read_measured(study)
+    case = case_of(study, study.measurements, measured)
+    noise = Noise(robot.noise_m, robot.noise_N, "declared")
+    return Problem(measured, Predictor(case.machine, measured), noise), case
+
+
+@pytest.mark.parametrize("robot", [YARD3, HALL6, HALL8], ids=lambda robot: robot.name)
+def test_lengths_without_noise_lead_to_the_pose(robot, tmp_path) -> None:
+    truth = {"elastic_modulus": {"scale": 0.8}, "drum_scale": {"scale": 1.002}}
+    problem, case = problem_and_case(robot, truth, tmp_path, noise=0.0)
+    effects = {effect.key: effect for effect in case.candidates}
+    settings = [Setting(effects[key], values) for key, values in truth.items()]
+    heldout = heldout_rows(48)
+    blind = foretell(problem, case.machine, (), heldout)
+    found = foretell(problem, case.machine, settings, heldout)
+    assert found.n_rows == found.n_solved == heldout.sum()
+    # The table has six decimals of a metre.
+    assert found.position_m.value < 1e-5
+    assert found.position_m.value < 1e-3 * blind.position_m.value
+    assert (found.turn_rad is None) == (robot is YARD3)
+    if found.turn_rad is not None:
+        assert found.turn_rad.value < 1e-5
+
+
+def test_a_length_that_stands_off_is_left_out(tmp_path) -> None:
+    problem, case = problem_and_case(YARD3, {}, tmp_path)
+    heldout = heldout_rows(48)
+    row = int(np.flatnonzero(heldout)[2])
+    clean = foretell(problem, case.machine, (), heldout)
+    length = problem.measured.length_m.copy()
+    length[row, 0] += 1.0
+    measured = replace(problem.measured, length_m=length)
+    spoilt = Problem(measured, Predictor(case.machine, measured), problem.noise)
+    wild = foretell(spoilt, case.machine, (), heldout)
+    assert wild.n_rows == clean.n_rows - 1
+    assert wild.position_m.value < 1.5 * clean.position_m.value
+
+
+def test_without_lengths_there_is_nothing_to_foretell(tmp_path) -> None:
+    make(YARD3, {}, rows=48).write(tmp_path, ("tension",))
+    study = read_study(tmp_path / "config.yaml")
+    measured = read_measured(study)
+    case = case_of(study, study.measurements, measured)
+    noise = Noise(YARD3.noise_m, YARD3.noise_N, "declared")
+    problem = Problem(measured, Predictor(case.machine, measured), noise)
+    assert foretell(problem, case.machine, (), heldout_rows(48)) is None
