@@ -5,7 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.structure import SIGNIFICANCE
+from designer.report import format as fmt
 from designer.report.drawings import chart
 from designer.report.parts import Picture
 
@@ -51,14 +55,17 @@ def draw(diagnosis: Diagnosis) -> DiagnosisPictures:
     after = [c.name for c in diagnosis.structure_after.carriers]
     has_change = bool(diagnosis.findings)
     when = ", before (grey) and after (blue)" if has_change else ""
-    first = after if diagnosis.is_unexplained else before
+    first = before
+    if diagnosis.is_unexplained:
+        carriers = diagnosis.structure_after.carriers
+        first = [c.name for c in carriers if c.chance < SIGNIFICANCE]
     return DiagnosisPictures(
         strongest=_against(
             diagnosis, first[:_FIRST_CARRIERS], "first", "overlaid" if has_change else "after",
-            f"Residual against what it goes with most{when}. {_RINGS}",
+            f"Residual against what it goes with most{when}. {_conclusion(diagnosis)}{_RINGS}",
         ),
         rows=chart(
-            f"Residual of every reading in units of noise{when}.",
+            f"Residual of every reading in units of noise{when}. {_within(diagnosis)}",
             "Clouds of points over the rows, which the better model brings to the band of noise",
             rows_chart(diagnosis),
         ),
@@ -68,11 +75,28 @@ def draw(diagnosis: Diagnosis) -> DiagnosisPictures:
         ),
         left=_left(diagnosis, after[:_MOST_CARRIERS]),
         errors=chart(
-            "Error on held-out rows at each stage, with 95 % intervals.",
+            "Error on held-out rows at each stage, with 95 % intervals. At the dashed line the "
+            "model is as good as the readings.",
             "A row for each stage, a panel for each kind of reading",
             errors_chart(diagnosis),
         ),
     )  # fmt: skip
+
+
+def _conclusion(diagnosis: Diagnosis) -> str:
+    """Say what the picture of the first page shows; empty where there is nothing to see."""
+    if diagnosis.is_unexplained:
+        return "No effect explains this trend. "
+    return "The trend before is gone after. " if diagnosis.findings else ""
+
+
+def _within(diagnosis: Diagnosis) -> str:
+    """Say how many readings lie in the band of noise."""
+    stages = (diagnosis.residual_before, diagnosis.residual_after)
+    shares = [np.mean(np.abs(r[np.isfinite(r)]) < 2.0) for r in stages]
+    before, after = (fmt.percent(float(share), 2) for share in shares)
+    was = f", {before} before" if diagnosis.findings else ""
+    return f"{after} lie within ± 2 times the noise{was}; of plain noise 95\u00a0% would."
 
 
 def _left(diagnosis: Diagnosis, names: list[str]) -> Picture | None:

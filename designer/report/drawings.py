@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import base64
+import math
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from designer.analysis import Analysis
+from designer.analysis import Analysis, PoseAnalysis
+from designer.report import captions
 from designer.report.parts import Picture
 from designer.report.pictures import Pictures
+from designer.selection.result import SelectionResult
 
 if TYPE_CHECKING:
     from designer.report.figures.maps import WorkspaceMaps
+
+_LITTLE = 0.02
+"""A share by which sag may change a tension without a figure of that being worth its place."""
 
 
 def draw(analysis: Analysis) -> Pictures:
@@ -25,9 +30,8 @@ def draw(analysis: Analysis) -> Pictures:
         maps = workspace_maps(analysis)
     workspace = tuple(_workspace(maps)) if maps is not None else ()
     robot = _robot(analysis)
-    # The scene to turn is large, so only the section on the workspace carries it.
     return Pictures(
-        robot=replace(workspace[0], scene="") if workspace else robot,
+        robot=_cover(maps) if maps is not None else robot,
         loop_chart=_loop(analysis),
         pose_scene=robot,
         verdicts=_verdicts(analysis),
@@ -47,30 +51,44 @@ def _robot(analysis: Analysis) -> Picture | None:
         return None
     from designer.report.figures.robot_scene import robot_scene
 
-    caption = "The robot in the configured pose"
-    caption += (
-        ", its cables in their true shape." if analysis.pose.sizing.statics.is_solved else "."
-    )
+    caption = captions.robot(analysis.pose)
     return _scene(caption, "The robot with its cables, in space", robot_scene(analysis.pose))
 
 
+def _cover(maps: WorkspaceMaps) -> Picture:
+    from designer.report.figures.cover_scene import cover_scene
+
+    alternative = "The region in space, coloured by diameter"
+    return _scene(captions.cover(maps), alternative, cover_scene(maps))
+
+
 def _loop(analysis: Analysis) -> Picture | None:
-    if analysis.pose is None:
+    if analysis.pose is None or _is_idle(analysis.pose):
         return None
     from designer.report.figures.charts_loop import loop_chart
 
-    caption = "Largest tension and diameter over the turns of the loop, and the optimum."
+    caption = captions.loop(analysis.pose)
     return chart(caption, "Two curves that rise from the massless start", loop_chart(analysis.pose))
+
+
+def _is_idle(pose: PoseAnalysis) -> bool:
+    """Whether the loop settles close to where it starts, so that its curves would be flat."""
+    if not (pose.sizing.statics.is_solved and pose.loop.has_converged):
+        return False
+    start, end = pose.massless.largest_tension_N, pose.sizing.statics.largest_tension_N
+    return bool(abs(end - start) < _LITTLE * start)
 
 
 def _verdicts(analysis: Analysis) -> Picture | None:
     if analysis.workspace is None:
         return None
-    from designer.report.figures.charts_verdicts import verdict_chart
+    from designer.report.figures.charts_verdicts import parts, verdict_chart
 
-    caption = "All samples by verdict."
+    census = analysis.workspace.census
+    if len(parts(census)) < 2:
+        return None  # one colour from end to end says no more than the table
     return chart(
-        caption, "A bar with a part for each verdict", verdict_chart(analysis.workspace.census)
+        "All samples by verdict.", "A bar with a part for each verdict", verdict_chart(census)
     )
 
 
@@ -79,51 +97,46 @@ def _workspace(maps: WorkspaceMaps) -> Iterator[Picture]:
     from designer.report.figures.charts_served import served_chart
     from designer.report.figures.charts_slice import slice_chart, slice_panels
     from designer.report.figures.interactive import workspace_scene_html
+    from designer.report.figures.quantity import DIAMETER, RATIO, tension_of
     from designer.report.figures.workspace_scene import workspace_scene
 
-    caption = "Needed diameter over the region"
-    caption += ", a part of it cut away" if maps.has_area and not maps.is_upright else ""
-    shown = "; the cables hang at the marked pose" if maps.focus.statics is not None else ""
     yield _scene(
-        f"{caption}{shown}.",
+        captions.scene(maps),
         "The region in space, coloured by diameter",
         workspace_scene(maps),
         workspace_scene_html(maps),
     )
-    place = _place_of(maps)
     view = "plane" if maps.is_upright else "plan"
-    yield chart(f"Needed diameter {place}.", f"A map in {view}", slice_chart(maps))
+    tension = tension_of(maps.section)
+    sag_matters = captions.largest_change(maps) > _LITTLE
+    if sag_matters:
+        yield chart(captions.section(maps), f"A map in {view}", slice_chart(maps))
+    else:
+        drawn = slice_panels(maps, (DIAMETER, tension))
+        yield chart(captions.both(maps), f"Two maps in {view}", drawn)
     edge = edge_chart(maps)
     if edge is not None:
-        caption = (
-            "Needed diameter from the centre of the region outward, through the marked pose to the "
-            "edge of the exit points' outline."
-        )
-        yield chart(caption, "A curve that climbs toward the edge", edge)
-    caption = f"Largest tension, and its ratio to the tension without sag, {place}."
-    yield chart(caption, f"Two maps in {view}", slice_panels(maps))
-    caption = "Share of the poses that a cable of the configured family serves."
-    yield chart(caption, "Two staircases, with sag and without", served_chart(maps.served))
-
-
-def _place_of(maps: WorkspaceMaps) -> str:
-    if maps.is_upright:
-        return "over the region, seen from the side" if maps.has_area else "at each point"
-    return "at the top of the region" if maps.has_area else "at each point, seen from above"
+        yield chart(captions.edge(maps), "A curve that climbs toward the edge", edge)
+    if sag_matters:
+        drawn = slice_panels(maps, (tension, RATIO))
+        yield chart(captions.panels(maps), f"Two maps in {view}", drawn)
+    served = served_chart(maps.served)
+    yield chart(captions.served(maps.served), "Two staircases, with sag and without", served)
 
 
 def _candidates(analysis: Analysis) -> Picture | None:
-    if analysis.selection is None:
+    if analysis.selection is None or not _has_need(analysis.selection):
         return None
     from designer.report.figures.charts_candidates import candidates_chart
 
-    caption = (
-        "Each grade: the sizes that are sold, the diameter that the workspace needs, the best size "
-        "that holds."
-    )
-    if analysis.selection.alternatives:
-        caption += " A star marks grades that the study does not allow."
+    caption = captions.candidates(analysis.selection)
     return chart(caption, "A row for each grade", candidates_chart(analysis.selection))
+
+
+def _has_need(selection: SelectionResult) -> bool:
+    """Whether a grade has a diameter that would do; else all rows would say the same."""
+    outcomes = (*selection.outcomes, *selection.alternatives)
+    return any(math.isfinite(outcome.continuous_diameter_m) for outcome in outcomes)
 
 
 def _pareto(analysis: Analysis) -> Picture | None:
@@ -134,12 +147,7 @@ def _pareto(analysis: Analysis) -> Picture | None:
     svg = pareto_chart(analysis.selection)
     if svg is None:
         return None
-    caption = (
-        "Every size that holds, by what sizes are compared by; colour and shape tell what it is "
-        "made of. A size of which a figure is not known is not in that panel."
-    )
-    if len(analysis.selection.front) > 1:
-        caption += " Numbers are the rows of the table below."
+    caption = captions.pareto(analysis.selection)
     return chart(caption, "Clouds of points with a lower left edge", svg)
 
 
@@ -149,7 +157,7 @@ def _usable_chart(analysis: Analysis) -> Picture | None:
         return None
     from designer.report.figures.charts_usable import usable_chart
 
-    caption = f"How much of the workspace each size of {selection.usable.grade.id} serves."
+    caption = captions.usable(selection.usable, selection.chosen)
     return chart(
         caption, "A curve that climbs to all", usable_chart(selection.usable, selection.chosen)
     )
@@ -164,10 +172,7 @@ def _usable_scene(analysis: Analysis, maps: WorkspaceMaps | None) -> Picture | N
     png = usable_scene(maps, selection.usable)
     if png is None:
         return None
-    caption = (
-        f"Where sizes of {selection.usable.grade.id} may go, a part of the region cut away: each "
-        "serves its own layer and those of all thinner ones."
-    )
+    caption = captions.layers(selection.usable)
     return _scene(caption, "The region in nested layers", png)
 
 
@@ -188,20 +193,7 @@ def _stiffness(analysis: Analysis) -> Picture | None:
     svg = stiffness_map(analysis)
     if svg is None:
         return None
-    caption = (
-        "Displacement of the platform under a force in its worst direction, at the middle height "
-        f"of the region{_first_orientation(analysis)}."
-    )
-    return chart(caption, "A map in plan", svg)
-
-
-def _first_orientation(analysis: Analysis) -> str:
-    workspace = analysis.study.workspace
-    if workspace is None or workspace.orientations.is_level:
-        return ""
-    if workspace.orientations.range_rad is not None:
-        return ", in the middle of the range of orientations"
-    return ", in the first of the orientations" if workspace.orientations.count > 1 else ""
+    return chart(captions.stiffness(analysis), "A map in plan", svg)
 
 
 def _clearance(analysis: Analysis) -> Picture | None:
@@ -210,11 +202,7 @@ def _clearance(analysis: Analysis) -> Picture | None:
     svg = clearance_map(analysis)
     if svg is None:
         return None
-    caption = (
-        "Smallest distance between two cables, or between a cable and the platform, at the middle "
-        f"height of the region{_first_orientation(analysis)}."
-    )
-    return chart(caption, "A map in plan", svg)
+    return chart(captions.clearance(analysis), "A map in plan", svg)
 
 
 def _scene(caption: str, alternative: str, png: bytes, page: str = "") -> Picture:

@@ -7,6 +7,7 @@ the report breaks inside a figure.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -168,6 +169,22 @@ def power_of_ten(value: float, unit: str = "") -> str:
 def plural(amount: int, noun: str) -> str:
     """Return a count with its noun, such as ``1 grade`` or ``19 grades``."""
     return f"{count(amount)}{_BEFORE_UNIT}{noun}{'' if amount == 1 else 's'}"
+
+
+def printed(text: str) -> str:
+    """Return a plain text as it is printed: ``d²`` for ``d^2``, and true minus signs."""
+    raised = re.sub(r"\^(\d)", lambda found: found[1].translate(_SUPERSCRIPTS), text)
+    return re.sub(r"(?<=[( ])-(?=\d)", "−", raised)
+
+
+def shorter(text: str) -> str:
+    """Return a text in which no number has decimals that only a change of units has brought."""
+    return re.sub(r"\d+\.\d{6,}(?!\d*e)", lambda found: f"{float(found[0]):.6g}", text)
+
+
+def sentence(text: str) -> str:
+    """Return a note of a table as it begins a sentence."""
+    return printed(f"{text[0].upper()}{text[1:]}")
 
 
 def listing(words: Iterable[str], last: str = "and") -> str:

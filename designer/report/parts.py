@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+MOST_ROWS = 8
+"""As many rows of a ranking as a reader takes in; files beside the report have the rest."""
+
 Tone = Literal["", "good", "bad", "doubt", "muted"]
 """How a statement or a row is coloured."""
 

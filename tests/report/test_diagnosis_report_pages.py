@@ -141,7 +141,7 @@ def test_nothing_to_find_says_so(
 
 def test_what_is_unexplained_names_its_carrier(pages: Callable[[str], str]) -> None:
     text = visible(pages("drift"))
-    assert "Unexplained. The residual goes with time_s" in text
+    assert "Unexplained. The residual goes with time," in text
     assert "An empirical correction: no physics, not used in the design" in text
     assert "What is unexplained" in text
 
@@ -181,8 +181,7 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
     assert "(9.00, 5.00, 2.00) m 41.5" in text
     assert "radius_m = 9 m is outside" in text
     assert (
-        "creep withdrawn. It fits as a constant, but would have to change with time_s by 40 %"
-        in text
+        "creep withdrawn. It fits as a constant, but would have to change with time by 40 %" in text
     )
 
 

@@ -46,6 +46,23 @@ def test_label_drops_the_unit() -> None:
     assert words.label("scale") == "scale"
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "axis"),
+    [
+        ("z_m", "z", "z [m]"),
+        ("time_s", "time", "time [s]"),
+        ("tension_12_N", "tension of cable 12", "tension of cable 12 [N]"),
+        ("direction_3", "direction of cable 3", "direction of cable 3"),
+        ("load_on_hook_N", "load_on_hook_N", "load_on_hook_N"),
+    ],
+)
+def test_covariates_of_every_table_have_words_and_others_their_name(
+    name: str, text: str, axis: str
+) -> None:
+    assert words.covariate(name) == text
+    assert words.covariate_axis(name) == axis
+
+
 @pytest.mark.parametrize(("scale", "word"), [(0.9, "softer"), (1.1, "stiffer")])
 def test_plain_words_tell_the_direction(scale: float, word: str) -> None:
     parameter = Parameter("scale", "", 1.0, 0.1, (0.1, 3.0), (0.5, 1.6))

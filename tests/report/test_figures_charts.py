@@ -23,7 +23,7 @@ from designer.report.figures.charts_served import served_chart
 from designer.report.figures.charts_slice import slice_chart, slice_panels
 from designer.report.figures.charts_usable import usable_chart
 from designer.report.figures.charts_verdicts import parts, spread, verdict_chart
-from designer.report.figures.colours import steps_for
+from designer.report.figures.colours import steps_for, steps_over_decades
 from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.quantity import TENSION
 from designer.selection.result import SelectionResult
@@ -93,7 +93,7 @@ def test_charts_of_one_page_share_no_id() -> None:
 class TestSlice:
     def test_served(self) -> None:
         found = texts(slice_chart(maps_of("served")))
-        assert {"worst pose, 51.23 mm", "A1", "A2", "A3", "x [m]", "y [m]"} <= found
+        assert {"worst pose, 51.2 mm", "A1", "A2", "A3", "x [m]", "y [m]"} <= found
         assert {"needed diameter [mm]", "top of the region, z = −40 m"} <= found
         assert "beyond: a cable hangs below the platform" in found
         assert "no finite cable" not in found
@@ -106,7 +106,7 @@ class TestSlice:
     def test_left_out(self) -> None:
         found = texts(slice_chart(maps_of("exclude")))
         assert "left out: a cable hangs below the platform" in found
-        assert "worst pose, 40.41 mm" in found
+        assert "worst pose, 40.4 mm" in found
 
     def test_nothing_to_colour(self) -> None:
         assert any("no pose can be held" in t for t in texts(slice_chart(maps_of("unheld"))))
@@ -114,7 +114,7 @@ class TestSlice:
 
     def test_points(self) -> None:
         found = texts(slice_chart(maps_of("points")))
-        assert {"all poses, seen from above", "worst pose, 46.56 mm"} <= found
+        assert {"all poses, seen from above", "worst pose, 46.6 mm"} <= found
 
     def test_panels(self) -> None:
         found = texts(slice_panels(maps_of("served")))
@@ -129,9 +129,9 @@ class TestEdge:
         svg = edge_chart(maps_of("served"))
         assert svg is not None
         found = texts(svg)
-        assert {"with sag", "massless", "worst pose, 51.23 mm"} <= found
+        assert {"with sag", "massless", "worst pose, 51.2 mm"} <= found
         assert "no cable holds within 4.8 m of the edge" in found
-        assert any(text.startswith("region ends, 10.3") for text in found)
+        assert any(text.startswith("region ends, 10.4") for text in found)
 
     def test_left_out(self) -> None:
         svg = edge_chart(maps_of("exclude"))
@@ -142,7 +142,7 @@ class TestEdge:
 class TestServed:
     def test_served(self) -> None:
         found = texts(served_chart(maps_of("served").served))
-        assert {"serves all: 51.23 mm", "massless: 29.30 mm", "with sag", "massless"} <= found
+        assert {"serves all: 51.2 mm", "massless: 29.3 mm", "with sag", "massless"} <= found
 
     def test_partly(self) -> None:
         served = maps_of("partly").served
@@ -297,7 +297,9 @@ class TestPareto:
         svg = pareto_chart(selection)
         assert svg is not None
         check(svg)
-        assert {"drum diameter [m]", "largest tension [N]", "mass of all cables [kg]"} <= texts(svg)
+        assert {"drum diameter [m]", "largest tension [kN]", "mass of all cables [kg]"} <= texts(
+            svg
+        )
 
     def test_one_objective_has_nothing_to_be_drawn_over(self, selection: SelectionResult) -> None:
         assert pareto_chart(replace(selection, objectives=("mass",))) is None
@@ -357,6 +359,28 @@ class TestSteps:
         steps = steps_for(np.array([29.5, np.nan]))
         assert steps is not None
         assert steps.levels[0] < 29.5 < steps.levels[-1]
+
+
+class TestStepsOverDecades:
+    def test_each_decade_has_its_steps(self) -> None:
+        steps = steps_over_decades(np.geomspace(22.0, 1600.0, 500))
+        assert steps is not None
+        assert steps.levels == pytest.approx([20, 50, 100, 200, 500, 1000, 2000])
+        assert steps.extend == "neither"
+
+    def test_what_lies_above_the_bulk_is_above_the_scale(self) -> None:
+        steps = steps_over_decades(np.append(np.geomspace(2.0, 90.0, 500), [1e5]))
+        assert steps is not None
+        assert steps.levels[-1] == pytest.approx(100.0)
+        assert steps.extend == "max"
+
+    @pytest.mark.parametrize("low", [-1.0, 0.0, 30.0])
+    def test_else_the_steps_are_even(self, low: float) -> None:
+        values = np.linspace(low, 100.0, 200)
+        found, even = steps_over_decades(values), steps_for(values)
+        assert found is not None
+        assert even is not None
+        assert found.levels == pytest.approx(even.levels)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from designer.report.figures.field import (
 )
 from designer.report.figures.maps import as_built, workspace_maps
 from designer.report.figures.names import names_of
-from designer.report.figures.quantity import DIAMETER, RATIO, TENSION
+from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, tension_of
 from designer.robot import Poses
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
@@ -282,9 +282,16 @@ class TestMaps:
 
     def test_text_of_the_worst_pose(self) -> None:
         focus = maps_of("served").focus
-        assert focus.text(DIAMETER) == "worst pose, 51.23 mm"
+        assert focus.text(DIAMETER) == "worst pose, 51.2 mm"
         assert focus.text(TENSION) == "worst pose, 371.0 kN"
         assert focus.text(RATIO) == "worst pose, 3.06"
+
+    def test_forces_below_a_kilonewton_are_shown_in_newtons(self) -> None:
+        field = maps_of("served").section
+        assert tension_of(field) == TENSION
+        light = replace(field, tension_N=1e-4 * field.tension_N)
+        assert tension_of(light).label == "largest tension [N]"
+        assert tension_of(light).of(light) == pytest.approx(0.1 * TENSION.of(field), nan_ok=True)
 
     def test_section_is_the_top(self) -> None:
         section = maps_of("served").section

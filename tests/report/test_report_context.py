@@ -14,9 +14,10 @@ from report_cases import CASES, DEFAULTS, FAST
 from designer.analysis import Analysis
 from designer.report import sections
 from designer.report.context import ReportContext, build_context
-from designer.report.parts import Picture, Table
+from designer.report.parts import MOST_ROWS, Picture, Table
 from designer.report.pictures import Pictures
 from designer.report.render import render_html
+from designer.report.sections.candidates import best_table, thin_table
 from designer.report.sections.pose import turns_table
 from designer.sizing.loop import Iterate, LoopSizing
 
@@ -143,9 +144,9 @@ def test_pose_section_shows_the_papers_loop(contexts: dict[str, ReportContext]) 
     assert pose.turns is not None
     first = [row.cells for row in pose.turns.groups[0].rows[:3]]
     assert first == [
-        ("0", "86.386", "24.719"),
-        ("1", "123.082", "29.506"),
-        ("2", "138.686", "31.321"),
+        ("0", "86.39", "24.72"),
+        ("1", "123.08", "29.51"),
+        ("2", "138.69", "31.32"),
     ]
 
 
@@ -155,7 +156,7 @@ def test_a_loop_that_does_not_settle_is_cut_short() -> None:
     turns = [row.cells[0] for row in table.groups[0].rows]
     assert turns[:2] == ["0", "1"]
     assert turns[-4:] == ["…", "398", "399", "400"]
-    assert len(turns) == 17
+    assert len(turns) == 9
 
 
 def test_candidates_begin_with_the_chosen_one(contexts: dict[str, ReportContext]) -> None:
@@ -253,13 +254,6 @@ def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> Non
     ]
 
 
-def test_grades_that_are_not_allowed_are_named(contexts: dict[str, ReportContext]) -> None:
-    left_out = contexts["too_thin"].left_out
-    assert left_out is not None
-    assert "gost-6x19s-iwrc-1960" in left_out.not_allowed
-    assert "unirope-7x19-galvanised" not in left_out.not_allowed
-
-
 def test_first_page_says_how_much_is_left_out(contexts: dict[str, ReportContext]) -> None:
     assert "of the volume is left out, as configured" in contexts["exclude"].first_page.verdict.text
     assert "left out" not in contexts["positive"].first_page.verdict.text
@@ -267,3 +261,19 @@ def test_first_page_says_how_much_is_left_out(contexts: dict[str, ReportContext]
     assert "Poses left out" in titles["exclude"]
     assert "Cables below the platform" in titles["positive"]
     assert {"Poses left out", "Cables below the platform"}.isdisjoint(titles["yard"])
+
+
+def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
+    analyses: dict[str, Analysis],
+) -> None:
+    selection = analyses["positive"].selection
+    assert selection is not None
+    outcome = next(o for o in selection.outcomes if o.best is not None)
+    many = dataclasses.replace(selection, outcomes=(outcome,) * (MOST_ROWS + 3))
+    table = best_table(many)
+    assert len(table.groups[0].rows) == MOST_ROWS
+    assert "3\u00a0more grades are in candidates.csv." in table.caption
+    thin = thin_table([dataclasses.replace(outcome, outcome="too_thin", best=None)] * 9)
+    assert thin is not None
+    assert len(thin.groups[0].rows) == MOST_ROWS
+    assert "1\u00a0more grade is in candidates.csv." in thin.caption

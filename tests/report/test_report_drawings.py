@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 
 import pypdf
@@ -13,6 +14,7 @@ from designer.report.context import build_context
 from designer.report.drawings import draw
 from designer.report.pictures import Pictures
 from designer.report.render import render_html, render_pdf
+from designer.report.sections.candidates import thin_table
 
 
 @pytest.fixture(scope="module")
@@ -69,3 +71,12 @@ def test_ids_in_the_page_are_unique(analyses: dict[str, Analysis], pictures: Pic
     html = render_html(build_context(analyses["positive"], pictures), paged=True)
     ids = re.findall(r'\bid="([^"]+)"', html)
     assert len(ids) == len(set(ids))
+
+
+def test_grades_that_all_cannot_hold_have_no_chart(analyses: dict[str, Analysis]) -> None:
+    selection = analyses["no_finite_cable"].selection
+    assert selection is not None
+    needs = [o.continuous_diameter_m for o in selection.outcomes]
+    assert all(math.isnan(need) for need in needs)
+    assert draw(analyses["no_finite_cable"]).candidates is None
+    assert thin_table(selection.outcomes) is not None

@@ -97,3 +97,22 @@ def test_column_keeps_the_digits_of_its_smallest_number() -> None:
 def test_number_is_close_to_the_value(value: float, digits: int) -> None:
     shown = float(plain(fmt.number(value, digits)).replace(" ", ""))
     assert shown == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits))
+
+
+def test_notes_of_tables_are_set_as_print() -> None:
+    assert fmt.sentence("mass over d^2 is 9 % above") == "Mass over d² is 9 % above"
+    place = fmt.printed("unirope-7x19 fails at (243.5, -0.3, -40) m")
+    assert place == "unirope-7x19 fails at (243.5, −0.3, −40) m"
+
+
+@pytest.mark.parametrize(
+    ("text", "short"),
+    [
+        ("[0, 0, 0.0872664626] rad", "[0, 0, 0.0872665] rad"),
+        ("[-7.11966, 5.47261, 5.41063] m", "[-7.11966, 5.47261, 5.41063] m"),
+        ("1.23456789e10 Pa", "1.23456789e10 Pa"),
+        ("anchors", "anchors"),
+    ],
+)
+def test_shorter_cuts_what_a_change_of_units_brought(text: str, short: str) -> None:
+    assert fmt.shorter(text) == short

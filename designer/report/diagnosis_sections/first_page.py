@@ -78,10 +78,10 @@ def _left(diagnosis: Diagnosis) -> str:
     if not diagnosis.is_unexplained:
         return ""
     carrier = diagnosis.structure_after.carriers[0]
+    what = "What is left" if diagnosis.findings else "The residual"
     return (
-        f"{'What is left' if diagnosis.findings else 'The residual'} goes with {carrier.name}, "
-        f"which accounts for {fmt.percent(carrier.fraction_of_variance, 2)} of the variance where "
-        "it shows most."
+        f"{what} goes with {words.covariate(carrier.name)}, which accounts for "
+        f"{fmt.percent(carrier.fraction_of_variance, 2)} of the variance where it shows most."
     )
 
 

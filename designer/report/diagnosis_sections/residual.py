@@ -9,9 +9,7 @@ from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import SIGNIFICANCE, Carrier
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
-from designer.report.parts import Column, Picture, Row, Table
-
-_MOST = 10
+from designer.report.parts import MOST_ROWS, Column, Picture, Row, Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ def _structure(diagnosis: Diagnosis) -> Table | None:
     columns = [Column("Covariate", is_number=False)]
     for stage in stages:
         columns += [Column(f"{title} {stage}".strip()) for title in ("Share", "Chance")]
-    shown = names[:_MOST]
+    shown = names[:MOST_ROWS]
     rest = f" The {len(shown)} strongest of {len(names)}." if len(names) > len(shown) else ""
     return Table.of(
         "What the residual goes with: share of the variance that a parabola in each covariate "
@@ -62,7 +60,7 @@ def _structure(diagnosis: Diagnosis) -> Table | None:
 
 
 def _row(name: str, stages: Sequence[Mapping[str, Carrier]]) -> Row:
-    cells = [name]
+    cells = [words.covariate_axis(name)]
     for carriers in stages:
         carrier = carriers.get(name)
         cells.append(fmt.percent(carrier.fraction_of_variance, 2) if carrier else fmt.MISSING)

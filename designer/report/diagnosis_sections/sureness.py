@@ -51,9 +51,10 @@ def withdrawal(gone: Withdrawn) -> str:
     size = f"{fmt.percent(gone.variation, 2)} of itself"
     if gone.variation > _MUCH:
         size = f"{fmt.number(gone.variation, 2)} times itself"
+    what = words.covariate(gone.covariate)
     return (
-        f"It fits as a constant, but would have to change with {gone.covariate} by {size} for "
-        f"each standard deviation of {gone.covariate}."
+        f"It fits as a constant, but would have to change with {what} by {size} for each standard "
+        f"deviation of {what}."
     )
 
 
@@ -93,15 +94,13 @@ def _left(diagnosis: Diagnosis) -> Statement:
     if not structure.carriers:
         return Statement("Not tested", "There is nothing that the residual could go with.", "doubt")
     strongest = structure.carriers[0]
+    what, chance = words.covariate(strongest.name), words.chance(strongest.chance)
     if structure.is_present:
-        text = (
-            f"What is left goes with {strongest.name}; the chance of that by accident is "
-            f"{words.chance(strongest.chance)}."
-        )
+        text = f"What is left goes with {what}; the chance of that by accident is {chance}."
         return Statement("Structure is left", text, "bad")
     text = (
-        f"The strongest of {fmt.plural(len(structure.carriers), 'covariate')} is {strongest.name}, "
-        f"and noise alone would look as strong with a chance of {words.chance(strongest.chance)}."
+        f"The strongest of {fmt.plural(len(structure.carriers), 'covariate')} is {what}, and noise "
+        f"alone would look as strong with a chance of {chance}."
     )
     return Statement("No structure is left", text, "good")
 

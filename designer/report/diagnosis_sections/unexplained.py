@@ -40,14 +40,14 @@ def unexplained_section(diagnosis: Diagnosis, picture: Picture | None) -> Unexpl
     carriers = [c for c in diagnosis.structure_after.carriers if c.chance < SIGNIFICANCE]
     return UnexplainedSection(
         statement=Statement(
-            f"Goes with {carriers[0].name}",
+            f"Goes with {words.covariate(carriers[0].name)}",
             "No effect that the program knows accounts for it. Covariates that vary together share "
             "the blame: the cause need not be the first of them.",
             "bad",
         ),
         facts=tuple(
             Fact(
-                c.name,
+                words.capital(words.covariate(c.name)),
                 f"{fmt.percent(c.fraction_of_variance, 2)} of the variance",
                 f"chance {words.chance(c.chance)}",
             )
@@ -62,8 +62,9 @@ def _correction(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     correction = diagnosis.correction
     if correction is None:
         return ()
+    what = words.covariate(correction.covariate)
     return (
-        Fact("Correction", f"a parabola in {correction.covariate} for each reading"),
+        Fact("Correction", f"a parabola in {what} for each reading"),
         Fact("Held-out error without it", _in_noise(correction.heldout_before)),
         Fact(
             "With it",

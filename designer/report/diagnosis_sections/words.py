@@ -12,6 +12,8 @@ from designer.report import format as fmt
 
 NO_BREAK = "\u00a0"
 _UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
+_PLACE_OR_TIME = re.compile(r"(x|y|z|time)_(m|s)")
+_OF_A_CABLE = re.compile(r"(length|tension|direction)_(\d+)(?:_(m|N))?")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NEGLIGIBLE = 1e-12
 _DIRECTIONS = {
@@ -54,6 +56,28 @@ def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
 def label(name: str) -> str:
     """Return the name of a parameter without its unit: ``offset_1_m`` is ``offset 1``."""
     return _UNIT_SUFFIX.sub("", name).replace("_", " ")
+
+
+def covariate(name: str) -> str:
+    """Return a covariate in words: ``tension_3_N`` is ``tension of cable 3``.
+
+    A column of the user's own keeps its name.
+    """
+    return _covariate(name)[0]
+
+
+def covariate_axis(name: str) -> str:
+    """Return a covariate with its unit, where it is one of those that every table has."""
+    text, unit = _covariate(name)
+    return f"{text} [{unit}]" if unit else text
+
+
+def _covariate(name: str) -> tuple[str, str]:
+    if found := _PLACE_OR_TIME.fullmatch(name):
+        return found[1], found[2]
+    if found := _OF_A_CABLE.fullmatch(name):
+        return f"{found[1]} of cable {found[2]}", found[3] or ""
+    return name, ""
 
 
 def estimate(item: Estimate, unit: str) -> str:

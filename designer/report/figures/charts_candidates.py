@@ -45,7 +45,9 @@ def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
             if selection.chosen is not None and outcome.best is selection.chosen:
                 axes.axhspan(row - 0.5, row + 0.5, color=palette.SAG, alpha=0.12, linewidth=0)
         _names(axes, shown, selection)
-        _legend(axes, shown, left_out)
+        _legend(axes, shown)
+        if left_out > 0:
+            axes.set_xlabel(f"diameter [mm]; {left_out} more grades are not shown")
         return canvas.svg(figure, "candidates", "Sizes of each grade and what it would need")
 
 
@@ -66,11 +68,13 @@ def _right_end(outcomes: Sequence[GradeOutcome]) -> float:
     """Right end of the axis: thick sizes that nobody needs may run out of the chart [mm]."""
     needs = [o.continuous_diameter_m for o in outcomes if np.isfinite(o.continuous_diameter_m)]
     tried = [c.size.diameter_m for o in outcomes for c in marked(o)]
+    best = [o.best.size.diameter_m for o in outcomes if o.best is not None]
     sold = [o.grade.thickest.diameter_m for o in outcomes]
     if not needs:
         return 1.05e3 * max(sold, default=1e-3)
     typical = float(np.median(needs))
-    return 1e3 * min(1.05 * max(needs + tried + sold), max(2.2 * typical, 1.1 * max(needs)))
+    wanted = max(2.2 * typical, 1.1 * max(needs), 1.1 * max(best, default=0.0))
+    return 1e3 * min(1.05 * max(needs + tried + sold), wanted)
 
 
 def _row(axes: Axes, row: int, outcome: GradeOutcome, right: float) -> None:
@@ -173,7 +177,7 @@ def _one_of_each_class(shown: Sequence[GradeOutcome]) -> list[tuple[str, GradeOu
     return [(kind, found[kind]) for kind in CLASSES if kind in found]
 
 
-def _legend(axes: Axes, shown: Sequence[GradeOutcome], left_out: int) -> None:
+def _legend(axes: Axes, shown: Sequence[GradeOutcome]) -> None:
     from matplotlib.lines import Line2D
 
     mark: dict[str, Any] = {
@@ -200,12 +204,4 @@ def _legend(axes: Axes, shown: Sequence[GradeOutcome], left_out: int) -> None:
         Line2D([], [], color=palette.INK, label="best size that holds", **mark),
         Line2D([], [], color="white", label="next thinner, does not hold", **mark),
     ]
-    more = f"{left_out} more grades are not shown" if left_out > 0 else None
-    axes.figure.legend(
-        handles=entries,
-        loc="outside upper center",
-        ncols=4,
-        frameon=False,
-        title=more,
-        title_fontsize=palette.FONT_POINTS - 0.5,
-    )
+    axes.figure.legend(handles=entries, loc="outside upper center", ncols=4, frameon=False)

@@ -33,7 +33,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     if profile is None:
         return None
     with canvas.drawing():
-        figure = canvas.sheet(78.0)
+        figure = canvas.sheet(70.0)
         axes = figure.subplots()
         start, top = _window(profile), _top(profile, maps.focus)
         axes.set(xlim=(start, 0.0), ylim=(0.0, top))
@@ -138,7 +138,7 @@ def _region_end(axes: Axes, profile: EdgeProfile) -> None:
         return
     axes.axvline(end, color=palette.INK, linewidth=0.8, linestyle=(0, (5, 2)))
     side = 3.0 if end > 0.9 * axes.get_xlim()[0] else -3.0
-    _upright(axes, end, f"region ends, {canvas.significant(end, 4)} m", palette.INK, side)
+    _upright(axes, end, f"region ends, {canvas.significant(end, 3)} m", palette.INK, side)
 
 
 def _is_visible(axes: Axes, distance_m: float) -> bool:
@@ -162,7 +162,7 @@ def _upright(axes: Axes, at: float, text: str, colour: str, offset: float) -> No
         fontsize=palette.FONT_POINTS - 0.5,
         zorder=1.9,  # below the curves
     )
-    label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85})
+    label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.95})
 
 
 def _mark_focus(axes: Axes, profile: EdgeProfile, focus: Focus) -> None:
@@ -182,7 +182,7 @@ def _mark_focus(axes: Axes, profile: EdgeProfile, focus: Focus) -> None:
     )
     is_left = at > 0.6 * axes.get_xlim()[0]
     label = axes.annotate(
-        f"{focus.label}, {canvas.significant(value)} mm",
+        f"{focus.label}, {canvas.significant(value, 3)} mm",
         (at, value),
         (8 if is_left else -16, 6),
         textcoords="offset points",

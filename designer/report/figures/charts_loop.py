@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _MOST_MARKERS = 40
 _DIVERGES = 10.0
+_KILONEWTON = 1e3
 
 
 def loop_chart(pose: PoseAnalysis) -> str:
@@ -28,16 +29,18 @@ def loop_chart(pose: PoseAnalysis) -> str:
     """
     turns = pose.loop.iterates
     shown = _shown(pose)
-    tension = np.array([turn.max_tension_N for turn in shown]) / 1e3
+    largest_N = float(pose.sizing.statics.largest_tension_N)
+    unit, scale = ("N", 1.0) if largest_N < _KILONEWTON else ("kN", 1e-3)
+    tension = np.array([turn.max_tension_N for turn in shown]) * scale
     diameter = np.array([turn.diameter_m for turn in shown]) * 1e3
     title = "Largest tension and diameter over the turns of the loop"
     with canvas.drawing():
         figure = canvas.sheet(62.0 if turns else 14.0)
         if turns:
             left, right = figure.subplots(1, 2)
-            left.set_title("largest tension [kN]", loc="left")
+            left.set_title(f"largest tension [{unit}]", loc="left")
             right.set_title("diameter [mm]", loc="left")
-            _panel(left, tension, float(pose.sizing.statics.largest_tension_N) / 1e3, "kN")
+            _panel(left, tension, scale * largest_N, unit)
             _panel(right, diameter, float(pose.sizing.diameter_m) * 1e3, "mm")
             if not pose.loop.has_converged:
                 _say_unsettled(left, len(turns) - 1)

@@ -19,7 +19,7 @@ _TITLE = "Share of the workspace that a cable serves, over its diameter"
 def served_chart(served: Served) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     with canvas.drawing():
-        figure = canvas.sheet(70.0)
+        figure = canvas.sheet(64.0)
         axes = figure.subplots()
         axes.set(ylim=(0.0, 104.0), xlim=_range(served))
         _curve(axes, served.massless_diameter_m, served.massless_share, palette.MASSLESS)
@@ -86,7 +86,7 @@ def _needed(axes: Axes, served: Served) -> None:
         value = 1e3 * needed_m
         axes.axvline(value, color=colour, linewidth=0.9, linestyle=(0, (5, 2)))
         axes.annotate(
-            f"{what}: {canvas.significant(value)} mm",
+            f"{what}: {canvas.significant(value, 3)} mm",
             (value, 3.0),
             (-3 if side == "right" else 3, 0),
             rotation=90,

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Any
 from designer.report.figures import canvas, palette
 from designer.report.figures.colours import Steps, steps_for
 from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.plan_map import draw_plan, keys
+from designer.report.figures.plan_map import draw_plan, height_over_width, keys
 from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, Quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_WIDE_MM, _BESIDE_MM, _TALL_MM = 120.0, 150.0, 70.0
+"""Width of one map alone, of several together, and the largest height of a map."""
 
 
 def slice_chart(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
@@ -27,7 +30,8 @@ def slice_chart(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
         What the colours mean.
     """
     with canvas.drawing():
-        figure = canvas.sheet(112.0, keeps_aspect=True)
+        height_mm = 24.0 + _legend_mm(maps) + min(_WIDE_MM * _proportions(maps), _TALL_MM)
+        figure = canvas.sheet(height_mm, keeps_aspect=True)
         axes = figure.subplots()
         _panel(figure, axes, maps, quantity, "right", 0.045)
         _legend(figure, maps)
@@ -37,7 +41,9 @@ def slice_chart(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
 def slice_panels(maps: WorkspaceMaps, quantities: Sequence[Quantity] = (TENSION, RATIO)) -> str:
     """Return small maps of the same section side by side, one for each quantity, as SVG."""
     with canvas.drawing():
-        figure = canvas.sheet(108.0 if len(quantities) == 2 else 84.0, keeps_aspect=True)
+        panel_mm = _BESIDE_MM / len(quantities)
+        height_mm = 38.0 + _legend_mm(maps) + min(panel_mm * _proportions(maps), _TALL_MM)
+        figure = canvas.sheet(height_mm, keeps_aspect=True)
         row = figure.subplots(1, len(quantities), squeeze=False)[0]
         for axes, quantity in zip(row, quantities, strict=True):
             _panel(figure, axes, maps, quantity, "bottom", 0.09)
@@ -47,6 +53,11 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[Quantity] = (TENSION,
         _legend(figure, maps)
         titles = ", ".join(quantity.title for quantity in quantities)
         return canvas.svg(figure, "slice-panels", f"{_place(maps)}: {titles}")
+
+
+def _proportions(maps: WorkspaceMaps) -> float:
+    corners = maps.flat_m(maps.study.robot.exit_points_m)
+    return height_over_width(maps.flat_m(maps.section.position_m), corners)
 
 
 def _panel(
@@ -85,6 +96,11 @@ def _legend(figure: Figure, maps: WorkspaceMaps) -> None:
     entries = keys(maps.section)
     if entries:
         figure.legend(handles=entries, loc="outside lower center", ncols=3, frameon=False)
+
+
+def _legend_mm(maps: WorkspaceMaps) -> float:
+    """Height that the legend takes."""
+    return 6.0 if keys(maps.section) else 0.0
 
 
 def _place(maps: WorkspaceMaps) -> str:

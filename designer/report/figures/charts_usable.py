@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from designer.report.figures import canvas, palette
 from designer.selection.result import Candidate
 from designer.selection.usable import Usable
@@ -12,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _APART = 0.03
+_LOW = 75.0  # where all serve more, the axis begins here
 
 
 def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
@@ -25,11 +28,15 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         The size to mark.
     """
     with canvas.drawing():
-        figure = canvas.sheet(66.0)
+        figure = canvas.sheet(62.0)
         axes = figure.subplots()
         diameters = [1e3 * one.size.diameter_m for one in usable.sizes]
         shares = [100.0 * one.fraction for one in usable.sizes]
-        axes.set(ylim=(-2.0, 106.0), xlim=_range(diameters, shares))
+        low = _LOW if min(shares) > _LOW else 0.0
+        axes.set(
+            ylim=(low - 0.02 * (100.0 - low), 100.0 + 0.16 * (100.0 - low)),
+            xlim=_range(diameters, shares),
+        )
         axes.plot(diameters, shares, color=palette.SAG, linewidth=1.0, alpha=0.6)
         axes.plot(
             diameters, shares, linestyle="none", marker="o", markersize=4.2, color=palette.SAG
@@ -38,7 +45,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         if chosen is not None:
             _mark(axes, usable, chosen)
         canvas.grid_lines(axes)
-        axes.set_yticks(range(0, 101, 20))
+        axes.set_yticks(np.linspace(low, 100.0, 6))
         axes.set_title("share of the workspace that the size serves [%]", loc="left")
         axes.set_xlabel(f"nominal diameter of the sizes of {usable.grade.id} [mm]")
         return canvas.svg(figure, "usable", "Share of the workspace that each size serves")

@@ -13,6 +13,8 @@ from designer.report.figures import palette
 if TYPE_CHECKING:
     from matplotlib.colors import BoundaryNorm, Colormap
 
+_MUCH = 6.0
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Steps:
@@ -65,6 +67,28 @@ class Steps:
         from matplotlib.cm import ScalarMappable
 
         return ScalarMappable(self.norm, self.colormap)
+
+
+def steps_over_decades(values: FloatArray) -> Steps | None:
+    """Return steps 1, 2, 5, 10, … where the bulk of the values spans much, else `steps_for`.
+
+    Parameters
+    ----------
+    values : array
+        Any shape; NaN where there is no value.
+    """
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0 or finite.min() <= 0.0:
+        return steps_for(values)
+    low, high = np.quantile(finite, [0.05, 0.95])
+    if high < _MUCH * low:
+        return steps_for(values)
+    decades = np.arange(np.floor(np.log10(finite.min())), np.ceil(np.log10(high)) + 1.0)
+    marks = np.sort(np.outer(10.0**decades, [1.0, 2.0, 5.0]).ravel())
+    first = np.searchsorted(marks, finite.min(), side="right") - 1
+    last = np.searchsorted(marks, high, side="left")
+    levels = marks[first : last + 1]
+    return Steps(levels, "max" if finite.max() > levels[-1] else "neither")
 
 
 def steps_for(values: FloatArray, most: int = 14) -> Steps | None:

@@ -11,6 +11,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
+from designer.report.diagnosis_sections import words
 from designer.report.figures import canvas, diagnosis_style, palette
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def carriers_chart(
             channel = strongest_channel(rows[0][0].residual, values)
             for axes, layers in zip(grid[:, column], rows, strict=True):
                 _panel(axes, diagnosis, values, channel, layers)
-            grid[-1, column].set_xlabel(name, parse_math=False)
+            grid[-1, column].set_xlabel(words.covariate_axis(name), parse_math=False)
         grid[0, 0].figure.supylabel("residual [times the noise]", fontsize=palette.FONT_POINTS)
         return canvas.svg(figure, key, _TITLE)
 

@@ -44,8 +44,9 @@ def _panel(axes: Axes, diagnosis: Diagnosis, quantity: Quantity) -> None:
         axes.plot([low, high], [row, row], color=colour, linewidth=4.0, alpha=0.45)
         axes.plot(value, row, marker="o", markersize=5.0, color=colour)
         axes.annotate(
-            f"{quantity.shown(error.heldout.value)} {quantity.unit}", (value, row), (0, 6),
-            textcoords="offset points", ha="center", fontsize=palette.FONT_POINTS - 1.0,
+            f"{quantity.shown(error.heldout.value)} {quantity.unit}", (high, row), (5, 0),
+            textcoords="offset points", va="center", fontsize=palette.FONT_POINTS - 1.0,
+            path_effects=canvas.halo(),
         )  # fmt: skip
         shown += [error.heldout.low, error.heldout.high]
     noise = quantity.scale * quantity.noise
@@ -61,9 +62,9 @@ def _scale(axes: Axes, shown: np.ndarray[tuple[int], np.dtype[np.float64]]) -> N
     """Take a logarithmic axis where errors differ by much, and write plain numbers on it."""
     low, high = float(shown.min()), float(shown.max())
     if low <= 0.0 or high / low < _LOG_ABOVE:
-        axes.set_xlim(0.0, 1.2 * high)
+        axes.set_xlim(0.0, 1.4 * high)
         return
     axes.set_xscale("log")
-    axes.set_xlim(low / 1.5, 1.6 * high)
+    axes.set_xlim(low / 1.5, high * (high / low) ** 0.25)
     axes.xaxis.set_major_formatter(lambda value, _: canvas.number(value))
     axes.xaxis.set_minor_formatter(lambda *_: "")

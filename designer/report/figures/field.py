@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from itertools import combinations
 
 import numpy as np
 
@@ -149,6 +150,17 @@ def chords_m(statics: Statics) -> FloatArray:
     """
     ends = statics.poses.attachment_points_m(statics.robot)
     return np.stack([statics.robot.exit_points_m, ends], axis=1)
+
+
+def body_lines_m(statics: Statics) -> list[FloatArray]:
+    """Return lines (2, 3) between all attachment points, which span the platform [m].
+
+    Empty for a point mass.
+    """
+    if statics.robot.is_point_mass:
+        return []
+    corners = statics.poses.attachment_points_m(statics.robot)
+    return [np.stack(pair) for pair in combinations(corners, 2)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

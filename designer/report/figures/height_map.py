@@ -9,11 +9,13 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.report.figures import canvas, palette
-from designer.report.figures.colours import Steps, steps_for
-from designer.report.figures.plan_map import mark_exit_points, set_limits
+from designer.report.figures.colours import Steps, steps_over_decades
+from designer.report.figures.plan_map import height_over_width, mark_exit_points, set_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_WIDE_MM, _TALL_MM = 120.0, 64.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,13 +62,14 @@ def height_map(shown: HeightMap, key: str) -> str:
     key : str
         Short name, put before every id of the drawing.
     """
-    steps = steps_for(shown.values)
+    steps = steps_over_decades(shown.values)
     place = f"z = {canvas.number(shown.position_m[0, 0, 2])} m"
     with canvas.drawing():
-        figure = canvas.sheet(100.0, keeps_aspect=True)
+        corners = shown.exit_points_m[:, :2]
+        proportions = height_over_width(shown.position_m[..., :2], corners)
+        figure = canvas.sheet(20.0 + min(_WIDE_MM * proportions, _TALL_MM), keeps_aspect=True)
         axes = figure.subplots()
         _fill(axes, shown, steps)
-        corners = shown.exit_points_m[:, :2]
         if set_limits(axes, shown.position_m[..., :2], corners):
             mark_exit_points(axes, corners)
         axes.set_xlabel("x [m]")
@@ -77,6 +80,7 @@ def height_map(shown: HeightMap, key: str) -> str:
                 steps.mappable,
                 ax=axes,
                 ticks=steps.ticks,
+                format=lambda value, _: canvas.number(float(value)),
                 extendfrac=0.04,
                 label=shown.label,
                 shrink=0.9,

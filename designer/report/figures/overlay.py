@@ -20,16 +20,27 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ROOM_PX = 45.0
+_TICK_POINTS = 13.5
+_TICKS_APART_POINTS = 27.0
+_LINES_APART_POINTS = 15.0
 _DOTS_PER_INCH = 240.0  # 1600 px fill the column of the printed report
 
 
-def over(image: Image) -> tuple[Figure, Axes]:
-    """Return a figure with the picture in it, whose axes count pixels from the upper left."""
+def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
+    """Return a figure with the picture in it, whose axes count pixels from the upper left.
+
+    Parameters
+    ----------
+    image : Image
+        The picture of a scene.
+    letters : float
+        Size of letters and lines over the usual, for a picture that is printed small.
+    """
     from matplotlib.figure import Figure
 
-    size = (WIDTH_PX / _DOTS_PER_INCH, HEIGHT_PX / _DOTS_PER_INCH)
-    figure = Figure(figsize=size, dpi=_DOTS_PER_INCH)
+    dots_per_inch = letters * _DOTS_PER_INCH
+    size = (WIDTH_PX / dots_per_inch, HEIGHT_PX / dots_per_inch)
+    figure = Figure(figsize=size, dpi=dots_per_inch)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.imshow(image, extent=(0, WIDTH_PX, HEIGHT_PX, 0), interpolation="nearest", aspect="auto")
     axes.set_axis_off()
@@ -43,7 +54,7 @@ def png(figure: Figure) -> bytes:
     figure.savefig(
         stream,
         format="png",
-        dpi=_DOTS_PER_INCH,
+        dpi=figure.dpi,
         metadata={"Software": None},
         pil_kwargs={"optimize": True},
     )
@@ -87,9 +98,14 @@ def hidden_lines(axes: Axes, view: View, lines_m: Iterable[FloatArray]) -> None:
         )
 
 
-def colour_bar(figure: Figure, steps: Steps, quantity: Quantity) -> None:
-    """Draw the colour bar at the right edge."""
-    axes = figure.add_axes((0.895, 0.2, 0.016, 0.6))
+def colour_bar(
+    figure: Figure,
+    steps: Steps,
+    quantity: Quantity,
+    place: tuple[float, float, float, float] = (0.895, 0.2, 0.016, 0.6),
+) -> None:
+    """Draw the colour bar at the right edge, where ``place`` (left, low, width, height) says."""
+    axes = figure.add_axes(place)
     bar = figure.colorbar(
         steps.mappable, cax=axes, ticks=steps.ticks, extendfrac=0.04, label=quantity.label
     )
@@ -123,11 +139,12 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     middle = 0.5 * (low + high)
     corner = leftmost_corner(view, bounds_m)
     taken = view.pixels(np.array([*corner, low[2]]))
+    points = axes.figure.dpi / 72.0
     for axis, across in ((0, 1), (1, 0)):
-        for tick in _ticks_along(view, low, high, axis):
+        for tick in _ticks_along(view, low, high, axis, _TICKS_APART_POINTS * points):
             point = np.array([0.0, 0.0, low[2]])
             point[axis], point[across] = tick, near[across]
-            if np.hypot(*(view.pixels(point) - taken)) < _ROOM_PX:
+            if np.hypot(*(view.pixels(point) - taken)) < _TICK_POINTS * points:
                 continue  # the upright axis has its own label there
             _tick(
                 axes, view, point, canvas.number(float(tick)), across, near[across] - middle[across]
@@ -135,7 +152,7 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
         name = np.array([0.0, 0.0, low[2]])
         name[axis], name[across] = middle[axis], near[across]
         _tick(axes, view, name, "xy"[axis] + " [m]", across, near[across] - middle[across], 24.0)
-    for tick in ticks_between(low[2], high[2], 4):
+    for tick in _ticks_along(view, low, high, 2, _LINES_APART_POINTS * points):
         write(
             axes,
             view,
@@ -148,12 +165,16 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     write(axes, view, np.array([*corner, high[2]]), "z [m]", (-13, 12), ha="right")
 
 
-def _ticks_along(view: View, low: FloatArray, high: FloatArray, axis: int) -> FloatArray:
+def _ticks_along(
+    view: View, low: FloatArray, high: FloatArray, axis: int, apart_px: float
+) -> FloatArray:
     """As many ticks as there is room for along an edge."""
     edge = np.zeros((2, 3))
     edge[:, axis] = low[axis], high[axis]
     length = float(np.hypot(*np.diff(view.pixels(edge), axis=0)[0]))
-    return ticks_between(low[axis], high[axis], min(max(int(length / 90.0), 1), 5))
+    return ticks_between(
+        low[axis], high[axis], min(max(int(length / apart_px), 1), 4 if axis == 2 else 5)
+    )
 
 
 def _tick(
@@ -170,12 +191,15 @@ def _tick(
     beyond[across] += side
     step = view.pixels(beyond) - view.pixels(point)
     step = step / max(float(np.hypot(*step)), 1e-9) * distance
+    # The name of an axis begins beyond its numbers, wherever these stand.
+    aside = distance > 10.0 and abs(step[0]) > 0.5 * distance
     write(
         axes,
         view,
         point,
         text,
         (float(step[0]), -float(step[1])),
+        ha=("left" if step[0] > 0.0 else "right") if aside else "center",
         fontsize=palette.FONT_POINTS - (1.0 if distance < 10.0 else 0.0),
     )
 

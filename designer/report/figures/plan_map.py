@@ -17,6 +17,9 @@ from designer.report.figures.quantity import Quantity
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_CHARACTER = 0.013  # half the width of a character over the width of small axes
+_RIGHT_END = 1.15  # a text may pass the right end of the axes, where no numbers stand
+
 
 def draw_plan(
     axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, room: float
@@ -165,6 +168,21 @@ def _scatter(axes: Axes, maps: WorkspaceMaps, quantity: Quantity, steps: Steps |
 
 def set_limits(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
     """Set the limits, around the exit points as well unless the region would be a speck."""
+    middle, half, shows_corners = _frame(points, corners)
+    axes.set_aspect("equal")
+    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+    return shows_corners
+
+
+def height_over_width(points: FloatArray, corners: FloatArray) -> float:
+    """Return the proportions of axes whose limits are those of `set_limits`."""
+    _, half, _ = _frame(points, corners)
+    return float(half[1] / half[0])
+
+
+def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatArray, bool]:
+    """Centre and half extent (2,) [m] of what is shown, and whether exit points are in it."""
     flat = points.reshape(-1, 2)
     everything = np.concatenate([flat, corners])
     wide = np.ptp(everything, axis=0).max()
@@ -173,11 +191,7 @@ def set_limits(axes: Axes, points: FloatArray, corners: FloatArray) -> bool:
     low, high = shown.min(axis=0), shown.max(axis=0)
     half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
     half = np.maximum(half, 0.35 * half.max())  # no slivers
-    middle = 0.5 * (low + high)
-    axes.set_aspect("equal")
-    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
-    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    return shows_corners
+    return 0.5 * (low + high), half, shows_corners
 
 
 def mark_exit_points(axes: Axes, corners: FloatArray) -> None:
@@ -213,26 +227,24 @@ def _focus(axes: Axes, maps: WorkspaceMaps, quantity: Quantity) -> None:
 def _write_away(
     axes: Axes, text: str, place: FloatArray, away: FloatArray, points: float, **style: Any
 ) -> None:
-    """Write beside a place, off in a direction, so that the text begins where the gap ends."""
-    length = float(np.hypot(*away))
-    right, up = away / length if length > 0.0 else (0.0, 1.0)
+    """Write beside a place, or above or below it, on the side of a direction, within the axes."""
+    right, up = away if away.any() else (0.0, 1.0)
+    left_end, right_end = axes.get_xlim()
+    share = float((place[0] - left_end) / (right_end - left_end))
+    half = _CHARACTER * len(text)
+    has_room = 2.0 * half < (_RIGHT_END - share if right > 0.0 else share)
+    aligned: dict[str, Any]
+    if 2.0 * abs(right) > abs(up) and has_room:
+        offset = (points if right > 0.0 else -points, 0.0)
+        aligned = {"ha": "left" if right > 0.0 else "right", "va": "center"}
+    else:
+        offset = (0.0, points if up > 0.0 else -points)
+        inward = "left" if share < half else "right" if share > 1.0 - half else "center"
+        aligned = {"ha": inward, "va": "bottom" if up > 0.0 else "top"}
     label = axes.annotate(
-        text,
-        (place[0], place[1]),
-        (points * right, points * up),
-        textcoords="offset points",
-        ha=_side(right, "left", "right"),
-        va=_side(up, "bottom", "top"),
-        **style,
+        text, (place[0], place[1]), offset, textcoords="offset points", **aligned, **style
     )
     label.set_path_effects(canvas.halo())
-
-
-def _side(component: float, positive: Any, negative: Any) -> Any:
-    """Alignment of a text that stands off in a direction."""
-    if abs(component) < 0.35:
-        return "center"
-    return positive if component > 0.0 else negative
 
 
 def _middle(maps: WorkspaceMaps) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,9 @@ from designer.report.figures import canvas
 
 if TYPE_CHECKING:
     from designer.report.figures.field import Field
+
+
+_KILONEWTON = 1e3
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +58,18 @@ class Quantity:
 
     def text(self, value: float) -> str:
         """Return a value with its unit, to a few digits."""
-        digits = 4 if self.unit else 3
+        digits = 4 if self.unit in ("N", "kN") else 3
         return f"{canvas.significant(value, digits)} {self.unit}".strip()
 
 
 DIAMETER = Quantity("diameter", "needed diameter", "mm", 1e3)
 TENSION = Quantity("tension", "largest tension", "kN", 1e-3)
 RATIO = Quantity("ratio", "tension with sag over tension without", "", 1.0)
+
+
+def tension_of(field: Field) -> Quantity:
+    """Return the largest tension in the unit that suits the values of a field, kN or N."""
+    finite = field.tension_N[np.isfinite(field.tension_N)]
+    if len(finite) > 0 and float(finite.max()) < _KILONEWTON:
+        return replace(TENSION, unit="N", scale=1.0)
+    return TENSION

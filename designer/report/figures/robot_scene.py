@@ -8,9 +8,15 @@ import numpy as np
 
 from designer.analysis import PoseAnalysis
 from designer.arrays import FloatArray
-from designer.report.figures import canvas, overlay, palette, stage
-from designer.report.figures.field import Sag, cable_curves_m, chords_m, largest_sag
-from designer.report.figures.names import names_of
+from designer.report import format as fmt
+from designer.report.figures import canvas, labels, overlay, palette, stage
+from designer.report.figures.field import (
+    Sag,
+    body_lines_m,
+    cable_curves_m,
+    chords_m,
+    largest_sag,
+)
 from designer.report.figures.view import View, clear_azimuth_rad, facing_azimuth_rad, fitting
 from designer.robot import Robot
 from designer.statics.inverse import Statics
@@ -22,7 +28,7 @@ if TYPE_CHECKING:
 
 _ELEVATION_RAD = float(np.radians(25.0))
 _FRAME = (0.075, 0.95, 0.13, 0.90)
-_LABEL_AT = (0.3, 0.42)
+_LABEL_AT = (0.35, 0.45, 0.28, 0.55, 0.2, 0.65)
 
 
 def robot_scene(pose: PoseAnalysis) -> bytes:
@@ -109,32 +115,34 @@ def _base_outline_m(robot: Robot) -> FloatArray:
 
 
 def _label(axes: Axes, view: View, statics: Statics, curves: FloatArray) -> None:
-    size = _size_m(statics)
-    for name, place in names_of(statics.robot.exit_points_m, 0.04 * size):
-        overlay.write(axes, view, place, name, (0, 8))
+    clear = labels.obstacles(view, [*curves, *body_lines_m(statics)])
+    labels.write_exits(axes, view, statics.robot.exit_points_m, clear)
     x, y, z = (canvas.number(float(v)) for v in statics.poses.position_m)
-    mass = canvas.number(statics.robot.platform.mass_kg)
-    place = statics.poses.position_m
-    overlay.write(axes, view, place, f"{mass} kg at ({x}, {y}, {z}) m", (0, -13), fontweight="bold")
+    text = f"{canvas.number(statics.robot.platform.mass_kg)} kg at ({x}, {y}, {z}) m"
+    body = statics.poses.position_m
+    labels.write_clear(axes, view, body, text, clear, fontweight="bold")
     if not statics.is_solved:
         sentence = Verdict(int(statics.verdict)).sentence
         axes.text(
             60, 40, f"No equilibrium in this pose.\n{sentence}", va="top", color=palette.WARNING
         )
         return
-    for index, curve in enumerate(curves):
-        _label_tension(axes, view, statics, index, curve)
-    _label_sag(axes, view, largest_sag(statics))
+    _label_sag(axes, view, largest_sag(statics), clear)
+    for curve, tension_N in zip(curves, statics.exit_tension_N, strict=True):
+        _label_tension(axes, view, curve, float(tension_N), clear)
 
 
-def _label_tension(axes: Axes, view: View, statics: Statics, index: int, curve: FloatArray) -> None:
-    """Write the tension of a cable at the exit point beside it."""
-    place = curve[int(_LABEL_AT[index % 2] * len(curve))]
-    text = f"{canvas.significant(float(statics.exit_tension_N[index]) / 1e3)} kN"
-    overlay.write(axes, view, place, text, (0, 9), color=palette.SAG)
+def _label_tension(
+    axes: Axes, view: View, curve: FloatArray, tension_N: float, clear: FloatArray
+) -> None:
+    """Write the tension of a cable at the exit point beside it, where there is room."""
+    anchors = curve[[int(share * len(curve)) for share in _LABEL_AT]]
+    text = fmt.newtons(tension_N)
+    style = {"color": palette.SAG, "fontsize": palette.FONT_POINTS - 0.5}
+    labels.write_clear(axes, view, anchors, text, clear, (3.0, 6.0), **style)
 
 
-def _label_sag(axes: Axes, view: View, sag: Sag) -> None:
+def _label_sag(axes: Axes, view: View, sag: Sag, clear: FloatArray) -> None:
     """Draw the largest sag as a dimension: from the straight line down to the cable."""
     ends = view.pixels(np.stack([sag.on_chord_m, sag.on_cable_m]))
     if np.hypot(*(ends[1] - ends[0])) > 12.0:
@@ -148,4 +156,4 @@ def _label_sag(axes: Axes, view: View, sag: Sag) -> None:
     length = f"{canvas.significant(sag.depth_m, 3)} m"
     if sag.depth_m < 1.0:
         length = f"{canvas.significant(1e3 * sag.depth_m, 3)} mm"
-    overlay.write(axes, view, sag.on_cable_m, f"sag {length}", (0, -9))
+    labels.write_clear(axes, view, sag.on_cable_m, f"sag {length}", clear, (6.0, 18.0, 30.0))

@@ -9,9 +9,8 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.region import Prism
-from designer.report.figures import canvas, overlay, palette, stage
+from designer.report.figures import canvas, labels, overlay, palette, stage
 from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.names import names_of
 from designer.report.figures.stage import PRINT
 from designer.report.figures.view import View
 from designer.report.figures.workspace_scene import bounds_m, edges_m, size_m, view_of
@@ -67,9 +66,8 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
     with canvas.drawing():
         figure, axes = overlay.over(image)
         overlay.box_axes(axes, view, bounds_m(maps))
-        for name, place in names_of(exits, 0.04 * size_m(maps)):
-            overlay.write(axes, view, place, name, (0, 8))
         _legend(figure, layers)
+        labels.write_exits(axes, view, exits, np.empty((0, 2)))
         return overlay.png(figure)
 
 

@@ -12,6 +12,8 @@ import numpy as np
 from designer.arrays import FloatArray
 
 WIDTH_PX, HEIGHT_PX = 1600, 1000
+Frame = tuple[float, float, float, float]
+"""Left, right, lower and upper bound of a part of the picture, as shares of it."""
 _FROM_THE_SIDE_RAD = float(np.radians(25.0))
 
 
@@ -78,7 +80,7 @@ def fitting(
     points_m: FloatArray,
     azimuth_rad: float,
     elevation_rad: float,
-    frame: tuple[float, float, float, float],
+    frame: Frame,
 ) -> View:
     """Return the view in which all points land within a frame, as large as can be.
 
@@ -88,8 +90,8 @@ def fitting(
         What must be seen [m].
     azimuth_rad, elevation_rad : float
         Where the camera stands [rad].
-    frame : tuple of float
-        Left, right, lower and upper bound of the frame as shares of the picture.
+    frame : Frame
+        Where in the picture they land.
     """
     left, right, low, high = frame
     plain = View(azimuth_rad, elevation_rad, np.zeros(3), 1.0)

@@ -8,14 +8,13 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.region import Prism, Rectangle
-from designer.report.figures import canvas, grids, overlay, palette, stage
+from designer.report.figures import canvas, grids, labels, overlay, palette, stage
 from designer.report.figures.colours import Steps, steps_for
-from designer.report.figures.field import cable_curves_m
+from designer.report.figures.field import body_lines_m, cable_curves_m
 from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, Quantity
 from designer.report.figures.stage import PRINT, Pen
-from designer.report.figures.view import View, facing_azimuth_rad, fitting
+from designer.report.figures.view import Frame, View, facing_azimuth_rad, fitting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,10 +44,10 @@ def workspace_scene(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> bytes
     with canvas.drawing():
         figure, axes = overlay.over(image)
         overlay.box_axes(axes, view, bounds_m(maps))
-        _label(axes, view, maps, quantity)
         overlay.legend(figure, [*maps.shell.values()] or [maps.section])
         if steps is not None:
             overlay.colour_bar(figure, steps, quantity)
+        write_names(axes, view, maps, quantity)
         return overlay.png(figure)
 
 
@@ -58,7 +57,7 @@ def scale_of(maps: WorkspaceMaps, quantity: Quantity) -> Steps | None:
     return steps_for(np.concatenate([quantity.of(field).ravel() for field in fields]), 18)
 
 
-def view_of(maps: WorkspaceMaps) -> View:
+def view_of(maps: WorkspaceMaps, frame: Frame = _FRAME) -> View:
     """Return the view into the opening of the region, or of a list of points."""
     low, high = bounds_m(maps)
     floor = [[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])]
@@ -66,7 +65,7 @@ def view_of(maps: WorkspaceMaps) -> View:
     exits = maps.study.robot.exit_points_m
     shown = exits[np.all((exits >= low) & (exits <= high), axis=1)]
     everything = np.concatenate([floor, top, shown])
-    return fitting(everything, _azimuth_rad(maps), float(_ELEVATION_RAD), _FRAME)
+    return fitting(everything, _azimuth_rad(maps), float(_ELEVATION_RAD), frame)
 
 
 def bounds_m(maps: WorkspaceMaps) -> FloatArray:
@@ -178,11 +177,15 @@ def size_m(maps: WorkspaceMaps) -> float:
     return float(np.ptp(bounds_m(maps), axis=0).max())
 
 
-def _label(axes: Axes, view: View, maps: WorkspaceMaps, quantity: Quantity) -> None:
-    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
-        overlay.write(axes, view, place, name, (0, 8))
+def write_names(axes: Axes, view: View, maps: WorkspaceMaps, quantity: Quantity) -> None:
+    """Write what the exit points are called, and what the worst pose needs."""
     focus = maps.focus
+    lines: list[FloatArray] = []
     if focus.statics is not None:
-        overlay.hidden_lines(axes, view, cable_curves_m(focus.statics))
+        lines = [*cable_curves_m(focus.statics)]
+        overlay.hidden_lines(axes, view, lines)
+        lines += body_lines_m(focus.statics)
+    clear = labels.obstacles(view, lines)
+    labels.write_exits(axes, view, maps.study.robot.exit_points_m, clear)
     overlay.mark(axes, view, focus.position_m)
-    overlay.write(axes, view, focus.position_m, focus.text(quantity), (0, 11), fontweight="bold")
+    labels.write_clear(axes, view, focus.position_m, focus.text(quantity), clear, fontweight="bold")

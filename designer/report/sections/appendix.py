@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from designer.analysis import Analysis
 from designer.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.report import format as fmt
-from designer.report.parts import Column, Fact, Row, Table
+from designer.report.parts import MOST_ROWS, Column, Fact, Row, Table
 from designer.robot import Robot
 from designer.study import Selection
 
@@ -20,15 +21,16 @@ class LeftOutSection:
 
     Parameters
     ----------
-    not_allowed : tuple of str
-        Ids of grades in the catalogue that the study does not allow.
+    not_allowed : str
+        How many grades of the catalogue the study does not allow, and which if they are few;
+        empty where it allows all.
     by_name_only : tuple of str
         Kinds of grades that a study must name, each with why; empty where none is left out.
     problems : tuple of str
         Plugins, grades and effects that could not be loaded, and why.
     """
 
-    not_allowed: tuple[str, ...]
+    not_allowed: str
     by_name_only: tuple[str, ...]
     problems: tuple[str, ...]
 
@@ -92,7 +94,18 @@ def left_out_section(analysis: Analysis) -> LeftOutSection | None:
         for g in catalogue.grades
         if allowed is not None and g.id not in allowed and not g.why_only_by_name
     ]
-    return LeftOutSection(tuple(sorted(names)), _by_name_only(analysis), analysis.left_out)
+    return LeftOutSection(_not_allowed(sorted(names)), _by_name_only(analysis), analysis.left_out)
+
+
+def _not_allowed(names: Sequence[str]) -> str:
+    if not names:
+        return ""
+    if len(names) <= MOST_ROWS:
+        return f"The study does not allow these grades of the catalogue: {fmt.listing(names)}."
+    return (
+        f"The catalogue has {fmt.plural(len(names), 'more grade')}, which the study does not allow "
+        "in selection.grades. The command designer catalog list shows all."
+    )
 
 
 def _by_name_only(analysis: Analysis) -> tuple[str, ...]:

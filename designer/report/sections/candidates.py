@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from designer.report import format as fmt
-from designer.report.parts import Column, Group, Row, Table, Tone
+from designer.report.parts import MOST_ROWS, Column, Group, Row, Table, Tone
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import (
     Candidate,
@@ -18,7 +18,6 @@ from designer.selection.result import (
 )
 from designer.study import Objective
 
-_MOST_BEST = 20
 _MOST_NAMES = 3
 _Cell = Callable[[Candidate], str]
 
@@ -30,7 +29,10 @@ def pareto_table(selection: SelectionResult) -> Table:
         f"Sizes that hold everywhere and that no other size beats in {names} at once. The "
         "allowable tension is the breaking load times the efficiency over the safety factor."
     )
-    columns, cells = zip(*_columns(selection, selection.front), strict=True)
+    shown = selection.front[:MOST_ROWS]
+    if len(shown) < len(selection.front):
+        caption += f" {_more(len(selection.front) - len(shown), 'size')}"
+    columns, cells = zip(*_columns(selection, shown), strict=True)
     groups = tuple(
         Group(
             rows=(Row(tuple(cell(c) for cell in cells), _tone(c), _doubt(c)),),
@@ -38,7 +40,7 @@ def pareto_table(selection: SelectionResult) -> Table:
             remark=f"{c.grade.construction} {c.grade.core}, trust {c.grade.trust}: {c.reason}",
             tone="good" if c.standing == "chosen" else "",
         )
-        for c in selection.front
+        for c in shown
     )
     return Table(caption, columns, groups)
 
@@ -66,9 +68,8 @@ def best_table(selection: SelectionResult) -> Table:
     best = _best(selection, selection.outcomes)
     title = MEANINGS[selection.objectives[0]].title
     caption = f"The best size of each grade that holds everywhere, by {title}."
-    if len(best) > _MOST_BEST:
-        more = fmt.plural(len(best) - _MOST_BEST, "more grade")
-        caption += f" {more} {_is(len(best) - _MOST_BEST)} in candidates.csv."
+    if len(best) > MOST_ROWS:
+        caption += f" {_more(len(best) - MOST_ROWS, 'grade')}"
     return _table_of_best(selection, best, caption, _tone)
 
 
@@ -78,8 +79,8 @@ def alternatives_table(selection: SelectionResult) -> Table | None:
     if not best:
         return None
     caption = "Grades that the study does not allow, but that would hold the whole workspace."
-    if len(best) > _MOST_BEST:
-        caption += f" {fmt.plural(len(best) - _MOST_BEST, 'more grade')} would hold as well."
+    if len(best) > MOST_ROWS:
+        caption += f" {fmt.plural(len(best) - MOST_ROWS, 'more grade')} would hold as well."
     return _table_of_best(selection, best, caption, lambda _: "")
 
 
@@ -90,8 +91,10 @@ def _best(selection: SelectionResult, outcomes: Sequence[GradeOutcome]) -> list[
     return sorted(best, key=lambda c: (c.standing != "chosen", c.figures.burden(first)))
 
 
-def _is(amount: int) -> str:
-    return "is" if amount == 1 else "are"
+def _more(amount: int, noun: str) -> str:
+    """Say where the rest of a table is."""
+    verb = "is" if amount == 1 else "are"
+    return f"{fmt.plural(amount, f'more {noun}')} {verb} in candidates.csv."
 
 
 def _table_of_best(
@@ -100,7 +103,7 @@ def _table_of_best(
     caption: str,
     tone: Callable[[Candidate], Tone],
 ) -> Table:
-    shown = best[:_MOST_BEST]
+    shown = best[:MOST_ROWS]
     head: list[tuple[Column, _Cell]] = [
         (Column("Grade", is_number=False), lambda c: c.grade.id),
         (Column("Material", is_number=False), lambda c: c.grade.material or "not stated"),
@@ -122,9 +125,10 @@ def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
         Column("Needed", "mm"),
         Column("Why not", is_number=False),
     )
-    return Table.of(
-        "Grades of which no size holds, the nearest first.", columns, *map(_thin, failing)
-    )
+    caption = "Grades of which no size holds, the nearest first."
+    if len(failing) > MOST_ROWS:
+        caption += f" {_more(len(failing) - MOST_ROWS, 'grade')}"
+    return Table.of(caption, columns, *map(_thin, failing[:MOST_ROWS]))
 
 
 def fallen_table(selection: SelectionResult) -> Table:
@@ -153,14 +157,22 @@ def main_dominators(selection: SelectionResult) -> str:
     if not dominated:
         return ""
     beaten = Counter(c.reason.split(";")[0].removeprefix("dominated by ") for c in dominated)
-    parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
     searched = sum(c.verification.is_refined for c in selection.candidates)
     return (
-        f"Of the {fmt.plural(len(dominated), 'dominated size')}, {fmt.listing(parts)}. "
+        f"{_who_beats(beaten)} "
         f"{fmt.plural(searched, 'size')} were searched between the samples: those that no other "
         "beats, the best of each grade, and those above 90\u00a0% of their allowable tension. For "
         "the others the samples are enough, since a search can only find more tension."
     )
+
+
+def _who_beats(beaten: Counter[str]) -> str:
+    total = beaten.total()
+    if len(beaten) == 1:
+        what = f"all {fmt.count(total)} dominated sizes" if total > 1 else "the one dominated size"
+        return f"{next(iter(beaten))} beats {what}."
+    parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
+    return f"Of the {fmt.plural(total, 'dominated size')}, {fmt.listing(parts)}."
 
 
 _MEANINGS: dict[Standing, str] = {
@@ -175,6 +187,9 @@ def _columns(
     selection: SelectionResult, shown: Sequence[Candidate], *, full: bool = True
 ) -> list[tuple[Column, _Cell]]:
     force = fmt.decimals(c.cable.allowable_tension_N / 1e3 for c in shown)
+    smallest_N = min((c.verification.max_tension_N for c in shown), default=0.0)
+    unit, newtons = ("kN", 1e3) if smallest_N >= 1e3 else ("N", 1.0)
+    tension = fmt.decimals([smallest_N / newtons], 4)
     mass = fmt.decimals(c.total_mass_kg for c in shown)
     strength: list[tuple[Column, _Cell]] = [
         (
@@ -203,8 +218,8 @@ def _columns(
         (Column("Diameter", "mm"), lambda c: fmt.fixed(1e3 * c.size.diameter_m, 1)),
         *(strength if full else ()),
         (
-            Column("Largest tension", "kN"),
-            lambda c: fmt.fixed(c.verification.max_tension_N / 1e3, force),
+            Column("Largest tension", unit),
+            lambda c: fmt.fixed(c.verification.max_tension_N / newtons, tension),
         ),
         (Column("Used"), lambda c: fmt.utilisation(c.verification.utilisation)),
         (Column("All cables", "kg"), lambda c: fmt.fixed(c.total_mass_kg, mass)),
@@ -221,7 +236,7 @@ def _tone(candidate: Candidate) -> Tone:
 
 
 def _doubt(candidate: Candidate) -> str:
-    return f"Doubtful figures: {candidate.size.doubt}" if candidate.size.doubt else ""
+    return f"Doubtful figures: {fmt.printed(candidate.size.doubt)}" if candidate.size.doubt else ""
 
 
 def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:
@@ -245,7 +260,7 @@ def _fallen_row(meaning: str, fallen: Sequence[Candidate]) -> Row | None:
             meaning,
             fmt.count(len(fallen)),
             fmt.count(len({c.grade.id for c in fallen})),
-            f"{example.name}: {example.reason}",
+            fmt.printed(f"{example.name}: {example.reason}"),
         )
     )
 

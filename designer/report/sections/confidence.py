@@ -141,4 +141,4 @@ def _limits(grade: Grade) -> Iterator[Statement]:
 def _doubt(grade: Grade, size: Size) -> Iterator[Statement]:
     if size.doubt:
         title = f"Doubt about {size.id} of {grade.id}"
-        yield Statement(title, f"{size.doubt}.", "doubt")
+        yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")

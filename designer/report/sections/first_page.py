@@ -29,6 +29,8 @@ class Card:
         What the card is about, such as ``Chosen rope``.
     size : str
         The size, set large.
+    metric : str
+        The diameter in millimetres where the size is not; may be empty.
     product : str
         Name and maker, or what the size refers to.
     facts : tuple of Fact
@@ -37,6 +39,7 @@ class Card:
 
     heading: str
     size: str
+    metric: str
     product: str
     facts: tuple[Fact, ...]
 
@@ -210,6 +213,7 @@ def _card(analysis: Analysis) -> Card | None:
             else Card(
                 "Diameter that the workspace needs",
                 fmt.millimetres(worst.diameter_m),
+                "",
                 "of the configured cable family",
                 (
                     Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
@@ -223,6 +227,7 @@ def _card(analysis: Analysis) -> Card | None:
     return Card(
         "Diameter that the pose needs",
         fmt.millimetres(float(pose.sizing.diameter_m)),
+        "",
         "of the configured cable family",
         (
             Fact("Largest tension", fmt.newtons(float(statics.largest_tension_N))),
@@ -241,10 +246,10 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     return Card(
         heading="Chosen rope",
         size=size.id,
+        metric="" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m),
         product=product_name(chosen.grade),
         facts=(
             Fact("Grade", chosen.grade.id),
-            Fact("Nominal diameter", fmt.millimetres(size.diameter_m)),
             Fact("Minimum breaking load", fmt.newtons(size.minimum_breaking_load_N)),
             Fact("Allowable tension", *_allowable(chosen, required)),
             Fact("Largest tension", fmt.newtons(found.max_tension_N)),

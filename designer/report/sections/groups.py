@@ -120,7 +120,9 @@ def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
                 fmt.utilisation(float(found.utilisation[k])),
                 _place(found.worst_place[k]),
             ),
-            note=f"Doubtful figures: {product.size.doubt}" if product.size.doubt else "",
+            note=f"Doubtful figures: {fmt.printed(product.size.doubt)}"
+            if product.size.doubt
+            else "",
         )
         for k, (group, product) in enumerate(zip(choice.groups, chosen.products, strict=True))
     ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 
 from designer.analysis import Analysis
+from designer.report import format as fmt
 from designer.report.parts import Column, Row, Table
 from designer.study import Entry
 
@@ -39,7 +40,7 @@ def inputs_section(analysis: Analysis) -> InputsSection:
         given=Table.of(
             "Fields given in the configuration file.",
             (field, written, meaning),
-            *(Row((e.field, e.given, e.value_SI)) for e in given),
+            *(Row((e.field, e.given, fmt.shorter(e.value_SI))) for e in given),
         ),
         defaults=_defaults(defaults) if defaults else None,
     )

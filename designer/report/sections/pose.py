@@ -12,7 +12,7 @@ from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.sizing.loop import LoopSizing
 from designer.verdict import Verdict
 
-_MOST_TURNS = 16
+_MOST_TURNS = 8
 _LAST_TURNS = 3
 
 
@@ -144,7 +144,7 @@ def _methods(pose: PoseAnalysis) -> Table | None:
 def _cables(pose: PoseAnalysis) -> Table:
     statics = pose.sizing.statics
     largest = float(statics.largest_tension_N)
-    unit, scale = ("kN", 1e3) if largest >= 1e3 else ("N", 1.0)
+    unit, scale = _force_unit(largest)
     columns = (
         Column("Cable"),
         Column("Straight distance", "m"),
@@ -164,10 +164,12 @@ def _cables(pose: PoseAnalysis) -> Table:
         pose.massless.tension_N,
         strict=True,
     )
+    length_places = fmt.decimals([float(statics.length_m.max())], 5)
+    force_places = fmt.decimals([largest / scale], 4)
     rows = []
     for index, (lengths, loads) in enumerate(zip(metres, forces, strict=True)):
-        cells = [fmt.fixed(float(x), 3) for x in lengths]
-        cells += [fmt.fixed(float(x) / scale, 3) for x in loads]
+        cells = [fmt.fixed(float(x), length_places) for x in lengths]
+        cells += [fmt.fixed(float(x) / scale, force_places) for x in loads]
         is_worst = max(loads[2:4]) >= largest * (1.0 - 1e-9)
         rows.append(Row((str(index + 1), *cells), "good" if is_worst else ""))
     caption = (
@@ -177,16 +179,25 @@ def _cables(pose: PoseAnalysis) -> Table:
     return Table.of(caption, columns, *rows)
 
 
+def _force_unit(largest_N: float) -> tuple[str, float]:
+    """Return the unit for a column of forces, and how many newtons it has."""
+    return ("kN", 1e3) if largest_N >= 1e3 else ("N", 1.0)
+
+
 def turns_table(loop: LoopSizing) -> Table:
     """Return the turns of the loop; of a long one, the first and the last."""
     numbered = list(enumerate(loop.iterates))
     if len(numbered) > _MOST_TURNS:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
+    last = loop.iterates[-1]
+    unit, scale = _force_unit(last.max_tension_N)
+    force_places = fmt.decimals([last.max_tension_N / scale], 5)
+    places = fmt.decimals([1e3 * last.diameter_m], 4)
     rows: list[Row] = []
     for turn, iterate in numbered:
         if rows and turn > int(rows[-1].cells[0]) + 1:
             rows.append(Row(("…", "…", "…"), "muted"))
-        tension, diameter = iterate.max_tension_N / 1e3, 1e3 * iterate.diameter_m
-        rows.append(Row((str(turn), fmt.fixed(tension, 3), fmt.fixed(diameter, 3))))
-    columns = (Column("Turn"), Column("Largest tension", "kN"), Column("Diameter", "mm"))
+        tension = fmt.fixed(iterate.max_tension_N / scale, force_places)
+        rows.append(Row((str(turn), tension, fmt.fixed(1e3 * iterate.diameter_m, places))))
+    columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
     return Table.of("Turns of the loop; turn 0 is the massless start.", columns, *rows)

@@ -128,8 +128,8 @@ def selection_section(
 
 
 def product_name(grade: Grade) -> str:
-    """Return maker and product in one line."""
-    return f"{grade.product}, {grade.manufacturer}"
+    """Return product and maker in one line."""
+    return f"{grade.product}, maker {grade.manufacturer}"
 
 
 def _statement(selection: SelectionResult) -> Statement:

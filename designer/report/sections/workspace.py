@@ -193,6 +193,8 @@ def _extreme(name: str, extreme: Extreme | None, is_answer: bool) -> Row:
 
 
 def _census(census: Census) -> Table:
+    met = [verdict for verdict in Verdict if census.statuses[verdict.label] > 0]
+    names = [verdict.label.replace("_", " ") for verdict in Verdict if verdict not in met]
     rows = [
         Row(
             (
@@ -200,10 +202,9 @@ def _census(census: Census) -> Table:
                 fmt.count(census.statuses[verdict.label]),
                 fmt.share(census.statuses[verdict.label], census.samples),
                 verdict.sentence,
-            ),
-            "muted" if census.statuses[verdict.label] == 0 else "",
+            )
         )
-        for verdict in Verdict
+        for verdict in met
     ]
     columns = (
         Column("Verdict", is_number=False),
@@ -211,7 +212,8 @@ def _census(census: Census) -> Table:
         Column("Share"),
         Column("Meaning", is_number=False),
     )
-    return Table.of("Verdicts of all samples.", columns, *rows)
+    rest = f" No sample met another: {fmt.listing(names, 'or')}." if names else ""
+    return Table.of(f"Verdicts of all samples.{rest}", columns, *rows)
 
 
 def _comes_from_below(robot: Robot, workspace: Workspace) -> bool:

@@ -1,0 +1,77 @@
+"""Texts over a scene stand clear of each other, of the colour bar, and of what they name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designer.arrays import FloatArray
+from designer.report.figures import canvas, labels, overlay
+from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
+
+FRONT = View(-np.pi / 2, 0.0, np.zeros(3), 5.0)
+EMPTY = np.full((HEIGHT_PX, WIDTH_PX, 3), 255, dtype=np.uint8)
+NOTHING = np.empty((0, 2))
+MIDDLE = np.zeros(3)
+
+
+def overlap(one: Any, other: Any) -> bool:
+    return bool(one.get_window_extent().overlaps(other.get_window_extent()))
+
+
+def test_texts_at_one_place_do_not_overlap() -> None:
+    with canvas.drawing():
+        _, axes = overlay.over(EMPTY)
+        for text in ("worst pose, 51.2 mm", "119.6 kN", "sag 7.13 m"):
+            labels.write_clear(axes, FRONT, MIDDLE, text, NOTHING)
+        first, second, third = axes.texts
+        assert not (overlap(first, second) or overlap(first, third) or overlap(second, third))
+
+
+def test_a_text_leaves_lines_free_and_stays_near() -> None:
+    line = np.array([[-5.0, 0.0, 0.2], [5.0, 0.0, 0.2]])
+    clear = labels.obstacles(FRONT, [line])
+    with canvas.drawing():
+        _, axes = overlay.over(EMPTY)
+        labels.write_clear(axes, FRONT, MIDDLE, "here", clear)
+        box = axes.texts[0].get_window_extent()
+    height = HEIGHT_PX - float(FRONT.pixels(line)[0, 1])
+    assert not box.y0 <= height <= box.y1
+    assert not axes.lines  # near enough to need no line that leads to it
+
+
+def test_a_text_far_off_is_led_to_its_place() -> None:
+    grid = np.stack(np.meshgrid(np.arange(700.0, 900.0, 4.0), np.arange(400.0, 600.0, 4.0)), -1)
+    with canvas.drawing():
+        _, axes = overlay.over(EMPTY)
+        labels.write_clear(axes, FRONT, MIDDLE, "here", grid.reshape(-1, 2))
+        assert len(axes.lines) == 1
+        start = np.array(axes.lines[0].get_xydata())[0]
+    assert start == pytest.approx(FRONT.pixels(MIDDLE))
+
+
+@pytest.mark.parametrize("x_m", [-7.9, 7.9])
+def test_a_text_stays_in_the_picture(x_m: float) -> None:
+    with canvas.drawing():
+        _, axes = overlay.over(EMPTY)
+        labels.write_clear(axes, FRONT, np.array([x_m, 0.0, 4.9]), "a long name", NOTHING)
+        box = axes.texts[0].get_window_extent()
+    assert box.x0 >= 0.0
+    assert box.x1 <= WIDTH_PX
+    assert box.y1 <= HEIGHT_PX
+
+
+def test_exit_points_outside_the_picture_have_no_name() -> None:
+    exits: FloatArray = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
+    with canvas.drawing():
+        _, axes = overlay.over(EMPTY)
+        labels.write_exits(axes, FRONT, exits, NOTHING)
+        assert [text.get_text() for text in axes.texts] == ["A1"]
+
+
+def test_points_along_lines_are_close_together() -> None:
+    points = labels.obstacles(FRONT, [np.array([[-4.0, 0.0, 0.0], [4.0, 0.0, 0.0]])])
+    assert np.hypot(*np.diff(points, axis=0).T).max() < 10.0
+    assert labels.obstacles(FRONT, []).shape == (0, 2)
