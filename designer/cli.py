@@ -5,14 +5,17 @@ Nothing heavy is imported here: `designer --help` and `designer catalog` answer 
 
 from __future__ import annotations
 
+import shlex
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from designer import __version__
 from designer.errors import DesignerError, Fault, InputError
+from designer.process import readable_output, settle_in
 
 if TYPE_CHECKING:
     from designer.catalogue.registry import Catalogue
@@ -21,8 +24,27 @@ if TYPE_CHECKING:
 
 NEGATIVE_ANSWER = 1
 WRONG_INPUT = 2
+REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
+"""What `designer report` writes; the last two only where the study asks for them."""
+
+
+class Commands(TyperGroup):
+    """All commands; typer itself would give a closed pipe the status of a negative answer."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that is asked for."""
+        with readable_output():
+            return super().invoke(ctx)
+
+
+def _path(text: str) -> Path:
+    if not text.strip():  # such as "$OUT" where nothing is in it; pathlib takes it as '.'
+        raise InputError([Fault("command line", None, "", "a path is empty", "a file or folder")])
+    return Path(text)
+
 
 app = typer.Typer(
+    cls=Commands,
     help="Size the cables of large cable-driven parallel robots, and report it.",
     epilog="Start with:  designer init my-crane.yaml  then  designer report my-crane.yaml",
     no_args_is_help=True,
@@ -33,7 +55,9 @@ app = typer.Typer(
 catalog = typer.Typer(help="Look at the rope grades that are known.", no_args_is_help=True)
 app.add_typer(catalog, name="catalog")
 
-Config = Annotated[Path, typer.Argument(metavar="CONFIG", help="The study, a YAML file.")]
+Config = Annotated[
+    Path, typer.Argument(parser=_path, metavar="CONFIG", help="The study, a YAML file.")
+]
 NoPlugins = Annotated[
     bool,
     typer.Option(
@@ -44,6 +68,7 @@ NoPlugins = Annotated[
 
 def main() -> None:
     """Run the command line; a user's mistake ends with one line a fault and exit status 2."""
+    settle_in()
     try:
         app()
     except DesignerError as error:
@@ -78,7 +103,11 @@ def report(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Folder to write, CONFIG-report if left out."
+            "-o",
+            "--output",
+            parser=_path,
+            metavar="DIR",
+            help="Folder to write, CONFIG-report if left out.",
         ),
     ] = None,
     no_plugins: NoPlugins = False,
@@ -92,7 +121,7 @@ def report(
     Exit status 0: there is a cable, and it keeps the clearance asked for. 1: there is none or it
     does not, and the report says why. 2: the input is wrong, and nothing is written.
     """
-    from designer.output import output_folder
+    from designer.output import file_names, output_folder
     from designer.plugins.find import find_plugins
     from designer.report.figures.opengl import require_opengl
     from designer.study import require_enough_cables
@@ -115,7 +144,7 @@ def report(
     from designer.result_json import write_result
     from designer.selection_json import write_candidates
 
-    with output_folder(folder) as building, ProgressBars() as bars:
+    with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
         with bars.task("report", 1) as advance:
             write_report(analysis, building)
@@ -123,7 +152,8 @@ def report(
         write_result(analysis, building / "result.json")
         if analysis.selection is not None:
             write_candidates(analysis.selection, building / "candidates.csv")
-    print_summary(analysis, folder)
+        written = file_names(building)
+    print_summary(analysis, folder, written)
     if not analysis.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
 
@@ -167,7 +197,11 @@ def diagnose(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Folder to write, CONFIG-diagnosis if left out."
+            "-o",
+            "--output",
+            parser=_path,
+            metavar="DIR",
+            help="Folder to write, CONFIG-diagnosis if left out.",
         ),
     ] = None,
     no_plugins: NoPlugins = False,
@@ -182,7 +216,7 @@ def diagnose(
     Exit status 0: all structure is explained. 1: some is left. 2: the input is wrong.
     """
     from designer.measured.read import read_measured
-    from designer.output import output_folder
+    from designer.output import file_names, output_folder
     from designer.plugins.find import find_plugins
     from designer.terminal import Spinner, announce_compiling, print_diagnosis, print_left_out
 
@@ -209,9 +243,10 @@ def diagnose(
         (building / "diagnosis.json").write_text(diagnosis_text(diagnosis), encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
+        written = file_names(building)
     n_known = len(study.known_effects.problems)
     print_left_out(diagnosis.study.known_effects.problems[n_known:])
-    print_diagnosis(diagnosis, folder)
+    print_diagnosis(diagnosis, folder, written)
     if diagnosis.is_unexplained:
         raise typer.Exit(NEGATIVE_ANSWER)
 
@@ -219,7 +254,10 @@ def diagnose(
 @app.command()
 def init(
     path: Annotated[
-        Path | None, typer.Argument(metavar="PATH", help="File to write, EXAMPLE.yaml if left out.")
+        Path | None,
+        typer.Argument(
+            parser=_path, metavar="PATH", help="File to write, EXAMPLE.yaml if left out."
+        ),
     ] = None,
     example: Annotated[
         str, typer.Option("--example", metavar="NAME", help="Which study to copy; see --list.")
@@ -245,7 +283,7 @@ def init(
         raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
     target = path or Path(f"{example}.yaml")
     write_new_file(target, example_file(example).read_text(encoding="utf-8"))
-    typer.echo(f"{target} written. Next:  designer report {target}")
+    typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")
 
 
 @catalog.command("list")
@@ -334,7 +372,11 @@ def catalog_show(
 def catalog_check(
     path: Annotated[
         Path | None,
-        typer.Argument(metavar="PATH", help="Grade file, or a folder of them; else all that load."),
+        typer.Argument(
+            parser=_path,
+            metavar="PATH",
+            help="Grade file, or a folder of them; else all that load.",
+        ),
     ] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
@@ -364,7 +406,7 @@ def catalog_new_plugin(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as acme-ropes.")],
     path: Annotated[
         Path | None,
-        typer.Argument(metavar="PATH", help="New folder to write, NAME if left out."),
+        typer.Argument(parser=_path, metavar="PATH", help="New folder to write, NAME if left out."),
     ] = None,
 ) -> None:
     """Write a plugin project with one commented grade file, ready to install.
@@ -376,7 +418,7 @@ def catalog_new_plugin(
     folder = path or Path(name)
     write_plugin(name, folder)
     typer.echo(f"{folder} written. Next:")
-    typer.echo(f"  pip install -e {folder}")
+    typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
     typer.echo("  designer catalog list")
     typer.echo(f"then put your own figures into {folder / module_name(name) / 'grades'}")
 

@@ -16,20 +16,33 @@ from rich.table import Column, Table
 
 from designer.catalogue.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.catalogue.listing import GradeRow, facts, size_rows
+from designer.process import end_at_closed_pipe, is_terminal
 
 if TYPE_CHECKING:
     from designer.analysis import Analysis, PoseAnalysis
     from designer.diagnosis.result import Diagnosis
-    from designer.interference.survey import Interference, Nearest
+    from designer.interference.survey import Interference
     from designer.selection.groups_result import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Study
-    from designer.workspace.result import Extreme, WorkspaceMap
+    from designer.workspace.result import Census, Extreme, WorkspaceMap
+
+
+class _Console(Console):
+    """Ends as other programs do where nobody reads on; rich would give a negative answer."""
+
+    def on_broken_pipe(self) -> None:
+        """Be told of a closed pipe."""
+        end_at_closed_pipe()
+
 
 # A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns.
-_out = Console(highlight=False, width=None if sys.stdout.isatty() else 240)
-_notes = Console(stderr=True, highlight=False)
+_out = _Console(highlight=False, width=None if is_terminal(sys.stdout) else 240)
+_notes = _Console(stderr=True, highlight=False)
 _SMALLEST_SAVING_KG = 1e-6
+_MOST_TURNS = 12
+"""Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
+_WIDEST = 1e9
 
 
 class ProgressBars:
@@ -96,14 +109,13 @@ def print_left_out(problems: Iterable[str]) -> None:
         _notes.print(problem, markup=False, soft_wrap=True)
 
 
-def print_summary(analysis: Analysis, folder: Path) -> None:
+def print_summary(analysis: Analysis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer report``."""
     table = Table(title=escape(analysis.study.name), title_justify="left", show_header=False)
     for row in _summary(analysis):
         table.add_row(*row)
     _out.print(table)
-    names = ", ".join(sorted(file.name for file in folder.iterdir() if file.is_file()))
-    _out.print(f"{folder}: {names}", markup=False)
+    _out.print(f"{folder}: {', '.join(written)}", markup=False)
 
 
 def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
@@ -117,11 +129,13 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
     interference = None if analysis.qualities is None else analysis.qualities.interference
-    if interference is not None and interference.worst is not None:
-        yield "clearance", _clearance(interference, interference.worst)
+    if interference is not None:
+        yield "clearance", _clearance(interference)
 
 
 def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[tuple[str, str]]:
+    if not workspace.is_feasible:
+        yield "worst pose", f"[bold red]none: {_why_none(workspace.census)}[/]"
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
             yield label, _placed(extreme)
@@ -130,14 +144,16 @@ def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[tuple[str, str]]:
             share = workspace.census.fraction(name)
             text = f"{count} of {workspace.census.samples} ({share:.1%})"
             yield f"  {name.replace('_', ' ')}", text
-    if not workspace.is_feasible:
-        left_out = workspace.census.excluded == workspace.census.samples
-        why = "every pose is left out" if left_out else "part of it has no finite cable"
-        yield "worst pose", f"[bold red]none: {why}[/]"
+
+
+def _why_none(census: Census) -> str:
+    if census.excluded == census.samples:
+        return "every pose is left out"
+    return f"no cable serves {'all' if census.statuses['solved'] else 'any'} of it"
 
 
 def _placed(extreme: Extreme) -> str:
-    at = ", ".join(f"{x:.4g}" for x in extreme.position_m)
+    at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
     text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
     turn_deg = np.degrees(extreme.rotation_vector_rad)
     if turn_deg.any():
@@ -159,7 +175,12 @@ def _summary_of_selection(
     yield "  mass", mass
 
 
-def _clearance(found: Interference, worst: Nearest) -> str:
+def _clearance(found: Interference) -> str:
+    worst = found.worst
+    if worst is None:
+        return "nothing to compare: " + (
+            "all cables meet at the platform" if found.samples else "no pose is solved"
+        )
     nearest = f"{1e3 * worst.distance_m:.4g} mm between {' and '.join(worst.names)}"
     if not found.is_violated:
         return f"kept, {nearest}"
@@ -185,7 +206,7 @@ def _saving(saving_kg: float) -> str:
     return f", {abs(saving_kg):.4g} kg {'less' if saving_kg > 0.0 else 'more'}"
 
 
-def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
+def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer diagnose``."""
     table = Table(title=escape(diagnosis.study.name), title_justify="left", show_header=False)
     for finding in diagnosis.findings:
@@ -216,8 +237,7 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         if choice is not None:
             table.add_row(label, f"{choice.grade}, {choice.size_id}" if choice.grade else "none")
     _out.print(table)
-    names = ", ".join(sorted(file.name for file in folder.iterdir() if file.is_file()))
-    _out.print(f"{folder}: {names}", markup=False)
+    _out.print(f"{folder}: {', '.join(written)}", markup=False)
 
 
 def _factor(analysis: Analysis) -> str:
@@ -227,7 +247,7 @@ def _factor(analysis: Analysis) -> str:
 def _extreme(diameter_m: float, tension_N: float) -> str:
     if not np.isfinite(diameter_m):
         return "no cable"
-    return f"{1e3 * diameter_m:.3f} mm, {tension_N / 1e3:.2f} kN"
+    return f"{_figure(1e3 * diameter_m, 3)} mm, {_figure(tension_N / 1e3, 2)} kN"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:
@@ -235,23 +255,34 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
     statics = pose.sizing.statics
     _out.print(f"{study.name}: {statics_sentence(pose)}", markup=False)
     table = Table("", "diameter [mm]", "largest tension [N]", title="Sizing", title_justify="left")
-    table.add_row(
-        "massless",
-        f"{1e3 * float(pose.sizing.massless_diameter_m):.5f}",
-        f"{float(pose.sizing.massless_tension_N):.2f}",
-    )
-    for turn, iterate in enumerate(pose.loop.iterates[1:], 1):
-        table.add_row(
-            f"loop {turn}", f"{1e3 * iterate.diameter_m:.5f}", f"{iterate.max_tension_N:.2f}"
-        )
+    sizing = pose.sizing
+    rows = [("massless", float(sizing.massless_diameter_m), float(sizing.massless_tension_N))]
+    turns = [
+        (f"loop {turn}", iterate.diameter_m, iterate.max_tension_N)
+        for turn, iterate in enumerate(pose.loop.iterates[1:], 1)
+    ]
+    shown = turns if len(turns) <= _MOST_TURNS else [*turns[:_MOST_TURNS], None, turns[-1]]
+    for row in [*rows, *shown]:
+        if row is None:
+            table.add_row("…")
+        else:
+            table.add_row(row[0], _figure(1e3 * row[1], 5), _figure(row[2], 2))
     table.add_row(
         "[bold]optimum[/]",
-        f"[bold]{1e3 * float(pose.sizing.diameter_m):.5f}[/]",
-        f"[bold]{float(statics.largest_tension_N):.2f}[/]",
+        f"[bold]{_figure(1e3 * float(sizing.diameter_m), 5)}[/]",
+        f"[bold]{_figure(float(statics.largest_tension_N), 2)}[/]",
     )
     _out.print(table)
     if statics.is_solved:
         _print_cables(pose)
+
+
+def _figure(value: float, decimals: int) -> str:
+    """Return a figure as wide as a column can take; "none" where there is none."""
+    if not np.isfinite(value):
+        return "none"
+    is_plain = value == 0.0 or 10.0**-decimals <= abs(value) < _WIDEST
+    return f"{value:.{decimals}f}" if is_plain else f"{value:.6g}"
 
 
 def _print_cables(pose: PoseAnalysis) -> None:

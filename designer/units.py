@@ -59,6 +59,7 @@ class Dimension:
 
 
 NUMBER = Dimension("a plain number", "", "5")
+FRACTION = Dimension("a fraction", "", "0.9")
 LENGTH = Dimension("a length", "m", "2 mm")
 AREA = Dimension("an area", "m^2", "20 mm^2")
 ANGLE = Dimension("an angle", "rad", "10 deg")

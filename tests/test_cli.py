@@ -164,6 +164,40 @@ def test_report_into_a_file(designer) -> None:
     assert Path("out").read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [("size", ""), ("report", "a.yaml", "-o", ""), ("init", " "), ("catalog", "check", "")],
+)
+def test_an_empty_path_is_not_this_folder(designer, arguments) -> None:
+    outcome = designer(*arguments)
+    assert outcome.status == 2
+    assert outcome.err == "command line: a path is empty (expected a file or folder)\n"
+
+
+def test_a_loop_that_diverges_is_told_in_a_few_rows(designer) -> None:
+    pose = "pose: [250, 200, -1]"
+    Path("a.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", pose))
+    outcome = designer("size", "a.yaml")
+    assert outcome.status == 1
+    assert "nan" not in outcome.out
+    rows = outcome.out.splitlines()
+    assert sum("loop" in row for row in rows) == 13
+    assert max(len(row) for row in rows) < 120
+    assert "…" in rows[rows.index(next(row for row in rows if "loop 12" in row)) + 1]
+
+
+def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> None:
+    Path("a.yaml").write_text(STUDY)
+    Path("out").mkdir()
+    for name in ("mine.txt", "candidates.csv", "workspace.nc"):
+        Path("out", name).write_text("older")
+    outcome = designer("report", "a.yaml", "-o", "out")
+    assert outcome.status == 0, outcome.err
+    assert outcome.out.splitlines()[-1] == "out: report.html, report.pdf, result.json"
+    found = sorted(path.name for path in Path("out").iterdir())
+    assert found == ["mine.txt", "report.html", "report.pdf", "result.json"]
+
+
 def test_init_writes_a_study_that_reads(designer) -> None:
     assert designer("init", "crane.yaml", "--example", "yard").status == 0
     assert designer("size", "crane.yaml").status == 0
@@ -227,3 +261,21 @@ def test_report_without_a_product_is_a_negative_answer(designer) -> None:
     result = json.loads(Path("deep/out/result.json").read_text())
     assert result["selection"]["chosen"] is None
     assert "too thin" in result["selection"]["reason"]
+
+
+def test_a_workspace_that_no_cable_serves(designer) -> None:
+    outside = "region: {box: [[900, 910], [900, 910], [-60, -50]]}"
+    workspace = WORKSPACE.replace("region: {prism: anchors, inset: 30 m, z: [-200, -60]}", outside)
+    Path("a.yaml").write_text(STUDY + workspace)
+    outcome = designer("report", "a.yaml")
+    assert outcome.status == 1
+    assert "none: no cable serves any of it" in outcome.out
+    assert outcome.out.index("worst pose") < outcome.out.index("outside hull")
+
+
+def test_a_clearance_that_means_nothing_is_told(designer) -> None:
+    workspace = "workspace: {region: {points: [[250, 200, -60]]}, clearance: 1 m}\n"
+    Path("a.yaml").write_text(STUDY + workspace)
+    outcome = designer("report", "a.yaml")
+    assert outcome.status == 0, outcome.err
+    assert "nothing to compare: all cables meet at the platform" in outcome.out

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+from pathlib import Path
 
 import pytest
 
@@ -56,7 +58,7 @@ def test_read_only_folder(tmp_path) -> None:
 def test_parent_that_is_a_file(tmp_path) -> None:
     (tmp_path / "file").write_text("")
     with (
-        pytest.raises(OutputError, match="cannot be written"),
+        pytest.raises(OutputError, match=r"cannot be written \(.*file is a file\)"),
         output_folder(tmp_path / "file" / "x"),
     ):
         pass
@@ -67,3 +69,89 @@ def test_new_file_is_never_overwritten(tmp_path) -> None:
     with pytest.raises(OutputError, match="exists already"):
         write_new_file(tmp_path / "a", "2")
     assert (tmp_path / "a").read_text() == "1"
+
+
+def everything(folder: Path) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
+
+
+def test_failure_leaves_no_folder_that_was_made_for_it(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError), output_folder(tmp_path / "deep" / "report"):
+        raise RuntimeError
+    assert everything(tmp_path) == []
+
+
+def test_a_folder_where_a_file_is_to_go(tmp_path: Path) -> None:
+    (tmp_path / "report" / "b.txt").mkdir(parents=True)
+    (tmp_path / "report" / "a.txt").write_text("old")
+    with (
+        pytest.raises(OutputError, match=r"b\.txt: is a folder"),
+        output_folder(tmp_path / "report") as building,
+    ):
+        for name in ("a.txt", "b.txt", "c.txt"):
+            (building / name).write_text("new")
+    assert (tmp_path / "report" / "a.txt").read_text() == "old"
+    assert everything(tmp_path / "report") == ["a.txt", "b.txt"]
+
+
+@pytest.mark.parametrize("stop", [OSError(errno.EACCES, "Permission denied"), KeyboardInterrupt()])
+def test_old_files_come_back_where_the_move_breaks_off(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stop: BaseException
+) -> None:
+    report = tmp_path / "report"
+    with output_folder(report) as building:
+        for name in ("a.txt", "b.txt"):
+            (building / name).write_text("old")
+    replace, moved = Path.replace, []
+
+    def break_off(source: Path, target: Path) -> None:
+        if target.parent == report and source.parent.parent == report:
+            moved.append(target.name)
+            if len(moved) == 2:
+                raise stop
+        replace(source, target)
+
+    monkeypatch.setattr(Path, "replace", break_off)
+    expected = KeyboardInterrupt if isinstance(stop, KeyboardInterrupt) else OutputError
+    with pytest.raises(expected), output_folder(report) as building:
+        for name in ("a.txt", "b.txt", "c.txt"):
+            (building / name).write_text("new")
+    assert len(moved) > 1
+    assert everything(report) == ["a.txt", "b.txt"]
+    assert {path.read_text() for path in report.iterdir()} == {"old"}
+
+
+def test_what_is_outdated_goes_and_what_is_not_ours_stays(tmp_path: Path) -> None:
+    for name in ("a.txt", "b.txt", "mine.txt"):
+        (tmp_path / name).write_text("old")
+    with output_folder(tmp_path, outdated=["a.txt", "b.txt", "never.txt"]) as building:
+        (building / "a.txt").write_text("new")
+    assert everything(tmp_path) == ["a.txt", "mine.txt"]
+    assert (tmp_path / "a.txt").read_text() == "new"
+
+
+def test_a_name_that_no_file_system_takes(tmp_path: Path) -> None:
+    with (
+        pytest.raises(OutputError, match="cannot be written"),
+        output_folder(tmp_path / ("a" * 300)),
+    ):
+        pass
+
+
+def test_a_full_disk_is_told_and_other_failures_are_not_disguised(tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match="No space"), output_folder(tmp_path / "x"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    with pytest.raises(FileNotFoundError), output_folder(tmp_path / "x"):
+        raise FileNotFoundError(errno.ENOENT, "No such file", "a template of ours")
+
+
+def test_a_link_that_leads_nowhere_shows_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "report").symlink_to(tmp_path / "gone")
+    with pytest.raises(OutputError, match="leads nowhere"), output_folder(tmp_path / "report"):
+        pytest.fail("the work has begun")
+
+
+def test_a_new_file_that_breaks_off_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(UnicodeEncodeError):
+        write_new_file(tmp_path / "a", "half \ud800")
+    assert everything(tmp_path) == []

@@ -15,8 +15,10 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.config.document import Document
+from designer.config.effects import read_effects
 from designer.config.fields import Distance, Point, Rotation, Tension
 from designer.config.group_checks import GROUP_CHECKS
+from designer.config.load_checks import LOAD_CHECKS
 from designer.config.measured_checks import MEASURED_CHECKS
 from designer.config.orientation import Quaternion
 from designer.config.parts import Parts
@@ -33,6 +35,7 @@ _FLAT = 1e-6
 
 _ANCHORS = ("robot", "anchors")
 _ATTACHMENTS = ("robot", "platform", "attachments")
+_MOVED = ("effects", "anchor_offset")
 _REGION = ("workspace", "region")
 _PRISM = (*_REGION, "prism")
 
@@ -68,6 +71,21 @@ def anchors_span_area(parts: Parts) -> Iterator[Fault]:
     if len(anchors) > 2 and _rank(np.unique(seen_from_above(parts, anchors), axis=0)) < 2:
         problem = "all anchors lie on one line when seen from above"
         yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
+
+
+def moved_anchors_span_area(parts: Parts) -> Iterator[Fault]:
+    """The exit points are not on one line either where the effects say that they are."""
+    anchors = parts.array(Anchors, *_ANCHORS)
+    if anchors is None or is_planar(parts) or any(anchors_span_area(parts)):
+        return
+    moved = anchors.copy()
+    for _, effect in read_effects(parts.raw("effects"), len(anchors), parts.effects).effects:
+        if effect.id == "anchor_offset" and effect.cable is not None:
+            values = effect.parameters
+            moved[effect.cable - 1] += [values.get(name, 0.0) for name in ("x_m", "y_m", "z_m")]
+    if (moved != anchors).any() and _rank(seen_from_above(parts, moved)) < 2:
+        problem = "moves the anchors onto one line, seen from above"
+        yield parts.fault(_MOVED, problem, "anchors that span an area in x and y")
 
 
 def attachment_count(parts: Parts) -> Iterator[Fault]:
@@ -147,6 +165,9 @@ def rectangle_has_area(parts: Parts) -> Iterator[Fault]:
     ends = parts.array(Anchors, *_ANCHORS) if base == "anchors" else base
     if ends is None:
         return
+    if np.ptp(np.array(ends)[:, :2], axis=0).max() == 0.0:
+        yield parts.fault(keys, "begins and ends at one point", "two corners that are apart")
+        return
     try:
         Rectangle.over(ends, inset_m, (0.0, 1.0))
     except ValueError as error:
@@ -166,6 +187,7 @@ def catalogues_exist(parts: Parts) -> Iterator[Fault]:
 CHECKS = (
     distinct_cables,
     anchors_span_area,
+    moved_anchors_span_area,
     attachment_count,
     attachments_span_plane,
     least_tension_is_a_choice,
@@ -175,6 +197,7 @@ CHECKS = (
     catalogues_exist,
     *PLANE_CHECKS,
     *GROUP_CHECKS,
+    *LOAD_CHECKS,
     *MEASURED_CHECKS,
 )
 

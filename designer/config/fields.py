@@ -13,6 +13,7 @@ from designer.units import (
     ANGLE,
     DENSITY,
     FORCE,
+    FRACTION,
     LENGTH,
     LINEAR_DENSITY,
     MASS,
@@ -200,8 +201,9 @@ FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 Length = Annotated[float, Quantity(LENGTH, at_least=-_FARTHEST_M, at_most=_FARTHEST_M)]
 Distance = Annotated[float, Quantity(LENGTH, at_least=0.0, at_most=_FARTHEST_M)]
 Clearance = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
-LengthNoise = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
-Mass = Annotated[float, Quantity(MASS, above=0.0, at_most=1e12)]
+LengthNoise = Annotated[float, Quantity(LENGTH, above=0.0, at_least=1e-12, at_most=_FARTHEST_M)]
+TensionNoise = Annotated[float, Quantity(FORCE, above=0.0, at_least=1e-9, at_most=1e20)]
+Mass = Annotated[float, Quantity(MASS, above=0.0, at_least=1e-9, at_most=1e12)]
 Density = Annotated[float, Quantity(DENSITY, above=0.0, at_most=1e6)]
 LinearDensity = Annotated[float, Quantity(LINEAR_DENSITY, above=0.0, at_most=1e6)]
 Force = Annotated[float, Quantity(FORCE, above=0.0, at_most=1e20)]
@@ -212,10 +214,11 @@ Share = Annotated[float, Quantity(NUMBER, at_least=-1e6, at_most=1e6)]
 HalfTurn = Annotated[float, Quantity(ANGLE, at_least=-math.pi, at_most=math.pi)]
 Modulus = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e5, at_most=1e20)]
 Stress = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e3, at_most=1e20)]
-Angle = Annotated[float, Quantity(ANGLE, at_least=-100.0, at_most=100.0)]
+# A turn at most: a bare 90 that is meant in degrees shall not pass as 90 rad.
+Angle = Annotated[float, Quantity(ANGLE, at_least=-2.0 * math.pi, at_most=2.0 * math.pi)]
 SafetyFactor = Annotated[float, Quantity(NUMBER, at_least=1.0, at_most=1000.0)]
 SheaveDiameter = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
-Efficiency = Annotated[float, Quantity(NUMBER, above=0.0, at_most=1.0)]
+Efficiency = Annotated[float, Quantity(FRACTION, above=0.0, at_most=1.0)]
 
 Interval = Annotated[
     tuple[Length, Length], BeforeValidator(ListOf(2, 2, _INTERVAL)), AfterValidator(_rising)

@@ -97,6 +97,12 @@ class OrientationRangeSection(Section):
     ry: Turn | None = None
     rz: Turn | None = None
 
+    @model_validator(mode="after")
+    def _has_a_component(self) -> OrientationRangeSection:
+        if self.rx is None and self.ry is None and self.rz is None:
+            raise refusal("the range is empty", "one or more of rx, ry and rz, as [lower, upper]")
+        return self
+
     @property
     def bounds_rad(self) -> FloatArray:
         """Lowest and highest rotation vector (2, 3) [rad]."""

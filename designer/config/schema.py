@@ -44,6 +44,7 @@ from designer.config.fields import (
     SheaveDiameter,
     Stress,
     Tension,
+    TensionNoise,
     Text,
     WholeNumber,
     different,
@@ -279,7 +280,7 @@ class NoiseSection(Section):
     """Standard deviations of the measured values."""
 
     length: LengthNoise | None = None
-    tension: Force | None = None
+    tension: TensionNoise | None = None
 
 
 class MeasurementsSection(Section):

@@ -15,7 +15,7 @@ from designer.measured_data import Measured
 from designer.robot import Robot
 from designer.statics.geometry import cable_geometry
 
-_UNITS = {"millimetres": 1e3, "centimetres": 1e2, "feet": 1.0 / 0.3048}
+_UNITS = {"millimetres": 1e3, "centimetres": 1e2, "feet": 1.0 / 0.3048, "inches": 1.0 / 0.0254}
 _LEVEL_TOLERANCE = 1.1
 _SPREAD_TOLERANCE = 2.0
 _FAR_OFF = 30.0

@@ -11,6 +11,7 @@ from designer.measured.names import POSITION, length_names, tension_names
 from designer.measured.orientation import orientation, quaternion_faults
 from designer.measured.plausible import unit_faults
 from designer.measured.rows import Rows, cell_faults, usable_rows
+from designer.measured.sense import sense_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
 from designer.measured_data import Measured
@@ -50,6 +51,7 @@ def read_measured(study: Study) -> Measured:
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
     is_homed = "length_offset" not in measurements.unknown
     _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
+    _refuse(sense_faults(study.robot, measured, table, is_homed=is_homed))
     return measured
 
 

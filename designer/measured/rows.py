@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -10,15 +11,31 @@ import numpy as np
 from designer.arrays import BoolArray, IntArray
 from designer.errors import Fault
 from designer.measured.assign import Assigned
+from designer.measured.cells import MOST_ALIKE, is_number
 from designer.measured.faults import first_few, row_list
-from designer.measured.names import POSITION, TIME_NAME, length_names, tension_names
+from designer.measured.names import (
+    POSITION,
+    SPEED,
+    TEMPERATURE,
+    TIME_NAME,
+    dimension_of,
+    length_names,
+    tension_names,
+)
 from designer.measured.table import RawColumn
-from designer.units import describe
+from designer.units import ANGLE, FORCE, LENGTH, NUMBER, describe
 
 FEWEST_ROWS = 8
 _NUMBER = "a number, or nothing where there is none"
 _FINITE = "a finite number, or nothing where there is none"
 _LARGEST_NUMBER = 1e30
+_BOUNDS = {
+    LENGTH: (-1e7, 1e7),  # these three as in the config
+    FORCE: (-1e20, 1e20),
+    ANGLE: (-2.0 * math.pi, 2.0 * math.pi),
+    TEMPERATURE: (-273.15, 1e4),
+    SPEED: (-1e3, 1e3),
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,8 +64,9 @@ def is_numeric(column: RawColumn) -> bool:
 
 def cell_faults(found: Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
-    columns = [*found.ours.values(), *(c for c in found.covariates.values() if is_numeric(c))]
-    return [*_text_faults(found, columns), *_boundless_faults(found, columns)]
+    others = [("", column) for column in found.covariates.values() if is_numeric(column)]
+    columns = [*found.ours.items(), *others]
+    return [*_text_faults(found, [one for _, one in columns]), *_boundless_faults(found, columns)]
 
 
 def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
@@ -78,24 +96,49 @@ def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
 
 
 def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
+    with_text = [column for column in columns if column.n_texts]
+    if len(with_text) > 1 and all(_is_text_on_top_alone(column) for column in with_text):
+        text = describe(with_text[0].texts[0].text)
+        problem = f"holds texts, such as {text}, in {len(with_text)} columns"
+        expected = "numbers; units of columns go into measurements.columns"
+        return [found.table.fault(0, "", problem, expected)]
     faults = (
-        found.table.fault(cell.row, column.name, f"has the text {describe(cell.text)}", _NUMBER)
-        for column in columns
+        found.table.fault(
+            cell.row, column.name, f"has the text {describe(cell.text)}", _instead_of(cell.text)
+        )
+        for column in with_text
         for cell in column.texts
     )
     total = sum(column.n_texts for column in columns)
     return first_few(faults, total, found.table.name, "cells with a text")
 
 
-def _boundless_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
-    places = [(one, np.flatnonzero(np.abs(one.values) > _LARGEST_NUMBER)) for one in columns]
-    faults = (
-        found.table.fault(int(row), column.name, f"has the value {column.values[row]:g}", _FINITE)
-        for column, rows in places
-        for row in rows
-    )
-    total = sum(len(rows) for _, rows in places)
-    return first_few(faults, total, found.table.name, "infinite values")
+def _is_text_on_top_alone(column: RawColumn) -> bool:
+    return column.n_texts == 1 and column.texts[0].row == 0
+
+
+def _instead_of(text: str) -> str:
+    if "," in text and is_number(text.replace(",", "")):
+        return "a number with a decimal point and without commas"
+    return _NUMBER
+
+
+def _boundless_faults(found: Assigned, columns: list[tuple[str, RawColumn]]) -> list[Fault]:
+    faults: list[Fault] = []
+    total = 0
+    for name, column in columns:
+        dimension = dimension_of(name) or NUMBER  # a covariate has no name of ours
+        low, high = _BOUNDS.get(dimension, (-_LARGEST_NUMBER, _LARGEST_NUMBER))
+        rows = np.flatnonzero((column.values < low) | (column.values > high))
+        total += len(rows)
+        for row in rows[:MOST_ALIKE]:
+            value = float(column.values[row])
+            expected = f"{low:g} to {high:g} {dimension.unit}; units go into measurements.columns"
+            expected = _FINITE if abs(value) > _LARGEST_NUMBER else expected
+            faults.append(
+                found.table.fault(int(row), column.name, f"has the value {value:g}", expected)
+            )
+    return first_few(faults, total, found.table.name, "values out of all bounds")
 
 
 def _row_faults(

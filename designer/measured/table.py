@@ -140,9 +140,16 @@ def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
         except StopIteration:
             return
         except csv.Error as error:
-            _refuse(name, line, f"this is not valid CSV: {error}")
+            _refuse(name, line, *_no_csv(str(error)))
         if len(cells) > 1 or "".join(cells).strip():
             yield line, cells
+
+
+def _no_csv(reason: str) -> tuple[str, str]:
+    """Return the problem and what was expected, in words of our own for what users meet."""
+    if reason.startswith("new-line character"):
+        return "the lines end with carriage returns alone", "line feeds, as text files have now"
+    return f"this is not valid CSV: {reason}", _EXPECTED
 
 
 def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
@@ -152,7 +159,9 @@ def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
         _refuse(name, None, "the file is empty")
     if all(is_number(cell) for cell in names):
         _refuse(name, line, "the first line holds numbers", "the names of the columns")
-    for mark, called in ((";", "semicolons"), ("\t", "tabs")):
+    if names[0].startswith("#"):
+        _refuse(name, line, "the first line is a comment", "the names of the columns")
+    for mark, called in ((";", "semicolons"), ("\t", "tabs"), (" ", "spaces")):
         if len(names) == 1 and mark in names[0]:
             _refuse(name, line, f"the columns are separated by {called}", "by commas")
     return names

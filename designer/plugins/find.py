@@ -135,6 +135,8 @@ def _entries(with_plugins: bool) -> Iterable[EntryPoint]:
 
 
 def _hooks(entry: EntryPoint) -> dict[str, Callable[[], object]]:
+    if entry.pattern.match(entry.value) is None:
+        raise ValueError(f"its entry point {one_line(entry.value)!r} names no module")
     # A manager for each, so that pluggy looks at one stranger at a time.
     manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)

@@ -50,11 +50,16 @@ def attempt(
     error, value = answer.error, answer.value
     if error is not None:
         value = None  # one that came after all, too late
-        problems.append(f"{label} {failure}: {type(error).__name__}: {one_line(error)}: left out")
+        problems.append(f"{label} {failure}: {_told(error)}: left out")
     printed = "" if caught.closed else caught.getvalue()
     if printed:
         problems.append(f"{label} wrote to standard output: {one_line(printed)!r}")
     return value
+
+
+def _told(error: BaseException) -> str:
+    words = one_line(error)
+    return f"{type(error).__name__}: {words}" if words else type(error).__name__
 
 
 class _Answer(Generic[Value]):

@@ -17,6 +17,8 @@ the place does not count."""
 _TRIALS = 127
 _SHRINK = 0.5
 _TOLERANCE = 1e-10
+_MOST_TURNS = 300
+"""A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +56,9 @@ def refine(space: Space, demand: Demand, starts: FloatArray) -> Worst:
     size = np.ptp(space.bounds, axis=0)
     cloud = _cloud(size > 0.0)
     radius = np.full(len(at), 0.1)
-    while radius.max() > _TOLERANCE and not np.isposinf(values).any():
+    for _ in range(_MOST_TURNS):
+        if radius.max() <= _TOLERANCE or np.isposinf(values).any():
+            break
         # A new direction of the cloud each turn: on a curved boundary a fixed one would stall.
         axis = int(-np.log2(radius.min())) % len(size)
         sign = np.where(np.arange(len(size)) == axis, -1.0, 1.0)

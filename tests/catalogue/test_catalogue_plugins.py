@@ -61,7 +61,11 @@ def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
         ("acme-exit", "raise SystemExit(3)", "cannot be loaded: SystemExit: 3"),
         ("acme-hook", hook("raise KeyError('rope')"), "fails in register_grades(): KeyError"),
         ("acme-quit", hook("import sys; sys.exit(0)"), "register_grades(): SystemExit: 0"),
-        ("acme-break", hook("raise KeyboardInterrupt"), "register_grades(): KeyboardInterrupt"),
+        (
+            "acme-break",
+            hook("raise KeyboardInterrupt"),
+            "register_grades(): KeyboardInterrupt: left",
+        ),
         ("acme-misspelt", hook("return []", "register_grade"), "unknown hook 'register_grade'"),
         ("acme-number", hook("return 7"), "it returned int, not a list"),
         ("acme-nothing", hook("return None"), "it returned NoneType, not a list"),
@@ -102,6 +106,14 @@ def test_an_entry_point_that_leads_nowhere_is_reported(site):
     (problem,) = load_catalogue().problems
 
     assert problem.startswith("plugin acme-lost (acme-lost 1.2) cannot be loaded: ModuleNotFound")
+
+
+def test_an_entry_point_that_is_none_is_reported(site):
+    install_plugin(site, "acme-lost", "x = 1", entry="no such thing!")
+
+    (problem,) = load_catalogue().problems
+
+    assert problem.endswith("its entry point 'no such thing!' names no module: left out")
 
 
 def test_an_entry_point_to_what_a_module_has_not_is_reported(site):

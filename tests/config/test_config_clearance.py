@@ -37,6 +37,7 @@ def test_hull_and_clearance(study_of: Callable[[str], Study]) -> None:
     ("hull", "clearance", "field", "problem"),
     [
         ("[[0, 1], [0, 1]]", "0.1", "robot.platform.hull", "has 2 values"),
+        ("[[-9, 9], [0, 1], [0, 1]]", "0.1", "robot.platform.hull", "18.1 m from corner to"),
         ("[[0, 1], [0, 1], [1, 0]]", "0.1", "robot.platform.hull[2]", "is not below the upper"),
         ("[[0, 1], [0, 1], [0, 1]]", "0", "workspace.clearance", "0 is out of range"),
         ("[[0, 1], [0, 1], [0, 1]]", "2 kg", "workspace.clearance", "has the unit kilogram"),

@@ -154,6 +154,13 @@ def test_a_robot_with_faulty_anchors_does_not_hide_the_effects_faults(
     ]
 
 
+def test_exit_points_that_are_moved_onto_one_line(valid: str, faults_of: FaultsOf) -> None:
+    for moved in ("{cable: 3, y_m: -26}", "[{cable: 2, x_m: -15, y_m: 26}, {cable: 1, x_m: 15}]"):
+        (fault,) = faults_of(valid + effects(f"anchor_offset: {moved}"))
+        assert fault.field == "effects.anchor_offset"
+        assert fault.problem == "moves the anchors onto one line, seen from above"
+
+
 def test_names_carry_the_unit_that_a_bare_number_has() -> None:
     for effect in EFFECTS.values():
         for parameter in effect.parameters_for(2):

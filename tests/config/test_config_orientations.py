@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from designer.errors import Fault
 from designer.region import Rectangle
 from designer.space import FILLING
 from designer.study import Study, Workspace
@@ -93,3 +94,14 @@ def test_planar(study_of: Callable[[str], Study]) -> None:
     assert isinstance(region, Rectangle)
     np.testing.assert_allclose(region.size_m, [3.0, 4.0])
     np.testing.assert_allclose(sorted(region.ends_m[:, 0]), [0.6, 2.4])
+
+
+def test_an_empty_range_is_no_range(faults_of: Callable[[str], list[Fault]]) -> None:
+    (fault,) = faults_of(f"{BODY}  orientation_range: {{}}\n")
+    assert (fault.field, fault.problem) == ("workspace.orientation_range", "the range is empty")
+
+
+def test_a_rectangle_over_one_point(faults_of: Callable[[str], list[Fault]]) -> None:
+    faults = faults_of(PLANAR.replace("anchors, inset: 1", "[[1.5, 2], [1.5, 2]]"))
+    (fault,) = [one for one in faults if one.field == "workspace.region.rectangle"]
+    assert fault.problem == "begins and ends at one point"

@@ -71,6 +71,40 @@ MISTAKES: list[Mistake] = [
         "has no meaning for a point mass",
         "attachments",
     ),
+    (
+        "[15, 9, 4]",
+        "{position: [1, 2, 3], rotation_vector: [0, 0, 90]}",
+        13,
+        "pose.rotation_vector[2]",
+        "90 is out of range",
+        "at most 6.283185307 rad; a bare number is in rad",
+    ),
+    (
+        "198 MPa",
+        "198 GPa",
+        12,
+        "cable.allowable_stress",
+        "stretches the cable by 316%",
+        "at most 50%; check the unit",
+    ),
+    ("180 kg", "1e-300 kg", 8, "robot.platform.mass", "out of range", "at least 1e-09 kg"),
+    (
+        "180 kg",
+        "180 kg\n    wrench: {force: [0, 0, 1765.8]}",
+        9,
+        "robot.platform.wrench.force",
+        "cancels the platform's weight",
+        "a load that is left",
+    ),
+    (
+        "    mass: 180 kg",
+        "    mass: 180 kg\n    wrench: {force: [0, 0, 1863.9 N]}\neffects: {platform_mass: "
+        "{offset_kg: 10}}",
+        9,
+        "robot.platform.wrench.force",
+        "cancels the platform's weight",
+        "a load that is left",
+    ),
     ("prism: anchors", "prsm: anchors", 15, "workspace.region.prsm", "unknown field", "'prism'?"),
     ("prism: anchors", "prism: masts", 15, "workspace.region.prism", "is not known", "'anchors'"),
     ("prism: anchors, ", "", 15, "workspace.region", "none of the kinds", "exactly one"),
@@ -133,6 +167,14 @@ MISTAKES: list[Mistake] = [
         "selection.termination_efficiency",
         "out of range",
         "at most 1",
+    ),
+    (
+        "safety_factor: 4",
+        "termination_efficiency: 90 %",
+        18,
+        "selection.termination_efficiency",
+        "the unit percent",
+        "a fraction such as 0.9",
     ),
     (
         "safety_factor: 4",
@@ -287,6 +329,13 @@ def test_platform_geometry(
     (fault,) = faults_of(SIX.replace(old, new))
     assert fault.field == ("robot.platform.attachments" if field else "robot.anchors[5]")
     assert fault.problem.startswith(problem)
+
+
+def test_a_wrench_that_lifts_the_weight_but_turns_the_body(study_of: StudyOf) -> None:
+    lifted = "wrench: {force: [0, 0, 981], moment: [0, 0, 5]}"
+    assert "mass: 100" in SIX
+    study = study_of(SIX.replace("mass: 100", f"mass: 100\n    {lifted}"))
+    assert study.robot.pull_N[:3] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_centre_of_mass_of_a_point_mass(valid: str, faults_of: FaultsOf) -> None:

@@ -17,7 +17,7 @@ from designer.measured_data import Measured
 POINT = """\
 robot:
   anchors: [[0, 0, 12], [30, 0, 12.5], [14, 26, 11.5]]
-  platform: {mass: 180}
+  platform: {mass: 1.8}
 """
 BODY = """\
 robot:

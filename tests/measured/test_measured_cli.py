@@ -150,6 +150,26 @@ def in_another_frame(columns: Columns) -> None:
     columns["z_m"] = [f"{40.0 + float(z):.6f}" for z in columns["z_m"]]
 
 
+def exchanged(columns: Columns) -> None:
+    columns["length_1_m"], columns["length_3_m"] = columns["length_3_m"], columns["length_1_m"]
+
+
+def backwards(columns: Columns) -> None:
+    scaled(columns, LENGTHS[:1], -1.0)
+
+
+def pushing(columns: Columns) -> None:
+    scaled(columns, TENSIONS[1:2], -1.0)
+
+
+def in_kilonewtons(columns: Columns) -> None:
+    scaled(columns, TENSIONS, 1e-3)
+
+
+def in_kelvin(columns: Columns) -> None:
+    columns["temperature_C"] = [f"{290.0 + 0.1 * row:.2f}" for row in range(N_ROWS)]
+
+
 def nothing_below(columns: Columns) -> None:
     for cells in columns.values():
         cells.clear()
@@ -246,6 +266,52 @@ _MAPPED = "is missing (expected a column of this name, or one mapped onto it in"
             "",
             ["log.csv:1: length_4_m: there is no such cable, the robot has 3 (expected cables 1"],
             id="a cable too many",
+        ),
+        pytest.param(
+            exchanged,
+            "  unknown: [length_offset, drum_scale]\n",
+            [
+                "log.csv:1: length_1_m: follows the distance to exit point 3, not to 1 (expected",
+                "log.csv:1: length_3_m: follows the distance to exit point 1, not to 3 (expected",
+                "in the order of robot.anchors, or names in measurements.columns)",
+            ],
+            id="cables exchanged",
+        ),
+        pytest.param(
+            backwards,
+            "",
+            ["log.csv:1: length_1_m: falls as the distance to its exit point grows (expected"],
+            id="a length with the wrong sign",
+        ),
+        pytest.param(
+            cell("length_2_m", 7, "-3"),
+            "",
+            ["log.csv:8: length_2_m: row 7 has the length -3 m (expected more than 0; or"],
+            id="a negative length",
+        ),
+        pytest.param(
+            pushing,
+            "",
+            ["log.csv:1: tension_2_N: is -", "but no cable can push (expected a pull, or"],
+            id="a tension with the wrong sign",
+        ),
+        pytest.param(
+            in_kilonewtons,
+            "",
+            [
+                "log.csv:1: tension_1_N … tension_3_N: the tensions add up to ",
+                "but hold a load of 1766 N (expected newtons, or the unit in",
+            ],
+            id="tensions in kilonewtons",
+        ),
+        pytest.param(
+            in_kelvin,
+            "",
+            [
+                "log.csv:1: temperature_C: the temperature is about 291.6, as if it were in kelvin",
+                "(expected °C, or {to: temperature_C, unit: K} in measurements.columns)",
+            ],
+            id="temperature in kelvin",
         ),
         pytest.param(
             nothing_below,

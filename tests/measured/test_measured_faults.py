@@ -30,6 +30,9 @@ def only(faults: list[Fault]) -> Fault:
         (b"1,2\n3,4\n", 1, "the first line holds numbers"),
         (b"x_m;y_m\n1;2\n", 1, "the columns are separated by semicolons"),
         (b"x_m\ty_m\n1\t2\n", 1, "the columns are separated by tabs"),
+        (b"x_m y_m\n1 2\n", 1, "the columns are separated by spaces"),
+        (b"# a log\nx_m,y_m\n1,2\n", 1, "the first line is a comment"),
+        (b"x_m,y_m\r1,2\r", 1, "the lines end with carriage returns alone"),
         (b"x_m\n" + b"1" * 200_000, 2, "this is not valid CSV"),
         (b"x_m\n" + b"1," * 600_000, 2, "this line is too long"),
     ],
@@ -155,6 +158,48 @@ def test_text_in_a_numeric_column(log: Log, name: str, cell: str) -> None:
     assert fault.expected == "a number, or nothing where there is none"
 
 
+def test_a_row_of_units_is_told_once(log: Log) -> None:
+    log.rows.insert(0, ["s", "m", "m", "m", "m", "m", "m", "N", "N", "N"])
+    fault = only(log.faults())
+    assert (fault.line, fault.problem) == (2, "row 1 holds texts, such as 's', in 10 columns")
+    assert "measurements.columns" in fault.expected
+
+
+@pytest.mark.parametrize("cell", ["3,25", "-1,276.4", "1,276,400"])
+def test_commas_in_a_number_are_named(log: Log, cell: str) -> None:
+    log.set(7, "tension_1_N", f'"{cell}"')
+    assert only(log.faults()).expected == "a number with a decimal point and without commas"
+
+
+@pytest.mark.parametrize(
+    ("name", "cell", "expected"),
+    [
+        ("x_m", "1e29", "-1e+07 to 1e+07"),
+        ("length_2_m", "-2e7", "-1e+07 to 1e+07"),
+        ("tension_1_N", "1e29", "-1e+20 to 1e+20"),
+        ("temperature_C", "-300", "-273.15 to"),
+        ("wind_x_m_per_s", "5000", "-1000 to 1000"),
+    ],
+)
+def test_values_that_nothing_can_have(log: Log, name: str, cell: str, expected: str) -> None:
+    for added in ("temperature_C", "wind_x_m_per_s", "wind_y_m_per_s"):
+        log.add(added, [str(row % 7) for row in range(30)])
+    log.set(7, name, cell)
+    fault = only(log.faults())
+    assert (fault.line, fault.field) == (8, name)
+    assert fault.problem.startswith("row 7 has the value ")
+    assert fault.expected.startswith(expected)
+
+
+def test_angles_in_degrees(body: Log) -> None:
+    for name in ("rx_rad", "ry_rad", "rz_rad"):
+        body.add(name, [str(row % 9) for row in range(30)])
+    faults = body.faults()
+    assert {fault.field for fault in faults[:-1]} == {"rx_rad", "ry_rad", "rz_rad"}
+    assert faults[0].problem == "row 8 has the value 7"
+    assert faults[0].expected == "-6.28319 to 6.28319 rad; units go into measurements.columns"
+
+
 def test_much_text_is_told_in_few_lines(log: Log) -> None:
     for row in range(1, 31):
         log.set(row, "length_1_m", "x")
@@ -243,6 +288,14 @@ def test_all_rows_at_one_pose(log: Log) -> None:
         for name in ("x_m", "y_m", "z_m"):
             log.set(row, name, 3 + 1e-8 * row)
     assert only(log.faults()).problem.startswith("all rows are at one pose")
+
+
+def test_rows_at_few_poses(log: Log) -> None:
+    for row in range(1, 31):
+        for name in ("x_m", "y_m", "z_m"):
+            log.set(row, name, 3 + row % 4)
+    fault = only(log.faults())
+    assert (fault.problem, fault.expected) == ("the rows are at 4 different poses", "at least 5")
 
 
 def test_rows_of_another_width(log: Log) -> None:

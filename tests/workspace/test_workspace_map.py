@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,18 @@ def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
     worst = refine(box, kinked, start)
     assert worst.demand == pytest.approx(12.0, abs=1e-6)
     assert worst.place[2] == pytest.approx(4.0, abs=1e-3)
+
+
+def test_refine_ends_where_the_demand_grows_for_ever_at_one_start() -> None:
+    """One start climbs on and on while the other's cloud shrinks to nothing."""
+    box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
+    height = itertools.count()
+
+    def demand(places: np.ndarray) -> np.ndarray:
+        return np.where(places[:, 0] > 0.5, float(next(height)), -1.0)
+
+    worst = refine(box, demand, np.array([[0.9, 0.5, 0.5], [0.1, 0.5, 0.5]]))
+    assert worst.demand == next(height) - 1
 
 
 def test_refine_stops_where_nothing_is_enough() -> None:

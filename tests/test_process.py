@@ -1,0 +1,111 @@
+"""Closed pipes, full disks, poor terminals and requests to end, each in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DESIGNER = (sys.executable, "-m", "designer")
+posix = pytest.mark.skipif(os.name != "posix", reason="pipes and signals of POSIX")
+LIST = ("catalog", "list", "--maker", "unirope", "--no-plugins")
+
+
+def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    try:
+        return subprocess.run(
+            [*DESIGNER, *arguments],
+            stdout=write_end,
+            stderr=subprocess.PIPE,
+            timeout=60,
+            check=False,
+        )
+    finally:
+        os.close(write_end)
+
+
+@posix
+@pytest.mark.parametrize("command", [("init", "--list"), LIST], ids=["plain", "table"])
+def test_a_reader_who_goes_away_is_no_negative_answer(command: tuple[str, ...]) -> None:
+    done = into_closed_pipe(*command)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, b"")
+
+
+@posix
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+@pytest.mark.parametrize("command", [("init", "--list"), LIST], ids=["plain", "table"])
+def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [*DESIGNER, *command], stdout=full, stderr=subprocess.PIPE, timeout=60, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr.startswith(b"standard output: cannot be written")
+    assert done.stderr.count(b"\n") == 1
+
+
+@posix
+def test_no_output_at_all() -> None:
+    closed = f"exec {' '.join([*DESIGNER, *LIST])} >&-"
+    done = subprocess.run(["sh", "-c", closed], capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_letters_that_the_terminal_lacks_become_question_marks() -> None:
+    done = subprocess.run(
+        [*DESIGNER, *LIST],
+        capture_output=True,
+        timeout=60,
+        check=False,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"unirope-7x19-galvanised" in done.stdout
+    assert b"2.381?9.525" in done.stdout
+
+
+@posix
+@pytest.mark.parametrize("request_to_end", [signal.SIGTERM, signal.SIGINT])
+def test_a_request_to_end_leaves_nothing_behind(
+    tmp_path: Path, request_to_end: signal.Signals
+) -> None:
+    code = (
+        "import time\nfrom pathlib import Path\n"
+        "from designer.output import output_folder\n"
+        "from designer.process import settle_in\nsettle_in()\n"
+        "with output_folder(Path('deep/report')) as building:\n"
+        "    (building / 'half').write_text('')\n"
+        "    print('at work', flush=True)\n    time.sleep(60)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"at work\n"
+        process.send_signal(request_to_end)
+        status = process.wait(timeout=60)
+    assert status != 0
+    assert list(tmp_path.iterdir()) == []
+
+
+@posix
+def test_notes_that_nobody_reads_are_no_negative_answer() -> None:
+    note = "from designer.terminal import print_left_out; print_left_out(['a note'])"
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", note], stderr=write_end, timeout=60, check=False
+        )
+    finally:
+        os.close(write_end)
+    assert done.returncode == 128 + signal.SIGPIPE
