@@ -8,6 +8,8 @@ from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+
 from designer import __version__
 from designer.catalogue.registry import Catalogue
 from designer.declared import as_built_by
@@ -48,6 +50,23 @@ class PoseAnalysis:
     massless: MasslessStatics
     loop: LoopSizing
     limit_ratio: float
+
+    @property
+    def caution(self) -> str:
+        """What a reader must know of cables that hang below the platform; empty if none does."""
+        statics = self.sizing.statics
+        if not (statics.is_solved and statics.hangs_below):
+            return ""
+        geometry = statics.geometry()
+        hangs = (statics.force_z_N > 0.0) & (geometry.drop_m >= 0.0)
+        each = [
+            f"Cable {k + 1} hangs below the platform, {statics.length_m[k]:.4g} m long over a "
+            f"distance of {geometry.chord_m[k]:.4g} m."
+            for k in np.flatnonzero(hangs)
+        ]
+        if not np.isfinite(self.sizing.massless_tension_N):
+            each.append("Straight cables cannot hold this pose: what hangs there is a weight.")
+        return " ".join(each)
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,6 +141,17 @@ def test_unknown_grade_names_line_and_neighbours(designer) -> None:
     assert not Path("study-report").exists()
 
 
+def test_size_tells_of_a_cable_that_serves_as_a_weight(designer) -> None:
+    sideways = "platform: {mass: 4000 kg, wrench: {force: [200 kN, 0, 0]}}"
+    Path("study.yaml").write_text(STUDY.replace("platform: {mass: 4000 kg}", sideways))
+    outcome = designer("size", "study.yaml")
+    assert outcome.status == 0
+    assert "hangs below the platform" in outcome.out
+    assert "Straight cables cannot hold this pose" in outcome.out
+    Path("study.yaml").write_text(STUDY)
+    assert "hangs" not in designer("size", "study.yaml").out
+
+
 def test_size_without_a_pose(designer) -> None:
     Path("study.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", ""))
     told = designer("size", "study.yaml")

@@ -14,7 +14,7 @@ from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outlie
 from designer.diagnosis.fit import Fit, fit
 from designer.diagnosis.foretell import foretell
 from designer.diagnosis.hold import Outcome, search_and_hold
-from designer.diagnosis.noise import noise_of, rescaled
+from designer.diagnosis.noise import noise_of, rescaled, rough_noise
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
@@ -23,7 +23,7 @@ from designer.diagnosis.structure import covariates_of, find_structure
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
-from designer.measured_data import EVEN, Measured
+from designer.measured_data import Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2
@@ -112,8 +112,9 @@ def _with_settled_noise(
 ) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
-    unit = Problem(measured, predict, EVEN)
-    noise = noise_of(case.measurements, measured, unit.residual(_given_fit(unit, case, rows)))
+    rough = Problem(measured, predict, rough_noise(measured))
+    left = rough.residual(_given_fit(rough, case, rows)) * rough.sigma
+    noise = noise_of(case.measurements, measured, left)
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
         outcome = search_and_hold(problem, case.candidates, case.given, rows, progress)
@@ -131,8 +132,8 @@ def _with_settled_noise(
     return outcome
 
 
-def _given_fit(unit: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ...]:
-    return fit(unit, case.given, rows).settings if case.given else ()
+def _given_fit(rough: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ...]:
+    return fit(rough, case.given, rows).settings if case.given else ()
 
 
 def _finding(

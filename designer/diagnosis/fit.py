@@ -14,6 +14,7 @@ from designer.effects.effect import Effect, Setting, Values
 _HUBER = 3.0
 _STEP = 1e-3
 _TRIAL_TURNS, _ALL_TURNS = 12, 80
+_MOST_JUDGED = 5
 _TRIAL_TOLERANCE, _TOLERANCE = 1e-5, 1e-8
 
 
@@ -156,28 +157,34 @@ def _fit_from(
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
-    answer = least_squares(
-        lambda v: problem.residual(settings_at(effects, v))[taken],
-        inside,
-        jac=lambda v: jacobian(problem, effects, v)[taken],
-        bounds=(low, high),
-        x_scale=[p.typical for p in parameters],
-        loss="huber",
-        f_scale=_HUBER,
-        xtol=tolerance,
-        ftol=tolerance,
-        max_nfev=turns,
-    )
+    for _ in range(_MOST_JUDGED):
+        answer = least_squares(
+            lambda v: problem.residual(settings_at(effects, v))[taken],
+            inside,
+            jac=lambda v: jacobian(problem, effects, v)[taken],
+            bounds=(low, high),
+            x_scale=[p.typical for p in parameters],
+            loss="huber",
+            f_scale=_HUBER,
+            xtol=tolerance,
+            ftol=tolerance,
+            max_nfev=turns,
+        )
+        if not problem.predict.trust_anew(settings_at(effects, answer.x), problem.noise):
+            break
+        inside = answer.x
     loss, count = 2.0 * float(answer.cost), problem.free_readings(taken)
     variance = max(1.0, loss / max(count - len(start), 1))
     slopes = answer.jac  # scaled by Huber's weights, so that outliers add no certainty
     scale = np.linalg.norm(slopes, axis=0)
-    scale[scale == 0.0] = 1.0
+    is_unseen = scale == 0.0
+    scale[is_unseen] = 1.0
     covariance = np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-12)
+    spread = np.maximum(np.diag(covariance), 0.0)  # rounding may make it negative
     return Fit(
         settings=settings_at(effects, answer.x),
         vector=answer.x,
-        std=np.sqrt(variance * np.diag(covariance)) / scale,
+        std=np.where(is_unseen, np.inf, np.sqrt(variance * spread) / scale),
         loss=loss,
         n_data=count,
     )

@@ -11,6 +11,16 @@ from designer.measured_data import Measured, Noise
 from designer.study import Measurements
 
 _MAD_TO_STD = 1.4826
+_ROUGH_LENGTH, _ROUGH_TENSION = 0.01, 0.1
+
+
+def rough_noise(measured: Measured) -> Noise:
+    """Return what a model may be off by at first: 1 % of a length, 10 % of a tension."""
+    length, tension = (
+        float(np.median(kind[~np.isnan(kind)])) if np.isfinite(kind).any() else 1.0
+        for kind in (np.abs(measured.length_m), np.abs(measured.tension_N))
+    )
+    return Noise(_ROUGH_LENGTH * length, _ROUGH_TENSION * tension, "rough")
 
 
 def noise_of(measurements: Measurements, measured: Measured, residual_SI: FloatArray) -> Noise:

@@ -173,4 +173,5 @@ def _permutation(rng: np.random.Generator, count: int, settled: bool) -> IntArra
 
 
 def _varies(column: FloatArray) -> bool:
-    return bool(np.nanstd(column) > 1e-12 * (1.0 + np.abs(np.nanmean(column))))
+    known = column[~np.isnan(column)]
+    return bool(known.size and np.std(known) > 1e-12 * (1.0 + np.abs(np.mean(known))))

@@ -4,12 +4,13 @@ With more cables than degrees of freedom a pose leaves the tensions a choice, an
 lengths. Here the choice is the one whose lengths l and tensions T at the exit points come nearest
 to what was read of them:
 
-    minimise  Σ ρ((l* - l)/σ_l) + Σ ρ((T* - T)/σ_T) + Σ ((T₀ - w c p)/σ₀)²
+    minimise  Σ ρ((l* - l)/σ_l) + Σ ρ((T* - T)/σ_T) + Σ (ln(p/p₀)/s)²
     subject to the platform's balance, every cable an elastic catenary,
 
-with Huber's ρ, so that a wild reading moves little, and a weak pull toward tensions T₀ = w c p₀ (c
-the chord) that settles what the readings leave open. Each cable is condensed to its pull p, as in
-`designer.kernel.square`; a step is that of Gauss and Newton with the balance linearised:
+with Huber's ρ, so that a wild reading moves little, and a weak hold of the pulls p near p₀, within
+a factor of about e^s, that settles what the readings leave open. Each cable is condensed to its
+pull p, as in `designer.kernel.square`; a step is that of Gauss and Newton with the balance
+linearised:
 
     dp = -h⁻¹ (∇ + Gᵀ ν),   (G h⁻¹ Gᵀ) ν = -r - G h⁻¹ ∇
 
@@ -44,14 +45,16 @@ from designer.kernel.layout import (
 from designer.kernel.linear import solve_lanes
 from designer.kernel.step import advance, assemble, linearise, place
 
-# Rows of a cable beside those of the layout: chord, gradient and curvature of the sum.
-_CHORD, _GRADIENT, _CURVATURE = CABLE_ROWS, CABLE_ROWS + 1, CABLE_ROWS + 2
-_ROWS = CABLE_ROWS + 3
+# Rows of a cable beside those of the layout: gradient and curvature of the sum.
+_GRADIENT, _CURVATURE = CABLE_ROWS, CABLE_ROWS + 1
+_ROWS = CABLE_ROWS + 2
 
-_MOST_TURNS = 60
+_MOST_TURNS = 100
+_PATIENCE = 15
+"""Turns after which steps are made shorter: readings far off may let them overshoot."""
 _LAST_TURNS = 6
 """Turns that mend the balance alone: readings far off may never come to rest."""
-_SMALL_STEP = 1e-12
+_SMALL_STEP = 1e-10
 _CLOSED = 1e-10
 """Newton's last correction of a length, relative; the error is its square."""
 _HUBER = 3.0
@@ -94,7 +97,7 @@ def solve_internal_poses(
     pull : array (n_poses, n_cables)
         Pulls p₀ to start from.
     spread : float
-        How far tensions may lie from T₀, σ₀ [N].
+        By how much pulls may differ from p₀, s, as a logarithm.
     scale : array (degrees of freedom,)
         What makes forces of the balance's rows.
     out : array (n_poses, n_cables, 3)
@@ -120,6 +123,7 @@ def solve_internal_poses(
             assemble(slopes, cables, poses, cable_weight, rows, n)
             for i in range(n):
                 _judge(cables[i], read, noise, pull, cable_weight[i], spread, lane, i)
+                cables[i, _CURVATURE] *= 1.0 + turn // _PATIENCE
                 if turn >= _MOST_TURNS - _LAST_TURNS:
                     cables[i, _GRADIENT] = 0.0
             _set_normal(normal, slopes, cables, n, m)
@@ -138,12 +142,11 @@ def solve_internal_poses(
 
 @kernel
 def _start(cables: FloatArray, pull: FloatArray, kappa: FloatArray, lane: IntArray, n: int) -> None:
-    """Set chords, first pulls, and the lengths of straight cables that pull so."""
+    """Set the first pulls, and the lengths of straight cables that pull so."""
     for i in range(n):
         row = cables[i]
         for j in range(LANES):
             p, chord = pull[lane[j], i], row[L, j]
-            row[_CHORD, j] = chord
             row[P, j] = p
             row[L, j] = chord / (1.0 + kappa[i] * p * chord)
 
@@ -166,9 +169,9 @@ def _judge(
         upward, upward_p = row[V, j] + length, row[V_P, j] + slope
         tension = w * np.sqrt(p * p * row[X2, j] + upward * upward)
         tension_p = w * w * (p * row[X2, j] + upward * upward_p) / tension
-        to_spread = w * row[_CHORD, j] / spread
-        gradient = (p - pull[at, i]) * to_spread**2
-        curvature = to_spread**2
+        hold = 1.0 / (p * spread)
+        gradient = hold * np.log(p / pull[at, i]) / spread
+        curvature = hold**2
         for value, value_p, k in ((length, slope, 0), (tension, tension_p, 1)):
             residual = (read[at, i, k] - value) / noise[k]
             share = _share(residual)

@@ -9,7 +9,11 @@ from designer.analysis import Provenance
 from designer.diagnosis.result import Diagnosis
 from designer.report.context import Heading
 from designer.report.diagnosis_drawings import DiagnosisPictures, draw
-from designer.report.diagnosis_sections.appendix import created, provenance_facts
+from designer.report.diagnosis_sections.appendix import (
+    created,
+    internal_forces,
+    provenance_facts,
+)
 from designer.report.diagnosis_sections.data import DataSection, data_section
 from designer.report.diagnosis_sections.errors import ErrorsSection, errors_section
 from designer.report.diagnosis_sections.first_page import FirstPage, first_page
@@ -51,6 +55,9 @@ class DiagnosisContext:
         The search, round by round.
     data : DataSection
         What was measured.
+    internal_forces : str
+        Where they are taken from, on a robot whose cables outnumber its degrees of freedom or fall
+        short of them; else empty.
     provenance : tuple of Fact
         Where the numbers come from.
     """
@@ -67,6 +74,7 @@ class DiagnosisContext:
     unexplained: UnexplainedSection | None
     search: SearchSection
     data: DataSection
+    internal_forces: str
     provenance: tuple[Fact, ...]
 
     def heading(self, section_id: str) -> Heading:
@@ -101,6 +109,7 @@ def build_diagnosis_context(
         unexplained=unexplained_section(diagnosis, pictures.left),
         search=search_section(diagnosis),
         data=data_section(diagnosis),
+        internal_forces=internal_forces(diagnosis),
         provenance=provenance_facts(diagnosis, provenance),
     )
 

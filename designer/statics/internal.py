@@ -22,6 +22,8 @@ from designer.statics.task import PulleyRun, over_pulleys
 from designer.verdict import Verdict
 
 _LEAST_PULL = 1.0 / 16.0
+_LEAST_SHARE = 0.05
+_SPREAD = 1.0
 _CLOSES = 1e-9
 
 
@@ -37,8 +39,9 @@ def solve_internal(
     """Return the balance of poses (n_poses,) that comes nearest to what was read of them.
 
     Nearest is meant as in `designer.kernel.internal`: robust least squares in units of noise. What
-    the readings leave open is settled by a weak pull toward the smallest tensions that hold the
-    pose, as if these were known to within the platform's weight.
+    the readings leave open is settled by a weak hold near the smallest tensions that hold the pose,
+    none below 5 % of the platform's weight nor `Robot.tension_min_N`, as if these were known to
+    within a factor of e.
 
     Parameters
     ----------
@@ -60,6 +63,7 @@ def solve_internal(
     from designer.kernel import internal as kernel
 
     _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
+    least_N = max(_LEAST_SHARE * robot.weight_N, robot.tension_min_N)
     weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
     n, count = robot.n_cables, len(poses.position_m)
     upright = upright_poses(robot, poses)
@@ -68,7 +72,7 @@ def solve_internal(
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         chord = cable_geometry(robot, poses, run.exit_points_m).chord_m
-        pull = np.fmax(start_N, robot.tension_min_N) / (weight * chord)
+        pull = np.fmax(start_N, least_N) / (weight * chord)
         out = np.empty((count, n, 3))
         kernel.solve_internal_poses(
             plain(run.exit_points_m).reshape(-1, n, 3),
@@ -84,7 +88,7 @@ def solve_internal(
             plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
             plain(noise),
             plain(np.fmax(pull, _LEAST_PULL)),
-            robot.weight_N,
+            _SPREAD,
             scale,
             out,
             rest,

@@ -1,6 +1,6 @@
 """How well the diagnosis names an effect that nobody declared, on simulated twins.
 
-    python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,hall6,hall8]
+    python tests/benchmarks/diagnosis.py [--seeds 1] [--nothing 200] [--robots yard3,fast3,…]
                                          [--sizes 2,5,10,30] [--only singles,nothing,pairs,unlisted]
 
 The twins come from physics that shares nothing with the product (`tests/twins`). Prints, for each

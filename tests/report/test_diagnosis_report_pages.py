@@ -26,6 +26,7 @@ from designer.report.diagnosis import (
     write_diagnosis,
 )
 from designer.report.diagnosis_drawings import draw
+from designer.report.diagnosis_sections.appendix import internal_forces
 from designer.report.diagnosis_sections.design import design_section
 from designer.report.diagnosis_sections.search import search_section
 from designer.report.render import DIAGNOSIS, render_html
@@ -256,3 +257,34 @@ def test_the_context_is_documented() -> None:
     documented = DiagnosisContext.__doc__ or ""
     for field in dataclasses.fields(DiagnosisContext):
         assert re.search(rf"^ +(.*, )?{field.name}(, .*)? : ", documented, re.MULTILINE), field.name
+
+
+def test_the_lengths_alone_lead_to_the_platform(pages: Callable[[str], str]) -> None:
+    text = visible(pages("pulley"))
+    first, last = re.search(
+        r"By the lengths alone the platform would be (\S+) mm off; now it is (\S+) mm", text
+    ).groups()
+    assert float(last) < 0.1 * float(first)
+    assert "Position of the platform [mm]" in text
+    assert "would be" not in visible(pages("nothing"))
+
+
+@pytest.mark.parametrize(
+    ("n_cables", "expected"),
+    [
+        (2, "fewer cables than degrees of freedom"),
+        (3, ""),
+        (4, "1 cable to spare. The internal forces of each row are taken from its own"),
+        (5, "2 cables to spare"),
+    ],
+)
+def test_where_internal_forces_come_from(
+    diagnoses: dict[str, Diagnosis], n_cables: int, expected: str
+) -> None:
+    diagnosis = diagnoses["nothing"]
+    exits = np.resize(diagnosis.machine.robot.exit_points_m, (n_cables, 3))
+    robot = dataclasses.replace(diagnosis.machine.robot, exit_points_m=frozen_array(exits))
+    machine = dataclasses.replace(diagnosis.machine, robot=robot)
+    text = internal_forces(dataclasses.replace(diagnosis, machine=machine)).replace("\u00a0", " ")
+    assert expected in text
+    assert bool(text) == bool(expected)

@@ -32,3 +32,22 @@ def provenance_facts(diagnosis: Diagnosis, provenance: Provenance) -> tuple[Fact
 def created(provenance: Provenance) -> str:
     """Return date and time of the diagnosis."""
     return provenance.created.strftime("%Y-%m-%d %H:%M %z").strip()
+
+
+def internal_forces(diagnosis: Diagnosis) -> str:
+    """Return where the tensions come from where the pose alone does not tell them; else nothing."""
+    robot = diagnosis.machine.robot
+    if robot.is_redundant:
+        spare = robot.n_cables - robot.degrees_of_freedom
+        given_up = "one reading" if spare == 1 else f"{spare} readings"
+        return (
+            f"The robot has {fmt.plural(spare, 'cable')} to spare. The internal forces of each row "
+            f"are taken from its own lengths and tensions, which gives up {given_up} of the row; "
+            "only what contradicts the others is held against the model."
+        )
+    if not robot.has_enough_cables:
+        return (
+            "The robot has fewer cables than degrees of freedom, so it sways. The tensions are "
+            "those of straight cables that come nearest to balance."
+        )
+    return ""

@@ -59,7 +59,7 @@ def verdict(diagnosis: Diagnosis) -> Statement:
     found = [words.plain_finding(finding) for finding in diagnosis.findings]
     left = _left(diagnosis)
     if found:
-        text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}"
+        text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
         if left:
             return Statement("Found in part", f"{text} {left}", "doubt")
         doubtful = any(f.rivals or f.warnings for f in diagnosis.findings)
@@ -96,6 +96,14 @@ def _drop(diagnosis: Diagnosis) -> str:
         noise = f"{quantity.in_noise(after.heldout.value)} times the noise"
         parts.append(f"of {quantity.name} {change} ({noise})")
     return f"On rows that no fit has seen, the error {fmt.listing(parts, 'and that')}."
+
+
+def _foretold(diagnosis: Diagnosis) -> str:
+    before, after = diagnosis.foretold_before, diagnosis.foretold_after
+    if before is None or after is None:
+        return ""
+    first, last = (fmt.millimetres(one.position_m.value) for one in (before, after))
+    return f" By the lengths alone the platform would be {first} off; now it is {last}."
 
 
 def _finding(finding: Finding) -> Statement:

@@ -72,8 +72,8 @@ def _statement(pose: PoseAnalysis, verdict: Verdict) -> Statement:
         f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} holds this pose. "
         f"Its largest tension is {fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
     )
-    if pose.sizing.statics.hangs_below:
-        text += " At least one cable hangs below the platform."
+    if pose.caution:
+        return Statement("This pose can be held", f"{text} {pose.caution}", "doubt")
     return Statement("This pose can be held", text, "good")
 
 
