@@ -24,6 +24,7 @@ from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import LoopSizing, size_by_loop
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import MasslessStatics, solve_massless
+from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.samples import sample_count
@@ -44,12 +45,15 @@ class PoseAnalysis:
         The basic loop with its iterates.
     limit_ratio : float
         Stress at infinite section over allowable stress; at 1 no finite cable is left.
+    rest : RestingPlaces or None
+        Whether the platform stays there on cables of the optimum; None where there is none.
     """
 
     sizing: Sizing
     massless: MasslessStatics
     loop: LoopSizing
     limit_ratio: float
+    rest: RestingPlaces | None
 
     @property
     def caution(self) -> str:
@@ -178,11 +182,17 @@ def analyse_pose(study: Study) -> PoseAnalysis | None:
         return None
     built = as_built_by(study)
     robot, material = built.robot, built.material(study.material)
+    sizing = size_poses(robot, study.pose, material)
+    rest = None
+    if sizing.statics.is_solved:
+        cable = material.cable(float(sizing.diameter_m))
+        rest = resting_places(robot, study.pose, cable, sizing.statics.length_m)
     return PoseAnalysis(
-        sizing=size_poses(robot, study.pose, material),
+        sizing=sizing,
         massless=solve_massless(robot, study.pose),
         loop=size_by_loop(robot, study.pose, material),
         limit_ratio=float(limit_ratio(robot, study.pose, material)),
+        rest=rest,
     )
 
 

@@ -16,6 +16,7 @@ from designer.interference.survey import Interference
 from designer.output import write_whole
 from designer.qualities import Qualities
 from designer.selection_json import selection_dict
+from designer.statics.rest import RestingPlaces
 from designer.study import Study
 from designer.verdict import Verdict
 from designer.workspace.result import Extreme, WorkspaceMap
@@ -106,6 +107,19 @@ def _pose(pose: PoseAnalysis) -> Json:
             ],
         },
         "optimum": {"diameter_m": diameter},
+        "rest": _rest(pose.rest),
+    }
+
+
+def _rest(rest: RestingPlaces | None) -> Json | None:
+    if rest is None:
+        return None
+    return {
+        "stable": rest.is_stable,
+        "starts": rest.starts,
+        "other_places": rest.others,
+        "nearest_m": _number(rest.nearest_m),
+        "nearest_turn_rad": _number(rest.nearest_turn_rad),
     }
 
 

@@ -275,8 +275,9 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
     _out.print(table)
     if statics.is_solved:
         _print_cables(pose)
-    if pose.caution:
-        _out.print(pose.caution, markup=False, soft_wrap=True)
+    for remark in (pose.caution, pose.rest.sentence if pose.rest else ""):
+        if remark:
+            _out.print(remark, markup=False, soft_wrap=True)
 
 
 def _figure(value: float, decimals: int) -> str:

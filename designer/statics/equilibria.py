@@ -95,10 +95,12 @@ def find_equilibria(
 def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5, seed: int = 0) -> Poses:
     """Return poses to start from: under the exit points, turned by up to some angle (count,).
 
+    Those of a planar robot lie in its plane.
+
     Parameters
     ----------
     robot : Robot
-        Its exit points span the plan; heights go down from the highest by half their extent.
+        Its exit points span the plan; they go down from the highest by half their extent.
     count : int
         How many poses; the first is in the middle and not turned.
     largest_turn_rad : float
@@ -107,7 +109,8 @@ def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5, seed: 
         Of the random choice.
     """
     rng = np.random.default_rng(seed)
-    exits = robot.exit_points_m
+    upright = robot.upright
+    exits = robot.exit_points_m @ upright.T
     weights = rng.dirichlet(np.ones(len(exits)), count)
     weights[0] = 1.0 / len(exits)
     position = weights @ exits
@@ -115,9 +118,12 @@ def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5, seed: 
     depth = rng.uniform(0.05, 0.5, count)
     depth[0] = 0.25
     position[:, 2] = exits[:, 2].max() - depth * extent
+    position = position @ upright
     if robot.is_point_mass:
         return Poses.at(position)
     axis = rng.normal(size=(count, 3))
+    if robot.is_planar:
+        axis = axis[:, :1] * upright[1]
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
     turn = largest_turn_rad * rng.uniform(size=(count, 1)) * axis
     turn[0] = 0.0

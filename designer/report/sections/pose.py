@@ -88,6 +88,8 @@ def _facts(pose: PoseAnalysis) -> tuple[Fact, ...]:
             "at 100 % no finite cable is left"
         )
         facts.append(Fact("Limit ratio", fmt.percent(pose.limit_ratio), meaning))
+    if pose.rest is not None:
+        facts.append(Fact("Forward statics", pose.rest.sentence))
     if statics.is_solved:
         closure = float(np.max(statics.closure_residual_m()))
         balance = float(np.max(np.abs(statics.equilibrium_residual_N())))
