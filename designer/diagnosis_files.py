@@ -11,7 +11,16 @@ from typing import Any
 
 from designer import __version__
 from designer.diagnosis.design import declared_by
-from designer.diagnosis.result import Choice, Diagnosis, Error, Finding, Foretold, Interval
+from designer.diagnosis.result import (
+    Choice,
+    Diagnosis,
+    Error,
+    Finding,
+    Foretold,
+    Interval,
+    Proposal,
+    Withdrawn,
+)
 from designer.study import DeclaredEffect
 
 Json = dict[str, Any]
@@ -19,66 +28,29 @@ Json = dict[str, Any]
 
 def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     """Return everything that ``diagnosis.json`` holds; a missing number is None."""
-    strongest = diagnosis.structure_after.carriers[:1]
-    before, after = diagnosis.stages[0], diagnosis.final
-    noise = diagnosis.noise
     return {
         "name": diagnosis.study.name,
-        "rows": {
-            "fit": int((~diagnosis.heldout).sum()),
-            "heldout": int(diagnosis.heldout.sum()),
-            "outliers": [
-                {"row": o.row, "reading": o.channel, "size": _number(o.size)}
-                for o in diagnosis.outliers
-            ],
-            "notes": list(diagnosis.measured.notes),
-        },
+        "rows": _rows(diagnosis),
         "effects": [_finding(finding) for finding in diagnosis.findings],
-        "withdrawn": [
-            {
-                "id": w.effect,
-                "reason": w.reason.name.lower(),
-                "covariate": w.covariate or None,
-                "variation": _number(w.variation),
-            }
-            for w in diagnosis.withdrawn
-        ],
+        "withdrawn": [_withdrawn(one) for one in diagnosis.withdrawn],
         "left_out": list(diagnosis.study.known_effects.problems),
         "skipped": [{"id": key, "reason": reason} for key, reason in diagnosis.skipped],
         "unknown": [
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}
             for s in diagnosis.given
         ],
-        "unexplained": {
-            "present": diagnosis.is_unexplained,
-            "strongest_covariate": strongest[0].name if strongest else None,
-            "fraction_of_variance": _number(strongest[0].fraction_of_variance)
-            if strongest
-            else None,
-            "chance": _number(strongest[0].chance) if strongest else None,
-        },
-        "error": {
-            "length_m": _before_after(before.length_m, after.length_m, noise.length_m),
-            "tension_N": _before_after(before.tension_N, after.tension_N, noise.tension_N),
-        },
+        "unexplained": _unexplained(diagnosis),
+        "error": _errors(diagnosis),
         "forward": {
             "before": _foretold(diagnosis.foretold_before),
             "after": _foretold(diagnosis.foretold_after),
         },
-        "noise": {"source": noise.source},
+        "noise": {"source": diagnosis.noise.source},
         "stages": [
             {"label": s.label, "length_m": _error(s.length_m), "tension_N": _error(s.tension_N)}
             for s in diagnosis.stages
         ],
-        "proposals": [
-            {
-                "found": p.found,
-                "rival": p.rival,
-                "poses": p.positions_m.tolist(),
-                "separation": [_number(float(x)) for x in p.separation],
-            }
-            for p in diagnosis.proposals
-        ],
+        "proposals": [_proposal(one) for one in diagnosis.proposals],
         "design": {
             "before": _choice(diagnosis.design_before),
             "after": _choice(diagnosis.design_after),
@@ -131,6 +103,55 @@ def _move_paths(document: Any, old: Path, new: Path) -> None:
         document["measurements"]["file"] = moved(document["measurements"]["file"])
     if document.get("catalogues"):
         document["catalogues"] = [moved(path) for path in document["catalogues"]]
+
+
+def _rows(diagnosis: Diagnosis) -> Json:
+    return {
+        "fit": int((~diagnosis.heldout).sum()),
+        "heldout": int(diagnosis.heldout.sum()),
+        "outliers": [
+            {"row": o.row, "reading": o.channel, "size": _number(o.size)}
+            for o in diagnosis.outliers
+        ],
+        "notes": list(diagnosis.measured.notes),
+    }
+
+
+def _withdrawn(withdrawn: Withdrawn) -> Json:
+    return {
+        "id": withdrawn.effect,
+        "reason": withdrawn.reason.name.lower(),
+        "covariate": withdrawn.covariate or None,
+        "variation": _number(withdrawn.variation),
+    }
+
+
+def _unexplained(diagnosis: Diagnosis) -> Json:
+    carriers = diagnosis.structure_after.carriers
+    strongest = carriers[0] if carriers else None
+    return {
+        "present": diagnosis.is_unexplained,
+        "strongest_covariate": strongest.name if strongest else None,
+        "fraction_of_variance": _number(strongest.fraction_of_variance) if strongest else None,
+        "chance": _number(strongest.chance) if strongest else None,
+    }
+
+
+def _errors(diagnosis: Diagnosis) -> Json:
+    before, after, noise = diagnosis.stages[0], diagnosis.final, diagnosis.noise
+    return {
+        "length_m": _before_after(before.length_m, after.length_m, noise.length_m),
+        "tension_N": _before_after(before.tension_N, after.tension_N, noise.tension_N),
+    }
+
+
+def _proposal(proposal: Proposal) -> Json:
+    return {
+        "found": proposal.found,
+        "rival": proposal.rival,
+        "poses": proposal.positions_m.tolist(),
+        "separation": [_number(float(x)) for x in proposal.separation],
+    }
 
 
 def _finding(finding: Finding) -> Json:

@@ -60,56 +60,75 @@ def solve_internal(
     Statics
         ``not converged`` where the balance does not close to 1e-9 of the largest tension.
     """
-    from designer.kernel import internal as kernel
-
-    _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
-    least_N = max(_LEAST_SHARE * robot.weight_N, robot.tension_min_N)
     weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
-    n, count = robot.n_cables, len(poses.position_m)
-    upright = upright_poses(robot, poses)
-    load = plain(robot.loads_N(None if force_N is None else force_N @ robot.upright.T))
-    each, scale, rest = np.ones(n), plain(per_reach(robot)), np.empty(count)
+    load_N = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
+    _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
+    start_N = np.fmax(start_N, max(_LEAST_SHARE * robot.weight_N, robot.tension_min_N))
+    rest = np.empty(len(poses.position_m))
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
-        chord = cable_geometry(robot, poses, run.exit_points_m).chord_m
-        pull = np.fmax(start_N, least_N) / (weight * chord)
-        out = np.empty((count, n, 3))
-        kernel.solve_internal_poses(
-            plain(run.exit_points_m).reshape(-1, n, 3),
-            plain(robot.attachments_m),
-            load,
-            plain(robot.platform.centre_of_mass_m),
-            robot.weight_N,
-            plain(upright.position_m),
-            plain(upright.rotation).reshape(-1, 3, 3),
-            plain(weight * each),
-            plain(weight / stiffness * each),
-            robot.balance_rows,
-            plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
-            plain(noise),
-            plain(np.fmax(pull, _LEAST_PULL)),
-            _SPREAD,
-            scale,
-            out,
-            rest,
+        read = np.stack([length_m - run.wrap_m, tension_N], axis=-1)
+        free, force_x, force_z = _nearest_balance(
+            robot, poses, run, cable, load_N, read, noise, start_N, rest
         )
-        downward = weight * out[..., 0] - out[..., 2]
-        strain = np.hypot(out[..., 1], downward) / stiffness
-        return out, np.arctan2(downward, out[..., 1]), strain
+        downward = weight * free - force_z
+        strain = np.hypot(force_x, downward) / stiffness
+        return np.stack([free, force_x, force_z]), np.arctan2(downward, force_x), strain
 
-    out, run = over_pulleys(robot, poses, solve)
+    found, run = over_pulleys(robot, poses, solve)
     closes = rest <= _CLOSES
-    out = np.where(closes[:, None, None], out, np.nan)
-    ones = np.ones((count, 1))
+    free, force_x, force_z = np.where(closes[:, None], found, np.nan)
+    ones = np.ones((len(rest), 1))
     return Statics(
         robot=robot,
         poses=poses,
         verdict=np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8),
         weight_N_per_m=weight * ones,
         axial_stiffness_N=stiffness * ones,
-        length_m=out[..., 0] + run.wrap_m,
-        force_x_N=out[..., 1],
-        force_z_N=out[..., 2],
+        length_m=free + run.wrap_m,
+        force_x_N=force_x,
+        force_z_N=force_z,
         run=run,
         force_N=force_N,
     )
+
+
+def _nearest_balance(
+    robot: Robot,
+    poses: Poses,
+    run: PulleyRun,
+    cable: Cable,
+    load_N: FloatArray,
+    read: FloatArray,
+    noise: tuple[float, float],
+    start_N: FloatArray,
+    rest: FloatArray,
+) -> FloatArray:
+    """Return free lengths and forces x and z (3, n_poses, n_cables), and fill what is left."""
+    from designer.kernel.internal import solve_internal_poses
+
+    weight = cable.weight_N_per_m
+    chord_m = cable_geometry(robot, poses, run.exit_points_m).chord_m
+    upright = upright_poses(robot, poses)
+    each = np.ones(robot.n_cables)
+    out = np.empty((*start_N.shape, 3))
+    solve_internal_poses(
+        plain(run.exit_points_m).reshape(-1, robot.n_cables, 3),
+        plain(robot.attachments_m),
+        plain(load_N),
+        plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        plain(upright.position_m),
+        plain(upright.rotation).reshape(-1, 3, 3),
+        plain(weight * each),
+        plain(weight / cable.axial_stiffness_N * each),
+        robot.balance_rows,
+        plain(read),
+        plain(noise),
+        plain(np.fmax(start_N / (weight * chord_m), _LEAST_PULL)),
+        _SPREAD,
+        plain(per_reach(robot)),
+        out,
+        rest,
+    )
+    return np.moveaxis(out, -1, 0)

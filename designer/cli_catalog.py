@@ -1,0 +1,156 @@
+"""The commands `designer catalog …`."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli_options import NEGATIVE_ANSWER, WRONG_INPUT, NoPlugins, path_of
+from designer.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from designer.catalogue.registry import Catalogue
+
+catalog = typer.Typer(help="Look at the rope grades that are known.", no_args_is_help=True)
+
+
+@catalog.command("list")
+def catalog_list(
+    construction: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only these, such as 7x19 or braid.")
+    ] = None,
+    material: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only these, such as steel or HMPE.")
+    ] = None,
+    maker: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only makers or publishers named so.")
+    ] = None,
+    diameter: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Only sizes of this, such as 12mm.")
+    ] = None,
+    nominal: Annotated[
+        bool, typer.Option("--nominal", help="Those computed by a standard's factors instead.")
+    ] = False,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """List the grades with their source.
+
+    Example:  designer catalog list --construction 7x19 --diameter 6mm
+    """
+    from designer.catalogue.listing import Wanted, list_rows, split_nominal
+    from designer.catalogue.registry import load_catalogue
+    from designer.terminal import print_grades, print_left_out
+
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    products, computed = split_nominal(wanted.among(catalogue.grades))
+    shown, others = (computed, products) if nominal else (products, computed)
+    if shown:
+        print_grades(list_rows(shown))
+    if others and not nominal:
+        typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
+    if not shown:
+        typer.echo("no grade is like that", err=True)
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _material(name: str | None, catalogue: Catalogue) -> str | None:
+    from designer.catalogue.listing import materials
+
+    known = materials(catalogue.grades)
+    if name is not None and name.casefold() not in (one.casefold() for one in known):
+        problem = f"no grade is of {name!r}"
+        raise InputError([Fault("--material", None, "", problem, ", ".join(known))])
+    return name
+
+
+def _diameter_m(text: str | None) -> float | None:
+    from designer.units import LENGTH, QuantityError, read_quantity
+
+    if text is None:
+        return None
+    try:
+        diameter_m = read_quantity(text, LENGTH)
+    except QuantityError as error:
+        raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
+    if diameter_m <= 0.0:
+        raise InputError([Fault("--diameter", None, "", f"{text!r} is no diameter", "more than 0")])
+    return diameter_m
+
+
+@catalog.command("show")
+def catalog_show(
+    grade: Annotated[str, typer.Argument(metavar="GRADE", help="Id from `designer catalog list`.")],
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Show one grade: where its figures come from, and its sizes.
+
+    Example:  designer catalog show unirope-7x19-galvanised
+    """
+    from designer.catalogue.registry import load_catalogue
+    from designer.terminal import print_grade, print_left_out
+
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    print_grade(catalogue.grade(grade))
+
+
+@catalog.command("check")
+def catalog_check(
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            parser=path_of,
+            metavar="PATH",
+            help="Grade file, or a folder of them; else all that load.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Check grades: units, proportions, unknown fields.
+
+    Example:  designer catalog check my-ropes/
+    """
+    from designer.catalogue.listing import check_path, summary
+    from designer.catalogue.registry import load_catalogue
+    from designer.terminal import print_left_out
+
+    if path is not None:
+        faults = check_path(path)
+        if faults:
+            raise InputError(faults)
+        typer.echo(f"{path}: no fault found")
+        return
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
+    if catalogue.problems:
+        raise typer.Exit(WRONG_INPUT)
+
+
+@catalog.command("new-plugin")
+def catalog_new_plugin(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as acme-ropes.")],
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            parser=path_of, metavar="PATH", help="New folder to write, NAME if left out."
+        ),
+    ] = None,
+) -> None:
+    """Write a plugin project with one commented grade file, ready to install.
+
+    Example:  designer catalog new-plugin acme-ropes
+    """
+    from designer.plugins.new_plugin import module_name, write_plugin
+
+    folder = path or Path(name)
+    write_plugin(name, folder)
+    typer.echo(f"{folder} written. Next:")
+    typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
+    typer.echo("  designer catalog list")
+    typer.echo(f"then put your own figures into {folder / module_name(name) / 'grades'}")

@@ -1,0 +1,42 @@
+"""What the commands share: exit statuses, arguments and options."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from designer.errors import Fault, InputError
+
+NEGATIVE_ANSWER = 1
+WRONG_INPUT = 2
+
+
+def path_of(text: str) -> Path:
+    """Return the path that an argument names; an empty one names nothing."""
+    if not text.strip():  # such as "$OUT" where nothing is in it; pathlib takes it as '.'
+        raise InputError([Fault("command line", None, "", "a path is empty", "a file or folder")])
+    return Path(text)
+
+
+def output_option(suffix: str) -> typer.models.OptionInfo:
+    """Return the option for the folder to write, which otherwise is called after the study."""
+    return typer.Option(  # type: ignore[no-any-return]  # typer types it for use as a default
+        "-o",
+        "--output",
+        parser=path_of,
+        metavar="DIR",
+        help=f"Folder to write, CONFIG-{suffix} if left out.",
+    )
+
+
+Config = Annotated[
+    Path, typer.Argument(parser=path_of, metavar="CONFIG", help="The study, a YAML file.")
+]
+NoPlugins = Annotated[
+    bool,
+    typer.Option(
+        "--no-plugins", help="Use shipped grades and effects only, for repeatable studies."
+    ),
+]
