@@ -76,7 +76,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     problem, search = outcome.problem, outcome.search
     base = fit(problem, case.given, ~heldout)
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
-    predicted = predict(search.fit.settings, problem.noise)
+    predicted = problem.predicted(search.fit.settings)
     covariates = covariates_of(measured, predicted)
     findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
     return Diagnosis(

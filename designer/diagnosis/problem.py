@@ -9,11 +9,12 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
-from designer.effects.effect import Setting
+from designer.effects.effect import Readings, Setting
 from designer.measured_data import Measured, Noise
 
-_UNHELD = 1e3
-"""Residual of a reading at a pose that the model cannot hold, in units of noise."""
+_UNHELD, _TIMES_OFF = 1e3, 10.0
+"""Residual of a reading at a pose that the model cannot hold: in units of noise, and so many times
+the reading on top, so that no other error is worse."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,13 +54,18 @@ class Problem:
         spare = self.predict.spare_cables
         return int(np.maximum(taken.sum(axis=1) - spare, 0).sum())
 
+    def predicted(self, settings: Sequence[Setting]) -> Readings:
+        """Return what the sensors would show with these effects."""
+        return self.predict(settings, self.noise)
+
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
-        predicted = self.predict(settings, self.noise)
+        predicted = self.predicted(settings)
         model = np.hstack([predicted.length_m, predicted.tension_N])
         residual = (self.readings - model) / self.sigma
         unheld = np.isnan(model) & ~np.isnan(self.readings)
-        return np.where(unheld, _UNHELD, residual)
+        worst = _UNHELD + _TIMES_OFF * np.abs(self.readings) / self.sigma
+        return np.where(unheld, worst, residual)
 
 
 def channel_names(n_cables: int) -> list[str]:

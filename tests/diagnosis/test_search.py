@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from twins.dataset import make, size_for
 from twins.robots import YARD3
@@ -12,6 +13,7 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.search import Searcher
+from designer.effects.effect import Setting
 from designer.measured.read import read_measured
 from designer.measured_data import Noise
 
@@ -49,3 +51,12 @@ def test_what_does_not_foretell_is_left_out(searcher) -> None:
     both = [by_id["platform_mass"], by_id["tension_bias"]]
     kept = searcher._foretelling(both, searcher.fit(both))
     assert [effect.id for effect in kept] == ["platform_mass"]
+
+
+def test_a_model_that_holds_no_pose_is_worse_than_any_error(searcher) -> None:
+    problem = searcher._problem
+    away = next(e for e in searcher._candidates if e.key == "anchor_offset of cable 1")
+    settings = [Setting(away, {"x_m": 1e4, "y_m": 1e4, "z_m": -1e4})]
+    assert np.isnan(problem.predicted(settings).length_m).all()
+    residual = problem.residual(settings)
+    assert (residual > 5.0 * np.abs(problem.readings) / problem.sigma).all()

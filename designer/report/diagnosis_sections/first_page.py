@@ -13,6 +13,8 @@ from designer.report.diagnosis_sections.quantity import Quantity, quantities
 from designer.report.diagnosis_sections.sureness import sureness
 from designer.report.parts import Column, Picture, Row, Statement, Table
 
+_ABOUT_AS_FAR = 0.9
+
 
 @dataclass(frozen=True, slots=True)
 class FirstPage:
@@ -102,6 +104,8 @@ def _foretold(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.foretold_before, diagnosis.foretold_after
     if before is None or after is None:
         return ""
+    if after.position_m.value > _ABOUT_AS_FAR * before.position_m.value:
+        return ""  # nothing that concerns lengths was found
     first, last = (fmt.millimetres(one.position_m.value) for one in (before, after))
     return f" By the lengths alone the platform would be {first} off; now it is {last}."
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _TITLE = "Residual against what it goes with most"
 _CLIP = 4.0
-_PANEL_MM = 36.0
+_PANEL_MM, _LONE_MM = 36.0, 29.0  # so that a lone row finds room on the first page
 _BINS = 12
 
 Layout = Literal["stacked", "overlaid", "after"]
@@ -55,7 +55,7 @@ def carriers_chart(
     rows = _rows(diagnosis, layout)
     with canvas.drawing(), warnings.catch_warnings():
         diagnosis_style.quiet_about_glyphs()
-        figure = canvas.sheet(12.0 + _PANEL_MM * len(rows))
+        figure = canvas.sheet(12.0 + (_LONE_MM if len(rows) == 1 else _PANEL_MM * len(rows)))
         grid = figure.subplots(len(rows), len(names), sharex="col", squeeze=False)
         for column, name in enumerate(names):
             values = diagnosis.covariates[name]
