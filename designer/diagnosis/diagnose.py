@@ -77,7 +77,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     base = fit(problem, case.given, ~heldout)
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
-    covariates = covariates_of(measured, predicted)
+    covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
     findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
     return Diagnosis(
         study=case.study,

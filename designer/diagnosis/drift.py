@@ -52,7 +52,7 @@ def drifting(
         if setting.effect.key not in keys:
             continue
         size = np.sqrt(_gain_of(problem, model, setting.effect, slopes, own, taken))
-        for name, z in _weights(structure, covariates, problem.predicted(model.settings)):
+        for name, z in _weights(structure, covariates, problem.surroundings(model.settings)):
             moved = (slopes[..., own] * z[..., None])[taken]
             drift = _significant_gain(orthonormal, moved, left, model.variance)
             variation = float(np.sqrt(drift) / size)

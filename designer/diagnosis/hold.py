@@ -94,7 +94,7 @@ def structure_left(problem: Problem, model: Fit) -> Structure:
     """Test what a model leaves of the readings, outliers blanked."""
     return find_structure(
         without_outliers(problem.residual(model.settings)),
-        covariates_of(problem.measured, problem.predicted(model.settings)),
+        covariates_of(problem.measured, problem.surroundings(model.settings)),
         settled=problem.measured.settled,
     )
 
@@ -125,7 +125,7 @@ def _implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
 def _drifting(
     problem: Problem, model: Fit, found: Sequence[Effect], structure: Structure, rows: BoolArray
 ) -> Withdrawn | None:
-    covariates = covariates_of(problem.measured, problem.predicted(model.settings))
+    covariates = covariates_of(problem.measured, problem.surroundings(model.settings))
     return drifting(problem, model, found, structure, covariates, rows)
 
 

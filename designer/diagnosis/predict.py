@@ -62,6 +62,17 @@ class Predictor:
         bodily = [s for s in settings if s.effect.on_machine is not None]
         return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
 
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return lengths and tensions that a residual may go with.
+
+        What is predicted; but internal forces that were taken from lengths alone hold their noise,
+        with which the residual would go of itself. Then it is what the pose alone tells.
+        """
+        if not self.spare_cables or np.isfinite(self._measured.tension_N).any():
+            return self(settings, noise)
+        machine = as_built(self._machine, settings)
+        return self._shown(readings_of(machine, self._measured.poses, self._measured), settings)
+
     def true_readings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
         shown = self(settings, noise)

@@ -58,6 +58,10 @@ class Problem:
         """Return what the sensors would show with these effects."""
         return self.predict(settings, self.noise)
 
+    def surroundings(self, settings: Sequence[Setting]) -> Readings:
+        """Return lengths and tensions that a residual may go with; see `Predictor`."""
+        return self.predict.surroundings(settings, self.noise)
+
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
         predicted = self.predicted(settings)

@@ -31,6 +31,12 @@ def test_the_law_of_the_winches_is_no_finding(tmp_path) -> None:
     assert found.final.length_m.heldout.value < 1.1 * HALL8.noise_m
 
 
+def test_forces_read_from_lengths_alone_make_no_structure(tmp_path) -> None:
+    found = diagnosed({}, tmp_path, quantities=("length",))
+    assert found.findings == ()
+    assert not found.is_unexplained
+
+
 @pytest.mark.parametrize("effect", ["elastic_modulus", "tension_gain"])
 def test_an_effect_is_found_first_with_its_size(effect, tmp_path) -> None:
     truth = HALL8.draw(effect, size_for(HALL8, effect, 10.0), 0)
