@@ -76,7 +76,9 @@ def test_a_request_to_end_leaves_nothing_behind(
     tmp_path: Path, request_to_end: signal.Signals
 ) -> None:
     code = (
-        "import time\nfrom pathlib import Path\n"
+        "import signal, time\nfrom pathlib import Path\n"
+        # Where the tests run in the background, SIGINT is ignored from the start.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from designer.output import output_folder\n"
         "from designer.process import settle_in\nsettle_in()\n"
         "with output_folder(Path('deep/report')) as building:\n"
