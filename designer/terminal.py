@@ -247,7 +247,11 @@ def _factor(analysis: Analysis) -> str:
 def _extreme(diameter_m: float, tension_N: float) -> str:
     if not np.isfinite(diameter_m):
         return "no cable"
-    return f"{_figure(1e3 * diameter_m, 3)} mm, {_figure(tension_N / 1e3, 2)} kN"
+    return f"{_figure(1e3 * diameter_m, 3)} mm, {_force(tension_N)}"
+
+
+def _force(force_N: float) -> str:
+    return f"{force_N:.4g} N" if force_N < 1e3 else f"{_figure(force_N / 1e3, 2)} kN"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:
