@@ -13,7 +13,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.errors_of import bootstrap, without_outliers
-from designer.diagnosis.predict import wind_force_N
+from designer.diagnosis.physical import wind_force_N
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold
 from designer.effects.effect import Setting, as_built

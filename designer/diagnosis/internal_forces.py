@@ -1,0 +1,150 @@
+"""What the sensors of a robot with cables to spare would show.
+
+The internal forces of each row are taken from its own readings; see `designer.statics.internal`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.diagnosis.physical import straightened_m, wind_force_N
+from designer.effects.effect import Readings, Setting, as_built
+from designer.machine import Machine
+from designer.measured_data import Measured, Noise
+from designer.statics.internal import solve_internal
+
+_MOST_TURNS = 12
+_STILL = 1e-7
+_ABOUT = (0.7, 2.8)
+
+
+class InternalForces:
+    """Predicts readings row by row from what was read; remembers a guess for each set of effects.
+
+    Parameters
+    ----------
+    machine : Machine
+        As declared.
+    measured : Measured
+        The data.
+    shown : callable
+        What sensors make of lengths and tensions that are there, with given effects.
+    """
+
+    def __init__(
+        self,
+        machine: Machine,
+        measured: Measured,
+        shown: Callable[[Readings, Sequence[Setting]], Readings],
+    ) -> None:
+        self._machine = machine
+        self._measured = measured
+        self._shown = shown
+        self._guesses: dict[tuple[object, ...], _Guess] = {}
+
+    def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
+        """Judge anew how far readings can be trusted with these effects; tell if that changed.
+
+        Between two calls it stays, so that residuals have slopes.
+        """
+        kind = _kind(settings, noise)
+        before = self._guesses[kind].distrust if kind in self._guesses else None
+        self._guesses[kind] = self._settled(settings, noise, judges=True)[0]
+        return before != self._guesses[kind].distrust
+
+    def readings(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
+        """Return lengths and tensions that are there, and those that the sensors show."""
+        kind = _kind(settings, noise)
+        guess, true, shown = self._settled(settings, noise, judges=kind not in self._guesses)
+        self._guesses[kind] = guess  # near what it will be for the next values of these effects
+        return true, shown
+
+    def _settled(
+        self, settings: Sequence[Setting], noise: Noise, *, judges: bool
+    ) -> tuple[_Guess, Readings, Readings]:
+        """Repeat until what sensors and stiff ends add, and how far readings are off, agree.
+
+        What they add depends on the internal forces in turn, though little.
+        """
+        machine = as_built(self._machine, settings)
+        shape = (2, *self._measured.length_m.shape)
+        guess = self._guesses.get(_kind(settings, noise), _Guess(np.zeros(shape)))
+        for _ in range(_MOST_TURNS):
+            true, straightened = _balanced(machine, self._measured, guess, noise)
+            shown = self._shown(straightened, settings)
+            before, guess = guess, guess.after(self._measured, true, shown, noise, judges=judges)
+            if guess.is_near(before, noise):
+                break
+        return guess, true, shown
+
+
+def _kind(settings: Sequence[Setting], noise: Noise) -> tuple[object, ...]:
+    return (noise, *(setting.effect.key for setting in settings))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Guess:
+    """What internal forces are taken with.
+
+    Parameters
+    ----------
+    added : array (2, n_rows, n_cables)
+        What sensors and stiff ends add to lengths [m] and tensions [N].
+    distrust : (float, float)
+        By how much more than noise lengths and tensions are off. As long as the model is off,
+        readings are trusted to no more than that: else cables would be let slack to make up for an
+        exit point in the wrong place.
+    """
+
+    added: FloatArray
+    distrust: tuple[float, float] = (1.0, 1.0)
+
+    def after(
+        self, measured: Measured, true: Readings, shown: Readings, noise: Noise, *, judges: bool
+    ) -> _Guess:
+        """Return the guess that an answer leads to; with ``judges``, also of the distrust."""
+        more = (shown.length_m - true.length_m, shown.tension_N - true.tension_N)
+        if not judges:
+            return _Guess(np.nan_to_num(more), self.distrust)
+        length = np.abs(measured.length_m - shown.length_m) / noise.length_m
+        tension = np.abs(measured.tension_N - shown.tension_N) / noise.tension_N
+        distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
+        return _Guess(np.nan_to_num(more), distrust)
+
+    def is_near(self, other: _Guess, noise: Noise) -> bool:
+        """Tell whether another guess would give the same, to a small share of the noise."""
+        change = np.abs(self.added - other.added).max(axis=(1, 2))
+        still = change[0] <= _STILL * noise.length_m and change[1] <= _STILL * noise.tension_N
+        return bool(still) and self.distrust == other.distrust
+
+
+def _distrust(off: FloatArray, before: float) -> float:
+    """Return how far readings are off in units of noise; as before where that is about right."""
+    known = off[~np.isnan(off)]
+    size = 1.4826 * float(np.median(known)) if known.size else 0.0
+    if _ABOUT[0] <= size / before <= _ABOUT[1]:
+        return before
+    return float(2.0 ** np.floor(np.log2(max(size, 1.0))))
+
+
+def _balanced(
+    machine: Machine, measured: Measured, guess: _Guess, noise: Noise
+) -> tuple[Readings, Readings]:
+    """Return true lengths and tensions, and those of cables with stiff ends."""
+    statics = solve_internal(
+        machine.robot,
+        measured.poses,
+        machine.cable,
+        measured.length_m - guess.added[0],
+        measured.tension_N - guess.added[1],
+        (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
+        wind_force_N(machine, measured),
+    )
+    length, tension = statics.length_m, statics.exit_tension_N
+    span = statics.geometry().horizontal_distance_m
+    straightened = length - straightened_m(machine, tension, span)
+    return Readings(length, tension), Readings(straightened, tension)

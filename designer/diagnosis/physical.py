@@ -1,0 +1,58 @@
+"""Lengths and tensions of a machine in its poses, by statics alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.effects.effect import Readings
+from designer.machine import Machine
+from designer.measured_data import Measured
+from designer.robot import Poses
+from designer.statics.inverse import solve_sagging
+from designer.statics.nearest import solve_nearest
+
+AIR_DENSITY_KG_PER_M3 = 1.225
+"""Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
+
+
+def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
+    """Return unstrained lengths and winch-side tensions of a machine in poses (n_rows,).
+
+    Robots with as many cables as degrees of freedom are solved exactly. With fewer cables the
+    tensions nearest to balance are taken, see `designer.statics.nearest`.
+    """
+    force = None if measured is None else wind_force_N(machine, measured)
+    if machine.robot.is_square:
+        statics = solve_sagging(machine.robot, poses, machine.cable, force)
+        length, tension = statics.length_m, statics.exit_tension_N
+        span = statics.geometry().horizontal_distance_m
+    else:
+        length, tension, span = solve_nearest(machine.robot, poses, machine.cable, force)
+    return Readings(length - straightened_m(machine, tension, span), tension)
+
+
+def wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
+    """Return the wind's force on the platform, base frame (n_rows, 3) [N]; None without."""
+    if machine.drag_area_m2 == 0.0 or measured.wind_m_per_s is None:
+        return None
+    wind = measured.wind_m_per_s
+    speed = np.linalg.norm(wind, axis=1, keepdims=True)
+    return np.asarray(0.5 * AIR_DENSITY_KG_PER_M3 * machine.drag_area_m2 * speed * wind)
+
+
+def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) -> FloatArray:
+    r"""Return what bending stiffness takes off the lengths [m].
+
+    A cable of chord c under tension T, w_⊥ = w X / c across it, sags with the slope
+    w_⊥ (c - 2 s)/(2 T); clamped ends bring the slope to zero within δ = √(EI/T). The arc is longer
+    than the chord by half the square of the slope, which two thin layers reduce by
+    3 δ w_⊥² c² / (8 T²).
+    """
+    rigidity = machine.flexural_rigidity_N_m2
+    if rigidity == 0.0:
+        return np.zeros_like(tension_N)
+    # Odd in the rigidity, so that its slope at zero can be taken from both sides.
+    layer = np.sign(rigidity) * np.sqrt(abs(rigidity) / tension_N)
+    load = machine.cable.weight_N_per_m * span_m  # w_⊥ c
+    return np.asarray(load**2 * 3.0 * layer / (8.0 * tension_N**2))
