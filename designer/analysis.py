@@ -61,12 +61,11 @@ class PoseAnalysis:
         statics = self.sizing.statics
         if not (statics.is_solved and statics.hangs_below):
             return ""
-        geometry = statics.geometry()
-        hangs = (statics.force_z_N > 0.0) & (geometry.drop_m >= 0.0)
+        chord_m = statics.geometry().chord_m
         each = [
             f"Cable {k + 1} hangs below the platform, {statics.length_m[k]:.4g} m long over a "
-            f"distance of {geometry.chord_m[k]:.4g} m."
-            for k in np.flatnonzero(hangs)
+            f"distance of {chord_m[k]:.4g} m."
+            for k in np.flatnonzero(statics.hanging_cables)
         ]
         if not np.isfinite(self.sizing.massless_tension_N):
             each.append("Straight cables cannot hold this pose: what hangs there is a weight.")

@@ -42,8 +42,8 @@ _SENTENCES = {
 }
 
 
-def hangs_below(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
-    """Tell in which poses (...) a cable from above has its lowest point below the platform end.
+def hanging_cables(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
+    """Tell which cables (..., n_cables) come from above and are lowest below the platform end.
 
     A cable that comes from below pulls the platform down by design and does not count.
 
@@ -54,4 +54,4 @@ def hangs_below(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
     drop_m : array (..., n_cables)
         From exit point to attachment point [m].
     """
-    return np.asarray(np.any((force_z_N > 0.0) & (drop_m >= 0.0), axis=-1))
+    return np.asarray((force_z_N > 0.0) & (drop_m >= 0.0))

@@ -12,7 +12,7 @@ from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
 from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
 from designer.diagnosis.fit import Fit, fit
-from designer.diagnosis.foretell import foretell
+from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.hold import Outcome, search_and_hold
 from designer.diagnosis.noise import noise_of, rescaled, rough_noise
 from designer.diagnosis.predict import Predictor
@@ -77,6 +77,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     base = fit(problem, case.given, ~heldout)
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
+    compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
     findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
     return Diagnosis(
@@ -102,8 +103,8 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         outliers=outliers_of(after, measured.row_numbers),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
-        foretold_before=foretell(problem, case.machine, base.settings, heldout),
-        foretold_after=foretell(problem, case.machine, search.fit.settings, heldout),
+        foretold_before=foretell(problem, case.machine, base.settings, compared),
+        foretold_after=foretell(problem, case.machine, search.fit.settings, compared),
     )
 
 

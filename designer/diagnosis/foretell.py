@@ -22,25 +22,28 @@ from designer.robot import Poses
 from designer.statics.forward import solve_forward
 
 
-def foretell(
-    problem: Problem, machine: Machine, settings: Sequence[Setting], heldout: BoolArray
-) -> Foretold | None:
-    """Return how well lengths alone foretell pose and tensions; None where no row has all.
+def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArray:
+    """Return the rows (n_rows,) with all lengths, none of which stands off from the model."""
+    n = problem.measured.length_m.shape[1]
+    residual = without_outliers(problem.residual(settings))
+    return np.asarray(np.isfinite(residual[:, :n]).all(axis=1))
 
-    Rows with a length that stands off are left out, as from all errors.
+
+def foretell(
+    problem: Problem, machine: Machine, settings: Sequence[Setting], chosen: BoolArray
+) -> Foretold | None:
+    """Return how well lengths alone foretell pose and tensions; None without any row.
 
     Parameters
     ----------
     problem, machine, settings
         Data, the machine as declared, and the effects in the model.
-    heldout : array (n_rows,) of bool
-        Rows to compare.
+    chosen : array (n_rows,) of bool
+        Rows to compare; each has all lengths.
     """
     measured = problem.measured
     true = problem.predict.true_readings(settings, problem.noise)
-    n = true.length_m.shape[1]
-    fit_to_use = np.isfinite(without_outliers(problem.residual(settings))[:, :n]).all(axis=1)
-    rows = np.flatnonzero(heldout & fit_to_use)
+    rows = np.flatnonzero(chosen)
     if not rows.size:
         return None
     built = as_built(machine, settings)
@@ -49,7 +52,7 @@ def foretell(
     found = solve_forward(
         built.robot, built.cable, true.length_m[rows], there, None if force is None else force[rows]
     )
-    block = block_of(len(heldout))[rows]
+    block = block_of(len(chosen))[rows]
     away = np.linalg.norm(found.poses.position_m - there.position_m, axis=-1)
     tension = true.tension_N[rows] - found.statics.exit_tension_N
     return Foretold(

@@ -41,11 +41,6 @@ def _stamp() -> str:
     return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
-def is_cached(function: Callable[..., Any]) -> bool:
-    """Tell whether machine code of a kernel lies on disk, so that the first call is quick."""
-    return bool(function._cache._cache_file._load_index())  # type: ignore[attr-defined]
-
-
 def tell_of_compiling(tell: Callable[[], None]) -> None:
     """Call ``tell`` once, as soon as a kernel has to be compiled in this process.
 

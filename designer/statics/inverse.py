@@ -19,7 +19,7 @@ from designer.statics.geometry import (
     structure_matrix,
 )
 from designer.statics.task import PulleyRun, Task, solve_task, straight_run
-from designer.verdict import Verdict, hangs_below
+from designer.verdict import Verdict, hanging_cables
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
@@ -75,7 +75,12 @@ class Statics:
     @property
     def hangs_below(self) -> BoolArray:
         """Poses (...) in which a cable from above hangs below the platform."""
-        return hangs_below(self.force_z_N, self.geometry().drop_m)
+        return np.asarray(self.hanging_cables.any(axis=-1))
+
+    @property
+    def hanging_cables(self) -> BoolArray:
+        """Those cables (..., n_cables)."""
+        return hanging_cables(self.force_z_N, self.geometry().drop_m)
 
     @property
     def exit_tension_N(self) -> FloatArray:

@@ -12,7 +12,7 @@ from twins.robots import HALL6, HALL8, YARD3
 from designer.config import read_study
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
-from designer.diagnosis.foretell import foretell
+from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Setting
@@ -51,12 +51,13 @@ def test_a_length_that_stands_off_is_left_out(tmp_path) -> None:
     problem, case = problem_and_case(YARD3, {}, tmp_path)
     heldout = heldout_rows(48)
     row = int(np.flatnonzero(heldout)[2])
-    clean = foretell(problem, case.machine, (), heldout)
+    sound = heldout & with_sound_lengths(problem, ())
+    clean = foretell(problem, case.machine, (), sound)
     length = problem.measured.length_m.copy()
     length[row, 0] += 1.0
     measured = replace(problem.measured, length_m=length)
     spoilt = Problem(measured, Predictor(case.machine, measured), problem.noise)
-    wild = foretell(spoilt, case.machine, (), heldout)
+    wild = foretell(spoilt, case.machine, (), heldout & with_sound_lengths(spoilt, ()))
     assert wild.n_rows == clean.n_rows - 1
     assert wild.position_m.value < 1.5 * clean.position_m.value
 
@@ -68,4 +69,6 @@ def test_without_lengths_there_is_nothing_to_foretell(tmp_path) -> None:
     case = case_of(study, study.measurements, measured)
     noise = Noise(YARD3.noise_m, YARD3.noise_N, "declared")
     problem = Problem(measured, Predictor(case.machine, measured), noise)
-    assert foretell(problem, case.machine, (), heldout_rows(48)) is None
+    sound = with_sound_lengths(problem, ())
+    assert not sound.any()
+    assert foretell(problem, case.machine, (), sound) is None
