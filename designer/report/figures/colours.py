@@ -11,6 +11,7 @@ from designer.arrays import FloatArray
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.colors import BoundaryNorm, Colormap
 
 _MUCH = 6.0
@@ -52,6 +53,20 @@ class Steps:
         from matplotlib.colors import BoundaryNorm
 
         return BoundaryNorm(self.levels, self.colormap.N, extend=self.extend)
+
+    def fill(self, axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray) -> None:
+        """Colour a grid (rows, columns) of values."""
+        surface = axes.contourf(
+            x,
+            y,
+            values,
+            levels=self.levels,
+            cmap=self.colormap,
+            norm=self.norm,
+            extend=self.extend,
+        )
+        surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
+        surface.set_linewidth(0.3)
 
     @property
     def ticks(self) -> FloatArray:

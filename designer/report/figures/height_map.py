@@ -105,17 +105,7 @@ def _fill(axes: Axes, shown: HeightMap, steps: Steps | None) -> None:
         hatched.set_linewidth(0.0)
     values = np.ma.masked_invalid(shown.values)
     if steps is not None:
-        surface = axes.contourf(
-            x,
-            y,
-            values,
-            levels=steps.levels,
-            cmap=steps.colormap,
-            norm=steps.norm,
-            extend=steps.extend,
-        )
-        surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
-        surface.set_linewidth(0.3)
+        steps.fill(axes, x, y, values)
         axes.contour(x, y, values, levels=steps.ticks, colors="white", linewidths=0.5)
     if _crosses_limit(shown):
         limits = [shown.limit]

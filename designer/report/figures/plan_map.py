@@ -88,17 +88,7 @@ def _fill(
     _region_of(axes, x, y, field.is_infeasible)
     values = np.ma.masked_invalid(quantity.of(field))
     if steps is not None and values.count() > 0:
-        surface = axes.contourf(
-            x,
-            y,
-            values,
-            levels=steps.levels,
-            cmap=steps.colormap,
-            norm=steps.norm,
-            extend=steps.extend,
-        )
-        surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
-        surface.set_linewidth(0.3)
+        steps.fill(axes, x, y, values)
         _contour_lines(axes, x, y, values, steps, room)
     if _has_border(field):
         uplift = np.ma.masked_invalid(field.uplift)
