@@ -157,7 +157,7 @@ def _stiffness(found: StiffnessSurvey) -> Json:
         "samples": found.samples,
         "unstable": found.unstable,
         "largest_displacement_m_per_N": _number(found.softest_m_per_N),
-        "pose": _numbers(found.softest_position_m),
+        "pose": _numbers(found.softest_place[:3]),
     }
 
 
@@ -168,7 +168,7 @@ def _interference(found: Interference) -> Json:
         "min_distance_m": None if worst is None else _number(worst.distance_m),
         "error_m": None if worst is None else _number(worst.error_m),
         "pair": None if worst is None else list(worst.names),
-        "pose": None if worst is None else _numbers(worst.position_m),
+        "pose": None if worst is None else _numbers(worst.place[:3]),
         "samples": found.samples,
         "violating": found.violating,
         "violated": found.is_violated,

@@ -21,6 +21,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.interference.hull import Hull, platform_hull
 from designer.interference.segments import segment_distance_m, triangle_distance_m
 from designer.interference.shapes import Curves, Polylines
+from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
 from designer.statics.geometry import upright_poses
 from designer.statics.inverse import Statics
@@ -292,13 +293,13 @@ def _between(
     first: Polylines, second: Polylines
 ) -> tuple[FloatArray, FloatArray, tuple[IntArray, IntArray]]:
     """Return distance, middle and nearest pieces of polylines, one by one."""
-    a, b = first.points_m[:, :-1, None], first.points_m[:, 1:, None]
-    c, d = second.points_m[:, None, :-1], second.points_m[:, None, 1:]
-    distance, middle = segment_distance_m(a, b, c, d)
-    best = np.argmin(distance.reshape(len(distance), -1), axis=-1)
-    i, j = np.unravel_index(best, distance.shape[1:])
-    rows = np.arange(len(distance))
-    return distance[rows, i, j], middle[rows, i, j], (i, j)
+    from designer.kernel.distance import nearest_pieces
+
+    count = len(first.points_m)
+    distance, middle = np.empty(count), np.empty((count, 3))
+    at = np.zeros((count, 2), dtype=np.int64)
+    nearest_pieces(plain(first.points_m), plain(second.points_m), distance, middle, at)
+    return distance, middle, (at[:, 0], at[:, 1])
 
 
 def _around(piece: Polylines, at: IntArray) -> tuple[FloatArray, FloatArray]:

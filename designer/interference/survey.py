@@ -16,15 +16,13 @@ from designer.interference.clearance import (
     clearance_to_platform,
 )
 from designer.robot import Poses, Robot
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
-from designer.workspace.samples import places
+from designer.workspace.refine import LIGHT, refine
+from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
-
-_TURNS = 8
-_TRIALS = 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,15 +37,17 @@ class Nearest:
         The true distance there is smaller by no more than this [m].
     pair : tuple of int
         Two cables, from 0, or a cable and `designer.interference.clearance.PLATFORM`.
-    position_m, place_m : array (3,)
-        Where the platform is, and where on it the two are nearest, base frame [m].
+    place : array (n_coordinates,)
+        Where the platform is and how it is turned, see `designer.space` [m, rad].
+    point_m : array (3,)
+        Where the two are nearest, base frame [m].
     """
 
     distance_m: float
     error_m: float
     pair: tuple[int, int]
-    position_m: FloatArray
-    place_m: FloatArray
+    place: FloatArray
+    point_m: FloatArray
 
     @property
     def names(self) -> tuple[str, str]:
@@ -101,62 +101,43 @@ def survey(
     Parameters
     ----------
     robot, workspace, cable
-        What to look at; at most `MOST_SAMPLES` of the workspace's samples are.
+        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
     clearance_m : float
         What is asked for [m].
     """
-    positions = next(places(workspace))
-    positions = positions[:: -(-len(positions) // MOST_SAMPLES)]
-    statics = solve_sagging(robot, Poses.at(positions), cable)
-    cables = clearance_among_cables(statics)
-    platform = clearance_to_platform(statics)
 
-    def among_cables(trials: FloatArray) -> Clearance:
-        return clearance_among_cables(solve_sagging(robot, Poses.at(trials), cable))
+    some = thinned(workspace, MOST_SAMPLES)
+    statics = solve_sagging(robot, Poses.at(some), cable)
+    cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 
-    def to_platform(trials: FloatArray) -> Clearance:
-        return clearance_to_platform(solve_sagging(robot, Poses.at(trials), cable))
+    def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
+        def clearance(places: FloatArray) -> Clearance:
+            return among(solve_sagging(robot, Poses.at(places), cable))
+
+        def nearness(places: FloatArray) -> FloatArray:
+            return -np.nan_to_num(clearance(places).distance_m, nan=np.inf)
+
+        if np.isnan(sampled.distance_m).all():
+            return None
+        worst = refine(workspace.space, nearness, some, LIGHT)
+        return _nearest(worst.place, clearance(worst.place[None]))
 
     return Interference(
         clearance_m=clearance_m,
         samples=int(statics.is_solved.sum()),
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
-        among_cables=_worst(workspace, among_cables, positions, cables),
-        to_platform=_worst(workspace, to_platform, positions, platform),
+        among_cables=nearest(clearance_among_cables, cables),
+        to_platform=nearest(clearance_to_platform, platform),
     )
 
 
-def _worst(
-    workspace: Workspace,
-    clearance: Callable[[FloatArray], Clearance],
-    positions: FloatArray,
-    found: Clearance,
-) -> Nearest | None:
-    """Return the nearest of the samples, or a still nearer one found in shrinking clouds."""
-    if np.isnan(found.distance_m).all():
-        return None
-    best = _nearest(positions, found)
-    space = workspace.space
-    if space.is_discrete:
-        return best
-    rng = np.random.default_rng(workspace.seed)
-    size = np.ptp(space.bounds, axis=0)
-    for turn in range(_TURNS):
-        cloud = rng.uniform(-1.0, 1.0, (_TRIALS, len(size))) * size * 0.1 * 0.5**turn
-        trials = space.nearest(best.position_m + cloud)
-        tried = clearance(trials)
-        if np.isfinite(tried.distance_m).any():
-            best = min(best, _nearest(trials, tried), key=lambda one: one.distance_m)
-    return best
-
-
-def _nearest(positions: FloatArray, found: Clearance) -> Nearest:
-    at = int(np.nanargmin(found.distance_m))
-    first, second = (int(number) for number in found.pair[at])
+def _nearest(place: FloatArray, found: Clearance) -> Nearest:
+    """Return what is nearest in the one pose of a batch."""
+    first, second = (int(number) for number in found.pair[0])
     return Nearest(
-        distance_m=float(found.distance_m[at]),
-        error_m=float(found.error_m[at]),
+        distance_m=float(found.distance_m[0]),
+        error_m=float(found.error_m[0]),
         pair=(first, second),
-        position_m=positions[at],
-        place_m=found.place_m[at],
+        place=place,
+        point_m=found.place_m[0],
     )

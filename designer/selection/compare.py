@@ -62,9 +62,9 @@ def settle(
 ) -> list[Entry]:
     """Return the Pareto set, the best first, each member searched between the samples.
 
-    The search can only raise a tension, so whoever is dominated before it is so after it as well.
-    Searched are the members of the set, the best of each grade, and whoever is near its limit;
-    for the others the samples are enough, since nothing depends on them.
+    The search can only raise tensions and lengths, and what it raises is compared again. Searched
+    are the members of the set, the best of each grade, and whoever is near its limit; for the
+    others the samples are enough, since nothing depends on them.
     """
     pending = True
     while pending:
@@ -140,9 +140,15 @@ def _search_all(entries: Sequence[Entry], search: Search) -> bool:
     """Search for all that were not searched for yet; tell whether there were any."""
     fresh = [e for e in entries if not e.verification.is_refined]
     for entry in fresh:
-        entry.verification = search(entry)
-        tension = entry.verification.max_tension_N
-        entry.figures = replace(entry.figures, max_tension_N=tension)
+        before_m = entry.verification.longest_m.sum()
+        entry.verification = found = search(entry)
+        longer = found.longest_m.sum() / before_m
+        entry.figures = replace(
+            entry.figures,
+            mass_kg=entry.figures.mass_kg * longer,
+            cost=entry.figures.cost * longer,
+            max_tension_N=found.max_tension_N,
+        )
     return bool(fresh)
 
 

@@ -43,7 +43,7 @@ def continuous_optimum(
     for _ in range(_MOST_TURNS):
         family = family_at(diameter)
         demand = diameter_demand(built.robot, family, workspace.hangs_below)
-        worst = worst_of(workspace, demand, demand)
+        worst = worst_of(workspace, demand)
         if not math.isfinite(worst.demand):
             return family, math.nan
         if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):

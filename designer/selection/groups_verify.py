@@ -12,14 +12,12 @@ from designer.cable import Cables
 from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
-from designer.workspace.demand import is_left_out
-from designer.workspace.refine import Demand, refine, spread_starts
+from designer.workspace.demand import is_left_out, length_demand
+from designer.workspace.refine import Demand, Pool, refine_each
 from designer.workspace.samples import places
 
 Members = Sequence[IntArray]
 """Of each group the indices of its cables."""
-
-_STARTS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,55 +62,46 @@ def verify_groups(
     robot: Robot, workspace: Workspace, cables: Cables, members: Members
 ) -> GroupVerification:
     """Solve every sample with these cables, then search between them for each group's worst."""
+    space = workspace.space
+    demand = _demand(robot, workspace, cables, members)
+    pools = [Pool(space) for _ in members]
+    used = np.full(len(members), -np.inf)
+    at = np.full((len(members), space.n_coordinates), np.nan)
     longest = np.zeros(robot.n_cables)
-    n_coordinates = workspace.space.n_coordinates
-    pools = [(np.empty((0, n_coordinates)), np.empty(0)) for _ in members]
     for some in places(workspace):
-        statics = solve_sagging(robot, Poses.at(some), cables)
-        left_out = is_left_out(statics, workspace.hangs_below)
-        counted = statics.length_m[statics.is_solved & ~left_out]
-        longest = np.maximum(longest, counted.max(axis=0, initial=0.0))
-        used = utilisation_of(statics, cables, left_out)
-        for g, cable in enumerate(members):
-            pools[g] = _best(workspace, pools[g], some, used[:, cable].max(axis=1))
-    if any(len(at) == 0 for at, _ in pools):  # every sample is left out: nothing is served
-        return GroupVerification(
-            np.full((len(members), n_coordinates), np.nan),
-            np.full(len(members), np.inf),
-            longest,
-            False,
-        )
-    if any(value.max() > 1.0 for _, value in pools):
-        at_samples = np.array([at[int(np.argmax(value))] for at, value in pools])
-        used_there = np.array([value.max() for _, value in pools])
-        return GroupVerification(at_samples, used_there, longest, False)
-    worst = [
-        refine(workspace.space, _demand(robot, workspace, cables, cable), at)
-        for cable, (at, _) in zip(members, pools, strict=True)
-    ]
+        asked = demand(some)
+        for g, pool in enumerate(pools):
+            pool.add(some, asked[:, g])
+        best = asked[:, : len(members)].argmax(axis=0)
+        highest = asked[best, np.arange(len(members))]
+        at = np.where((highest > used)[:, None], some[best], at)
+        used = np.maximum(used, highest)
+        longest = np.maximum(longest, asked[:, len(members) :].max(axis=0))
+    if np.isneginf(used).any():  # every sample is left out: nothing is served
+        return GroupVerification(at, np.full(len(members), np.inf), longest, False)
+    if used.max() > 1.0:
+        return GroupVerification(at, used, longest, False)
+    starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
+    worst = refine_each(space, demand, starts)
+    of_groups, lengths = worst[: len(members)], worst[len(members) :]
     return GroupVerification(
-        np.array([w.place for w in worst]), np.array([w.demand for w in worst]), longest, True
+        np.array([one.place for one in of_groups]),
+        np.array([one.demand for one in of_groups]),
+        np.array([one.demand for one in lengths]),
+        True,
     )
 
 
-def _best(
-    workspace: Workspace,
-    pool: tuple[FloatArray, FloatArray],
-    some: FloatArray,
-    used: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the most used places of the pool and the new ones, well apart."""
-    some = np.concatenate([pool[0], some])
-    used = np.concatenate([pool[1], used])
-    kept = spread_starts(workspace.space, some, used, _STARTS)
-    at = [int(np.argmin(np.abs(some - start).sum(axis=1))) for start in kept]
-    return some[at], used[at]
+def _demand(robot: Robot, workspace: Workspace, cables: Cables, members: Members) -> Demand:
+    """What cables meet (n, n_groups + n_cables): utilisation of each group, lengths [m]."""
 
-
-def _demand(robot: Robot, workspace: Workspace, cables: Cables, cable: IntArray) -> Demand:
     def demand(some: FloatArray) -> FloatArray:
         statics = solve_sagging(robot, Poses.at(some), cables)
         left_out = is_left_out(statics, workspace.hangs_below)
-        return np.asarray(utilisation_of(statics, cables, left_out)[:, cable].max(axis=1))
+        used = utilisation_of(statics, cables, left_out)
+        groups = np.column_stack([used[:, cable].max(axis=1) for cable in members])
+        counts = np.isfinite(groups).all(axis=1)
+        length = length_demand(statics, counts)[:, : robot.n_cables]
+        return np.column_stack([groups, length])
 
     return demand

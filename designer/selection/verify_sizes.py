@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.cable import Cable
 from designer.progress import Advance
-from designer.region import Region
 from designer.robot import Poses, Robot
-from designer.selection.verify import Verification
+from designer.selection.verify import Verification, searched
 from designer.space import Space
 from designer.statics.sizes import Meets, add_slowly, is_quick, meet
 from designer.study import Workspace
-from designer.workspace.demand import tension_demand
-from designer.workspace.refine import refine, spread_starts
+from designer.workspace.refine import cells_of
 from designer.workspace.samples import places
+from designer.workspace.strata import landmarks
 
 _PIECE, _SLOW_PIECE = 2**13, 2**9
-_CELLS_A_SIDE = 4
-_CELLS = _CELLS_A_SIDE**3
-_STARTS = 4
+_CELLS_A_SIDE, _TURNS = 6, 8
+_CELLS = _CELLS_A_SIDE**3 * _TURNS
 _TRIES = 256
 
 
@@ -34,15 +32,16 @@ class Sampled:
     Parameters
     ----------
     worst_m : array (n_starts, n_coordinates)
-        Places where it is used most, well apart, the worst first; where it is not held if there is
-        such a pose [m, rad].
+        Places where it is used most, one for each part of the space, the worst first; where it is
+        not held if there is such a pose [m, rad].
     utilisation : float
         Largest over allowable tension; inf if a pose cannot be held, or none counts.
     longest_m : array (n_cables,)
         Longest unstrained length that each cable needs [m].
-    samples, counted, overloaded, not_held : int
-        Poses tried, those that count, those of them above the allowable tension; those that
-        cannot be held, at least.
+    samples, counted, overloaded : int
+        Samples tried, those that count, those of them above the allowable tension.
+    not_held : int
+        Samples and landmarks that cannot be held, at least.
     is_complete : bool
         Whether every sample was tried; else the figures are those of the samples up to where it
         was settled that the cable does not serve the workspace.
@@ -69,6 +68,7 @@ class Sampled:
             max_tension_N=self.utilisation * cable.allowable_tension_N,
             utilisation=self.utilisation,
             longest_m=self.longest_m,
+            shortest_m=np.full_like(self.longest_m, np.nan),
             is_refined=False,
         )
 
@@ -81,7 +81,9 @@ def verify_sizes(
     gives_up: bool = True,
     progress: Advance = lambda _: None,
 ) -> list[Sampled]:
-    """Solve every sample with every cable in one pass, each with its own figures.
+    """Solve every sample, and the landmarks, with every cable in one pass, with its own figures.
+
+    The landmarks of the border are not among the samples that are counted.
 
     Memory does not grow with the samples.
 
@@ -102,41 +104,36 @@ def verify_sizes(
     order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
     totals = _Totals(len(cables), robot.n_cables, workspace.space.n_coordinates)
     is_slow = not is_quick(robot)
-    for positions in _pieces(workspace, _SLOW_PIECE if is_slow else _PIECE):
-        settled = (totals.not_held > 0) | (is_slow & (totals.overloaded > 0))
+    for positions, counts in _pieces(workspace, _SLOW_PIECE if is_slow else _PIECE):
+        settled = (totals.not_held > 0) | (is_slow & (totals.utilisation.max(axis=1) > 1.0))
         alive = [k for k in order if not (gives_up and settled[k])]
-        cells = _cells(workspace.region, positions)
+        cells = _cells(workspace.space, positions)
         tried = [cables[k] for k in alive]
-        totals.add(alive, positions, _meet(robot, workspace, positions, tried, cells, gives_up))
-        progress(len(positions))
-    return [totals.of(k, workspace.space) for k in range(len(cables))]
+        met = _meet(robot, workspace, positions, tried, cells, gives_up)
+        totals.add(alive, positions, met, counts)
+        progress(len(positions) if counts else 0)
+    return [totals.of(k) for k in range(len(cables))]
 
 
 def refined(robot: Robot, workspace: Workspace, cable: Cable, sampled: Sampled) -> Verification:
-    """Search for the largest tension of a cable between the samples, from the worst of them."""
-    demand = tension_demand(robot, cable, workspace.hangs_below)
-    worst = refine(workspace.space, demand, sampled.worst_m)
-    return Verification(
-        worst_position_m=worst.place,
-        max_tension_N=worst.demand,
-        utilisation=worst.demand / cable.allowable_tension_N,
-        longest_m=sampled.longest_m,
-    )
+    """Search for the extremes of a cable between the samples, from the worst of them."""
+    found = searched(robot, workspace, cable, sampled.worst_m)
+    return replace(found, longest_m=np.maximum(found.longest_m, sampled.longest_m))
 
 
-def _pieces(workspace: Workspace, most: int) -> Iterator[FloatArray]:
-    for positions in places(workspace):
-        for start in range(0, len(positions), most):
-            yield positions[start : start + most]
+def _pieces(workspace: Workspace, most: int) -> Iterator[tuple[FloatArray, bool]]:
+    """Yield places, and whether they are samples; the landmarks come first."""
+    marks = landmarks(workspace.space)
+    yield from ((marks[start : start + most], False) for start in range(0, len(marks), most))
+    for some in places(workspace):
+        yield from ((some[start : start + most], True) for start in range(0, len(some), most))
 
 
-def _cells(region: Region, positions: FloatArray) -> IntArray:
-    """Number the parts of the region's box, so that the worst poses can be had well apart."""
-    low, high = region.bounds_m
-    size = np.where(high > low, high - low, 1.0)
-    step = ((positions[:, :3] - low) / size * _CELLS_A_SIDE).astype(np.int64)
-    x, y, z = np.clip(step, 0, _CELLS_A_SIDE - 1).T
-    return np.asarray((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z)
+def _cells(space: Space, positions: FloatArray) -> IntArray:
+    """Number the parts of the space, so that the worst of each can be had."""
+    x, y, z, turn = cells_of(space, positions, _CELLS_A_SIDE).T
+    side = _CELLS_A_SIDE
+    return np.asarray(((x * side + y) * side + z) * _TURNS + turn % _TURNS)
 
 
 def _meet(
@@ -173,28 +170,29 @@ class _Totals:
         self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
         self.not_held_m = np.full((n_tried, n_coordinates), np.nan)
 
-    def add(self, rows: Sequence[int], positions: FloatArray, met: Meets) -> None:
-        self.samples += len(positions)
+    def add(self, rows: Sequence[int], positions: FloatArray, met: Meets, counts: bool) -> None:
+        self.samples += len(positions) * counts
         if not rows:
             return
-        self.tried[rows] += len(positions)
+        self.tried[rows] += len(positions) * counts
         higher = met.utilisation > self.utilisation[rows]
         self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])
         at_worst = positions[met.pose]
         self.worst_m[rows] = np.where(higher[..., None], at_worst, self.worst_m[rows])
         self.longest_m[rows] = np.maximum(self.longest_m[rows], met.longest_m)
-        self.counted[rows] += met.counted
-        self.overloaded[rows] += met.overloaded
+        self.counted[rows] += met.counted * counts
+        self.overloaded[rows] += met.overloaded * counts
         fails = met.failed.sum(axis=1)
         first = (self.not_held[rows] == 0) & (fails > 0)
         at_first = positions[met.failed.argmax(axis=1)]
         self.not_held_m[rows] = np.where(first[:, None], at_first, self.not_held_m[rows])
         self.not_held[rows] += fails
 
-    def of(self, row: int, space: Space) -> Sampled:
+    def of(self, row: int) -> Sampled:
         not_held = int(self.not_held[row])
         asked = self.utilisation[row]
-        worst = spread_starts(space, self.worst_m[row], asked, _STARTS)
+        order = np.argsort(-asked, kind="stable")
+        worst = self.worst_m[row][order[~np.isneginf(asked[order])]]
         return Sampled(
             worst_m=self.not_held_m[row][None] if not_held else worst,
             utilisation=np.inf if not_held or not len(worst) else float(asked.max()),

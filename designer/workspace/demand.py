@@ -59,14 +59,24 @@ def diameter_demand(robot: Robot, material: Material, hangs_below: HangsBelow) -
     return demand
 
 
-def tension_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Demand:
-    """Largest tension of a given cable [N]; inf where the pose cannot be held."""
+def rope_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Demand:
+    """What a given cable meets (n, 1 + 2 n_cables): largest tension [N], lengths, negated lengths.
+
+    Lengths are unstrained [m]; the largest of the negated ones is the shortest.
+    """
 
     def demand(places: FloatArray) -> FloatArray:
         statics = solve_sagging(robot, Poses.at(places), cable)
-        return demand_of(statics.largest_tension_N, statics, hangs_below)
+        tension = demand_of(statics.largest_tension_N, statics, hangs_below)
+        return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
 
     return demand
+
+
+def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:
+    """Return lengths and negated lengths (n, 2 n_cables) [m], -inf where a pose does not count."""
+    both = np.hstack([statics.length_m, -statics.length_m])
+    return np.where(counts[:, None], both, -np.inf)
 
 
 def massless_demand(robot: Robot) -> Demand:

@@ -1,4 +1,10 @@
-"""Continuous search for the worst pose, so that the answer does not depend on the samples."""
+"""Search for the worst poses of a space, so that the answer does not depend on the samples.
+
+Extremes are sought in four steps. The border is explored, vertices, edges and faces each on their
+own. Places that nothing near them exceeds are starts, as many as there are. From each the search
+climbs by clouds of trials that shrink. Then a fresh sample, near the best and far from it, tries to
+exceed it; as long as one does, the search goes on from there.
+"""
 
 from __future__ import annotations
 
@@ -7,101 +13,330 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.space import Space
+from designer.workspace.strata import landmarks, scattered
 
 Demand = Callable[[FloatArray], FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
-the place does not count."""
+the place does not count. For several extremes at once (n, n_extremes)."""
 
-_TRIALS = 127
-_SHRINK = 0.5
-_TOLERANCE = 1e-10
-_MOST_TURNS = 300
+_CELLS_A_SIDE = 12
+_MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
+_MOST_ROUNDS = 8
+_GAIN = 1e-10
+_NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
+_NEAR_TRIALS = 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Worst:
-    """The largest demand found, inf if the search met a place where nothing is enough."""
+    """The largest demand found, inf if the search met a place where nothing is enough.
+
+    At no place (NaN), and -inf, where no place counts.
+    """
 
     place: FloatArray
     demand: float
 
 
-def refine(space: Space, demand: Demand, starts: FloatArray) -> Worst:
-    """Climb from several starts to the largest demand in the space.
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How hard to search.
 
-    Each turn tries a cloud of places around every start, moved back into the space where they
-    leave it, keeps the best, and shrinks the cloud where none is better. It needs no derivative,
-    since the demand has a kink wherever another cable becomes the most loaded one.
+    Parameters
+    ----------
+    per_edge, per_face, inside : int
+        Places explored on each edge and face and inside, and the same again as a fresh sample
+        against what was found.
+    starts : int
+        Climbs of each extreme at most, beside those from the landmarks.
+    finalists : int
+        How many of them go on to the end.
+    trials : int
+        Random places tried about each in a turn, beside those along the coordinates.
+    from_landmarks : bool
+        Whether each landmark is a start, rather than only those that nothing near them exceeds.
+    tolerance : float
+        Size of the last cloud, as a share of the space.
+    """
 
-    Orientations out of a range are searched together with the positions; of a list of
-    orientations each start keeps its own.
+    per_edge: int = 32
+    per_face: int = 256
+    inside: int = 2048
+    starts: int = 40
+    finalists: int = 12
+    trials: int = 26
+    from_landmarks: bool = True
+    tolerance: float = 1e-9
+
+
+LIGHT = Effort(
+    per_edge=8,
+    per_face=32,
+    inside=256,
+    starts=8,
+    finalists=3,
+    trials=16,
+    from_landmarks=False,
+    tolerance=1e-7,
+)
+"""For demands that take long to compute."""
+
+
+def refine(space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None) -> Worst:
+    """Return the largest demand in the space; see `refine_each`."""
+
+    def one(places: FloatArray) -> FloatArray:
+        return demand(places)[:, None]
+
+    return refine_each(space, one, starts, effort)[0]
+
+
+def refine_each(
+    space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
+) -> list[Worst]:
+    """Return the largest of each of several demands that one computation yields.
+
+    It needs no derivative, since demands have kinks wherever another cable becomes the most loaded
+    one. Orientations out of a range are searched together with the positions; of a list of
+    orientations each start keeps its own. The result is the largest that was found; that there is
+    none larger is not proved. Ends at the first place where any of the demands is infinite.
 
     Parameters
     ----------
     space : Space
         Where to search; a list of points has nothing between its points.
     demand : callable
-        What is to be maximised.
-    starts : array (n_starts, n_coordinates)
-        Best samples, well apart.
+        What is to be maximised, (n, n_extremes).
+    starts : array (n, n_coordinates)
+        Samples of the space that ask for much, such as the `Pool.places` of a sweep.
+    effort : Effort, optional
+        How hard to search.
     """
-    values = demand(starts)
-    if space.is_discrete:
-        best = int(np.argmax(values))
-        return Worst(starts[best], float(values[best]))
-    at = np.array(starts)
-    size = np.ptp(space.bounds, axis=0)
-    cloud = _cloud(size > 0.0)
-    radius = np.full(len(at), 0.1)
-    for _ in range(_MOST_TURNS):
-        if radius.max() <= _TOLERANCE or np.isposinf(values).any():
-            break
-        # A new direction of the cloud each turn: on a curved boundary a fixed one would stall.
-        axis = int(-np.log2(radius.min())) % len(size)
-        sign = np.where(np.arange(len(size)) == axis, -1.0, 1.0)
-        trials = space.nearest(at[:, None] + radius[:, None, None] * size * sign * cloud[None])
-        asked = demand(trials.reshape(-1, len(size))).reshape(len(at), -1)
-        best = np.argmax(asked, axis=1)
-        rows = np.arange(len(at))
-        better = asked[rows, best] > values
-        at = np.where(better[:, None], trials[rows, best], at)
-        values = np.where(better, asked[rows, best], values)
-        radius = np.where(better, radius, radius * _SHRINK)
-    best = int(np.argmax(values))
-    return Worst(at[best], float(values[best]))
+    return _Search(space, demand, effort or Effort()).run(starts)
 
 
-def spread_starts(space: Space, places: FloatArray, demand: FloatArray, count: int) -> FloatArray:
-    """Return up to `count` places of large demand, no two within a tenth of the space."""
-    size = np.ptp(space.bounds, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    chosen: list[FloatArray] = []
-    for index in np.argsort(-demand):
-        if np.isneginf(demand[index]) or len(chosen) == count:
-            break
-        candidate = places[index]
-        if all(np.abs((candidate - other) / size).max() > 0.1 for other in chosen):
-            chosen.append(candidate)
-    return np.array(chosen).reshape(-1, places.shape[1])
+class Pool:
+    """The places of largest demand of a sweep, one for each small part of the space.
 
-
-def _cloud(moves: BoolArray) -> FloatArray:
-    """Directions to faces, edges and corners of a cube, then quasi-random ones inside it.
-
-    Only along the coordinates that move; beyond three of them the edges are left out.
+    Memory does not grow with the number of places.
     """
-    from scipy.stats import qmc
 
-    n = int(moves.sum())
-    if n <= 3:
-        outer = np.array(np.meshgrid(*[[-1.0, 0.0, 1.0]] * n)).reshape(n, -1).T
-    else:
-        corners = np.array(np.meshgrid(*[[-1.0, 1.0]] * n)).reshape(n, -1).T
-        outer = np.concatenate([np.eye(n), -np.eye(n), corners])
-    inner = 2.0 * qmc.Halton(n, scramble=False).random(_TRIALS) - 1.0
-    cloud = np.zeros((len(outer) + len(inner), len(moves)))
-    cloud[:, moves] = np.concatenate([outer, inner])
-    return cloud
+    def __init__(self, space: Space) -> None:
+        self._space = space
+        self._cell = np.empty(0, dtype=np.int64)
+        self._places = np.empty((0, space.n_coordinates))
+        self._values = np.empty(0)
+
+    def add(self, places: FloatArray, values: FloatArray) -> None:
+        """Take in places (n, n_coordinates) and what they ask for (n,)."""
+        self._places = np.concatenate([self._places, places])
+        self._values = np.concatenate([self._values, values])
+        self._cell = np.concatenate([self._cell, cells_of(self._space, places) @ _KEY])
+        kept = _best_of_cells(self._cell, self._values)
+        self._cell, self._places, self._values = (
+            self._cell[kept],
+            self._places[kept],
+            self._values[kept],
+        )
+
+    @property
+    def places(self) -> FloatArray:
+        """Return the largest of each part, those left out that do not count (n, n_coordinates)."""
+        return self._places[~np.isneginf(self._values)]
+
+
+_KEY = np.array([1, 2**8, 2**16, 2**24], dtype=np.int64)
+
+
+def cells_of(space: Space, places: FloatArray, side: int = _CELLS_A_SIDE) -> IntArray:
+    """Number the part of the space that each place lies in, by coordinates (n, 4).
+
+    Three steps in space, and one for the orientation: of a list its number, of a range the half
+    that each component lies in.
+    """
+    low, high = space.region.bounds_m
+    size = np.where(high > low, high - low, 1.0)
+    step = np.clip((places[:, :3] - low) / size * side, 0, side - 1)
+    turn = np.zeros(len(places))
+    if places.shape[1] > 3:
+        bounds = space.orientations.range_rad
+        if bounds is not None:
+            turn = (places[:, 3:] > bounds.mean(axis=0)) @ [1.0, 2.0, 4.0]
+        else:
+            away = places[:, None, 3:] - space.orientations.turns_rad
+            turn = np.abs(away).sum(axis=2).argmin(axis=1)
+    return np.column_stack([step, turn]).astype(np.int64)
+
+
+def _best_of_cells(cell: IntArray, values: FloatArray) -> IntArray:
+    """Return the index of the largest value in each cell, the largest first."""
+    order = np.argsort(-values, kind="stable")
+    _, first = np.unique(cell[order], return_index=True)
+    return np.asarray(order[np.sort(first)])
+
+
+def _local_maxima(space: Space, places: FloatArray, values: FloatArray, most: int) -> IntArray:
+    """Return the indices of places that none in the parts around theirs exceed, largest first."""
+    from scipy.ndimage import maximum_filter
+
+    kept = _best_of_cells(cells_of(space, places) @ _KEY, values)
+    kept = kept[~np.isneginf(values[kept])]
+    x, y, z, turn = cell = cells_of(space, places[kept]).T
+    highest = np.full((*[_CELLS_A_SIDE] * 3, int(turn.max(initial=0)) + 1), -np.inf)
+    highest[*cell] = values[kept]
+    is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[kept]
+    return kept[is_top][:most]
+
+
+@dataclass(slots=True, eq=False)
+class _Climbs:
+    """Climbs under way: where each is, which extreme it seeks, what it has, its cloud's size."""
+
+    at: FloatArray
+    extreme: IntArray
+    value: FloatArray
+    radius: FloatArray
+    step: FloatArray
+
+    @classmethod
+    def of(
+        cls, at: FloatArray, extreme: IntArray, value: FloatArray, radius: float | FloatArray
+    ) -> _Climbs:
+        return cls(at, extreme, value, np.broadcast_to(radius, len(at)).copy(), np.zeros_like(at))
+
+    def some(self, which: IntArray | BoolArray) -> _Climbs:
+        return _Climbs(
+            self.at[which],
+            self.extreme[which],
+            self.value[which],
+            self.radius[which],
+            self.step[which],
+        )
+
+
+class _Search:
+    """One search, with all that its steps share."""
+
+    def __init__(self, space: Space, demand: Demand, effort: Effort) -> None:
+        self._space, self._demand, self._effort = space, demand, effort
+        self._rng = np.random.default_rng(0)
+        self._size = np.ptp(space.bounds, axis=0)
+        self._best: list[Worst] = []
+
+    def run(self, starts: FloatArray) -> list[Worst]:
+        space = self._space
+        if space.is_discrete:
+            self._ask(starts)
+            return self._best
+        marks = landmarks(space)
+        places = np.concatenate([starts, marks, self._scatter()])
+        values = self._ask(places)
+        self._climb_all(places, values, np.arange(len(starts), len(starts) + len(marks)))
+        for _ in range(_MOST_ROUNDS if not self._is_over else 0):
+            before = np.array([worst.demand for worst in self._best])
+            places = np.concatenate([self._scatter(), self._near_the_best()])
+            values = self._ask(places)
+            gain = np.where(np.isneginf(before), 0.0, _GAIN * np.abs(before))
+            higher = values > before + gain
+            if self._is_over or not higher.any():
+                break
+            self._climb_all(places, np.where(higher, values, -np.inf), np.empty(0, dtype=np.int64))
+        return self._best
+
+    @property
+    def _is_over(self) -> bool:
+        return any(np.isposinf(worst.demand) for worst in self._best)
+
+    def _scatter(self) -> FloatArray:
+        effort = self._effort
+        return scattered(self._space, self._rng, effort.per_edge, effort.per_face, effort.inside)
+
+    def _near_the_best(self) -> FloatArray:
+        """Return places about each of the best, at all distances."""
+        found = np.array([worst.place for worst in self._best])
+        found = found[np.isfinite(found).all(axis=1)]
+        cloud = self._rng.uniform(-1.0, 1.0, (len(_NEAR_SCALES), _NEAR_TRIALS, len(self._size)))
+        cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, len(self._size))
+        return self._space.nearest((found[:, None] + cloud).reshape(-1, len(self._size)))
+
+    def _ask(self, places: FloatArray) -> FloatArray:
+        """Return what places ask for (n, n_extremes), and remember the largest."""
+        values = self._demand(places)
+        if not self._best:
+            nowhere = np.full(len(self._size), np.nan)
+            self._best = [Worst(nowhere, -np.inf)] * values.shape[1]
+        at = values.argmax(axis=0) if len(values) else []
+        for k, row in enumerate(at):
+            if values[row, k] > self._best[k].demand:
+                self._best[k] = Worst(places[row].copy(), float(values[row, k]))
+        return values
+
+    def _climb_all(self, places: FloatArray, values: FloatArray, marks: IntArray) -> None:
+        """Climb from the places that nothing near them exceeds, then on with the best of these."""
+        if self._is_over:
+            return
+        effort, rows, extremes = self._effort, [], []
+        for k in range(values.shape[1]):
+            some = _local_maxima(self._space, places, values[:, k], effort.starts)
+            if effort.from_landmarks and values.shape[1] == 1:
+                also = marks[np.argsort(-values[marks, k])][: effort.starts]
+                some = np.union1d(some, also[~np.isneginf(values[also, k])])
+            rows.append(some)
+            extremes.append(np.full(len(some), k))
+        row, extreme = np.concatenate(rows), np.concatenate(extremes)
+        climbs = _Climbs.of(places[row], extreme, values[row, extreme], 0.5 / _CELLS_A_SIDE)
+        climbs = self._climb(climbs, 1e-3)
+        self._climb(self._finalists(climbs), effort.tolerance)
+
+    def _finalists(self, climbs: _Climbs) -> _Climbs:
+        """Leave out climbs that have come to the same place as a better one, or stay far behind."""
+        order = np.argsort(-climbs.value, kind="stable")
+        size = np.where(self._size > 0.0, self._size, 1e-300)
+        kept: list[int] = []
+        for k in order:
+            rivals = [j for j in kept if climbs.extreme[j] == climbs.extreme[k]]
+            apart = np.abs(climbs.at[rivals] - climbs.at[k]) / size
+            if len(rivals) < self._effort.finalists and not (apart < 3e-3).all(axis=1).any():
+                kept.append(int(k))
+        return climbs.some(np.array(kept, dtype=np.int64))
+
+    def _climb(self, climbs: _Climbs, tolerance: float) -> _Climbs:
+        """Climb until the clouds are smaller than the tolerance."""
+        n = len(self._size)
+        for _ in range(_MOST_TURNS):
+            active = np.flatnonzero(climbs.radius > tolerance)
+            if not len(active) or self._is_over:
+                break
+            some = climbs.some(active)
+            reach = some.radius[:, None, None] * self._size
+            trials = self._space.nearest(some.at[:, None] + self._directions(len(active)) * reach)
+            onward = self._space.nearest(some.at + 2.0 * some.step)[:, None]
+            trials = np.concatenate([trials, onward], axis=1)
+            asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
+            own = np.take_along_axis(asked, some.extreme[:, None, None], axis=2)[..., 0]
+            best = own.argmax(axis=1)
+            rows = np.arange(len(active))
+            better = own[rows, best] > some.value
+            to = np.where(better[:, None], trials[rows, best], some.at)
+            climbs.step[active] = to - some.at
+            climbs.at[active] = to
+            climbs.value[active] = np.where(better, own[rows, best], some.value)
+            climbs.radius[active] = some.radius * np.where(better, 1.1, 0.5)
+        return climbs
+
+    def _directions(self, count: int) -> FloatArray:
+        """Return directions (count, n_trials, n_coordinates) along the axes, and random ones.
+
+        Random lengths span a factor of 30, so that one turn tries several scales.
+        """
+        free = self._size > 0.0
+        n = int(free.sum())
+        random = self._rng.uniform(-1.0, 1.0, (count, self._effort.trials, n))
+        random *= 30.0 ** -self._rng.random((count, self._effort.trials, 1))
+        axes = np.broadcast_to(np.concatenate([np.eye(n), -np.eye(n)]), (count, 2 * n, n))
+        out = np.zeros((count, 2 * n + self._effort.trials, len(free)))
+        out[..., free] = np.concatenate([axes, random], axis=1)
+        return out

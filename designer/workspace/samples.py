@@ -43,6 +43,21 @@ def pieces_m(workspace: Workspace) -> Iterator[FloatArray]:
         yield from _split(chunk, size)
 
 
+def thinned(workspace: Workspace, most: int) -> FloatArray:
+    """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].
+
+    Drawn are positions, from the whole of the region; each comes in all its orientations.
+    """
+    count = max(most // workspace.orientations.count, 1)
+    rng = np.random.default_rng(workspace.seed)
+    kept, draws = np.empty((0, 3)), np.empty(0)
+    for some in positions_m(workspace):
+        kept, draws = np.concatenate([kept, some]), np.concatenate([draws, rng.random(len(some))])
+        first = np.sort(np.argsort(draws)[:count])
+        kept, draws = kept[first], draws[first]
+    return workspace.space.places(kept)
+
+
 def sample_count(workspace: Workspace) -> int:
     """Return how many positions `positions_m` will yield, for a progress bar (an estimate)."""
     if isinstance(workspace.region, PointList):

@@ -13,60 +13,77 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
+from designer.workspace.refine import Demand, refine_each
+from designer.workspace.samples import thinned
 
-MOST_SAMPLES = 4000
-"""Poses that are looked at."""
+MOST_SAMPLES = 2000
+"""Poses that are looked at before the search between them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StiffnessSurvey:
-    """Displacement under a unit force over the samples of a workspace, cables of fixed length.
+    """Displacement under a unit force over a workspace, cables of fixed length.
 
     Parameters
     ----------
     samples : int
-        Poses that were looked at, solved and not left out.
+        Poses that were looked at before the search between them, solved and not left out.
     unstable : int
         Those of them in which the platform would not stay.
     softest_m_per_N, stiffest_m_per_N : float
-        Largest and smallest displacement under a unit force in its worst direction [m/N].
-    softest_position_m, stiffest_position_m : array (3,)
-        Where [m].
+        Largest and smallest displacement under a unit force in its worst direction [m/N]; the
+        former inf where the platform would not stay somewhere.
+    softest_place, stiffest_place : array (n_coordinates,)
+        Where [m, rad].
     """
 
     samples: int
     unstable: int
     softest_m_per_N: float
     stiffest_m_per_N: float
-    softest_position_m: FloatArray
-    stiffest_position_m: FloatArray
+    softest_place: FloatArray
+    stiffest_place: FloatArray
 
 
 def survey_stiffness(
     robot: Robot, workspace: Workspace, cable: Cable | Cables
 ) -> StiffnessSurvey | None:
-    """Return the softest and the stiffest of the samples; None if no pose is held stably.
+    """Return the softest and the stiffest pose; None if no pose is held stably.
 
     Parameters
     ----------
     robot, workspace, cable
-        What to look at; at most `MOST_SAMPLES` of the workspace's samples are.
+        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    positions = next(places(workspace))
-    positions = positions[:: -(-len(positions) // MOST_SAMPLES)]
-    statics = solve_sagging(robot, Poses.at(positions), cable)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-    displacement = np.where(counts, largest_displacement_m_per_N(statics), np.nan)
-    stable = np.isfinite(displacement)
-    if not stable.any():
+    demand = displacement_demand(robot, workspace, cable)
+    some = thinned(workspace, MOST_SAMPLES)
+    asked = demand(some)
+    counts = ~np.isneginf(asked[:, 0])
+    if np.isneginf(asked[:, 1]).all():
         return None
-    softest, stiffest = int(np.nanargmax(displacement)), int(np.nanargmin(displacement))
+    softest, stiffest = refine_each(workspace.space, demand, some)
     return StiffnessSurvey(
         samples=int(counts.sum()),
-        unstable=int((counts & ~stable).sum()),
-        softest_m_per_N=float(displacement[softest]),
-        stiffest_m_per_N=float(displacement[stiffest]),
-        softest_position_m=positions[softest],
-        stiffest_position_m=positions[stiffest],
+        unstable=int(np.isposinf(asked[:, 0]).sum()),
+        softest_m_per_N=softest.demand,
+        stiffest_m_per_N=-stiffest.demand,
+        softest_place=softest.place,
+        stiffest_place=stiffest.place,
     )
+
+
+def displacement_demand(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> Demand:
+    """Displacement under a unit force, and negated, (n, 2) [m/N].
+
+    Inf and -inf where the platform would not stay, both -inf where the pose does not count.
+    """
+
+    def demand(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cable)
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        displacement = largest_displacement_m_per_N(statics)
+        stays = counts & np.isfinite(displacement)
+        softest = np.where(stays, displacement, np.where(counts, np.inf, -np.inf))
+        return np.column_stack([softest, np.where(stays, -displacement, -np.inf)])
+
+    return demand

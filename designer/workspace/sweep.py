@@ -18,15 +18,13 @@ from designer.space import turn_of
 from designer.study import Workspace
 from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
-from designer.workspace.refine import refine, spread_starts
+from designer.workspace.refine import Pool, refine
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.samples import pieces_m
 from designer.workspace.store import SweepFile
 
 Progress = Callable[[int], None]
 """Called with the number of poses done since the last call."""
-
-_STARTS = 8
 
 
 def map_workspace(
@@ -81,7 +79,8 @@ class _Gathered:
         self.verdicts: Counter[int] = Counter()
         self.hangs_below = 0
         self.excluded = 0
-        self.best: dict[str, tuple[FloatArray, FloatArray]] = {}
+        self.starts = Pool(workspace.space)
+        self.massless_starts = Pool(workspace.space)
         self.sampled: Extreme | None = None
         self.infeasible_example: FloatArray | None = None
 
@@ -94,8 +93,8 @@ class _Gathered:
         counts = statics.is_solved & ~left_out
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
         massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
-        self._keep("sagging", some, diameter)
-        self._keep("massless", some, massless)
+        self.starts.add(some, diameter)
+        self.massless_starts.add(some, massless)
         self._keep_worst(some, diameter, statics.largest_tension_N)
         served = statics.is_solved | left_out
         if self.infeasible_example is None and not served.all():
@@ -104,14 +103,6 @@ class _Gathered:
     def census(self) -> Census:
         statuses = {v.label: self.verdicts.get(int(v), 0) for v in Verdict}
         return Census(sum(statuses.values()), statuses, self.hangs_below, self.excluded)
-
-    def _keep(self, name: str, some: FloatArray, demand: FloatArray) -> None:
-        if name in self.best:
-            some = np.concatenate([self.best[name][0], some])
-            demand = np.concatenate([self.best[name][1], demand])
-        starts = spread_starts(self._workspace.space, some, demand, _STARTS)
-        at = [int(np.argmin(np.abs(some - start).sum(axis=1))) for start in starts]
-        self.best[name] = (some[at], demand[at])
 
     def _keep_worst(self, some: FloatArray, diameter: FloatArray, tension: FloatArray) -> None:
         at = int(np.argmax(diameter))
@@ -130,7 +121,7 @@ def _summarise(
     ratio = np.nan
     if example is None and gathered.sampled is not None:
         demand = diameter_demand(robot, material, workspace.hangs_below)
-        worst = refine(workspace.space, demand, gathered.best["sagging"][0])
+        worst = refine(workspace.space, demand, gathered.starts.places)
         if np.isfinite(worst.demand):
             tension = material.cable(worst.demand).allowable_tension_N
             sagging = Extreme.at(worst.place, worst.demand, tension)
@@ -142,7 +133,7 @@ def _summarise(
         is_feasible=sagging is not None,
         sagging=sagging,
         sampled=gathered.sampled,
-        massless=_worst_massless(robot, workspace, material, gathered.best["massless"][0]),
+        massless=_worst_massless(robot, workspace, material, gathered.massless_starts.places),
         infeasible_example_m=None if example is None else example[:3],
         limit_ratio=ratio,
         infeasible_rotation_vector_rad=None if example is None else turn_of(example),

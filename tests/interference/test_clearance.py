@@ -280,16 +280,16 @@ def test_survey_finds_the_worst_pose_and_says_which_pair(six_cable_robot) -> Non
     assert worst.distance_m == min(found.among_cables.distance_m, found.to_platform.distance_m)
     assert found.is_violated == (worst.distance_m < 0.2)
     for nearest in (found.among_cables, found.to_platform):
-        statics = solve_sagging(six_cable_robot, Poses.at(nearest.position_m), ROPE)
+        statics = solve_sagging(six_cable_robot, Poses.at(nearest.place), ROPE)
         again = (
             clearance_to_platform(statics)
             if nearest is found.to_platform
             else clearance_among_cables(statics)
         )
         assert again.distance_m == pytest.approx(nearest.distance_m, abs=1e-9)
-        assert region.contains(nearest.position_m)
+        assert region.contains(nearest.place[:3])
     assert found.to_platform.names[1] == "the platform"
-    samples = replace(workspace, region=PointList(frozen_array([found.to_platform.position_m])))
+    samples = replace(workspace, region=PointList(frozen_array([found.to_platform.place[:3]])))
     listed = survey(six_cable_robot, samples, ROPE, 0.2)
     assert listed.to_platform is not None
     assert listed.to_platform.distance_m == pytest.approx(found.to_platform.distance_m)

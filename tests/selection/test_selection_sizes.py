@@ -18,6 +18,7 @@ from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.samples import positions_m
+from designer.workspace.strata import landmarks
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 LOW = Prism.over(TRIANGLE, 40.0, (-200.0, -60.0))
@@ -64,16 +65,19 @@ def test_agrees_with_one_size_at_a_time(name: str, fast_robot, six_cable_robot) 
         used = statics.largest_tension_N[counts] / cable.allowable_tension_N
         assert one.samples == len(positions)
         assert one.counted == counts.sum()
-        assert one.not_held == (~statics.is_solved).sum()
         assert one.overloaded == (used > 1.0).sum()
+        everywhere = np.concatenate([positions, landmarks(workspace.space)])
+        statics = solve_sagging(robot, Poses.at(everywhere), cable)
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        used = statics.largest_tension_N[counts] / cable.allowable_tension_N
+        assert one.not_held == (~statics.is_solved).sum()
         longest = statics.length_m[counts].max(axis=0, initial=0.0)
         assert one.longest_m == pytest.approx(longest, rel=1e-9)
         if one.not_held:
             assert np.isinf(one.utilisation)
         else:
             assert one.utilisation == pytest.approx(used.max(), rel=1e-9)
-            worst = positions[counts][np.argmax(used)]
-            assert one.worst_m[0] == pytest.approx(worst)
+            assert one.worst_m[0] == pytest.approx(everywhere[counts][np.argmax(used)])
 
 
 def test_the_two_cases_that_exclude_differ(fast_robot, six_cable_robot) -> None:
@@ -99,9 +103,11 @@ def test_chunks_add_up(fast_robot) -> None:
     found = verify_sizes(fast_robot, workspace, tried)
     for cable, one in zip(tried, found, strict=True):
         tension = solve_sagging(fast_robot, Poses.at(positions), cable).largest_tension_N
+        corners = solve_sagging(fast_robot, Poses.at(landmarks(workspace.space)), cable)
+        largest = max(tension.max(), corners.largest_tension_N.max())
         assert one.counted == one.samples == 20_000
         assert one.overloaded == (tension > cable.allowable_tension_N).sum()
-        assert one.utilisation == pytest.approx(tension.max() / cable.allowable_tension_N)
+        assert one.utilisation == pytest.approx(largest / cable.allowable_tension_N)
 
 
 def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
@@ -113,11 +119,11 @@ def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
         assert one.served <= 2 / 3
 
 
-def test_worst_poses_are_well_apart_and_the_search_ends_where_it_did(fast_robot) -> None:
+def test_worst_poses_are_from_all_over_and_the_search_ends_where_it_did(fast_robot) -> None:
     workspace = Workspace(LOW, samples=2000)
     for cable in cables()[3:6]:
         (one,) = verify_sizes(fast_robot, workspace, [cable])
-        assert 1 < len(one.worst_m) <= 4
+        assert len(np.unique(one.worst_m, axis=0)) == len(one.worst_m) > 100
         searched, alone = (
             refined(fast_robot, workspace, cable, one),
             verify(fast_robot, workspace, cable),
@@ -150,7 +156,7 @@ def test_slow_robot_gives_up_on_what_is_settled(fast_robot) -> None:
     first, second = verify_sizes(robot, workspace, [thin, thick])
     assert not first.is_complete
     assert first.samples < 1500
-    assert first.overloaded > 0
+    assert first.utilisation > 1.0
     assert second.is_complete
     assert second.samples == second.counted == 1500
     whole, _ = verify_sizes(robot, workspace, [thin, thick], gives_up=False)

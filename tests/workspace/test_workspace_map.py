@@ -13,8 +13,8 @@ from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.space import Orientations, Space
 from designer.study import Workspace
-from designer.workspace.refine import refine, spread_starts
-from designer.workspace.samples import CHUNK, positions_m, sample_count
+from designer.workspace.refine import Pool, refine, refine_each
+from designer.workspace.samples import CHUNK, positions_m, sample_count, thinned
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -102,15 +102,80 @@ def test_refine_stops_where_nothing_is_enough() -> None:
     assert worst.place[0] > 0.999
 
 
-def test_starts_are_apart() -> None:
+def test_every_peak_of_a_sweep_is_kept_and_memory_does_not_grow() -> None:
+    """Two peaks of unlike height, one of them narrow; a ridge along an edge does not hide it."""
     box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
     rng = np.random.default_rng(0)
-    positions = rng.random((500, 3))
-    starts = spread_starts(box, positions, positions[:, 0], 5)
-    gaps = np.abs(starts[:, None] - starts).max(axis=2)[~np.eye(len(starts), dtype=bool)]
-    assert len(starts) == 5
-    assert gaps.min() > 0.1
-    assert spread_starts(box, positions, np.full(500, -np.inf), 5).shape == (0, 3)
+    pool = Pool(box)
+
+    def demand(x):
+        ridge = 1.0 - x[:, 1] - x[:, 2]
+        return np.maximum(ridge, 1.2 - 40.0 * np.linalg.norm(x - [0.31, 0.77, 0.52], axis=1))
+
+    for _ in range(20):
+        places = rng.random((5000, 3))
+        pool.add(places, demand(places))
+    assert len(pool.places) == 12**3
+    assert refine(box, demand, pool.places).demand == pytest.approx(1.2, abs=1e-6)
+    pool = Pool(box)
+    pool.add(places, np.full(5000, -np.inf))
+    assert pool.places.shape == (0, 3)
+
+
+def test_corners_and_edges_are_tried_though_no_sample_lies_there() -> None:
+    """A spike in one corner, thinner than what samples of the inside could meet."""
+    box = Space(Prism.over([[0, 0], [9, 0], [3, 7]], 0.0, (1.0, 4.0)), Orientations())
+    corner = np.array([3.0, 7.0, 4.0])
+
+    def spike(x):
+        return 1.0 / (1e-3 + np.linalg.norm(x - corner, axis=1))
+
+    nowhere = np.empty((0, 3))
+    assert refine(box, spike, nowhere).demand == pytest.approx(1e3, rel=1e-6)
+
+    def gap(x):
+        on_edge = (np.abs(x[:, 1]) < 1e-9) & (np.abs(x[:, 2] - 1.0) < 1e-9)
+        return np.where(on_edge & (x[:, 0] > 4.0) & (x[:, 0] < 4.5), np.inf, 0.0)
+
+    assert np.isposinf(refine(box, gap, nowhere).demand)
+
+
+def test_several_extremes_are_found_in_one_search() -> None:
+    box = Space(Prism.box((0, 10), (0, 10), (0, 10)), Orientations())
+    peaks = np.array([[3.21, 7.654, 5.5], [0, 0, 0], [10, 4.4, 9.9]])
+
+    def nearness(x):
+        return -np.linalg.norm(x[:, None] - peaks, axis=2)
+
+    found = refine_each(box, nearness, np.empty((0, 3)))
+    assert np.array([one.place for one in found]) == pytest.approx(peaks, abs=1e-6)
+
+
+def test_orientations_that_are_almost_the_same_are_each_searched() -> None:
+    turns = frozen_array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.01], [0.0, 0.0, 0.02]])
+    space = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations(turns))
+    peaks = np.array([[0.2, 0.2, 0.2], [0.8, 0.3, 0.6], [0.5, 0.9, 0.1]])
+
+    def demand(x):
+        which = np.rint(x[:, 5] / 0.01).astype(int)
+        near = np.linalg.norm(x[:, :3] - peaks[which], axis=1)
+        return which - 3.0 * near
+
+    found = refine(space, demand, space.places(np.full((1, 3), 0.4)))
+    assert found.demand == pytest.approx(2.0, abs=1e-7)
+
+
+def test_a_thinned_workspace_spans_all_of_it(fast_robot) -> None:
+    workspace = Workspace(
+        Prism.box((0, 1), (0, 1), (0, 1)),
+        samples=8000,
+        sampling="grid",
+        orientations=Orientations(frozen_array([[0, 0, 0.0], [0, 0, 0.1], [0, 0, 0.2]])),
+    )
+    some = thinned(workspace, 600)
+    assert some.shape == (600, 6)
+    assert np.unique(some[:, 5]).tolist() == [0.0, 0.1, 0.2]
+    assert np.ptp(some[:, :3], axis=0) == pytest.approx([1, 1, 1], abs=0.1)
 
 
 def test_the_papers_workspace(fast_robot, steel) -> None:

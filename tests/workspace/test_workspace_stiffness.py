@@ -22,8 +22,8 @@ def test_softest_and_stiffest_of_the_samples(fast_robot: Robot, steel) -> None:
     assert found.unstable == 0
     assert found.stiffest_m_per_N < found.softest_m_per_N
     for position, value in (
-        (found.softest_position_m, found.softest_m_per_N),
-        (found.stiffest_position_m, found.stiffest_m_per_N),
+        (found.softest_place, found.softest_m_per_N),
+        (found.stiffest_place, found.stiffest_m_per_N),
     ):
         assert region.contains(position)
         statics = solve_sagging(fast_robot, Poses.at(position), steel.cable(0.04))

@@ -58,7 +58,7 @@ def clearance_statement(found: Interference) -> Statement:
         return Statement("There is nothing to compare", text)
     asked = fmt.millimetres(found.clearance_m)
     nearest = f"{fmt.listing(worst.names)} come as near as {fmt.millimetres(worst.distance_m)}"
-    where = f"with the platform at {fmt.position(worst.position_m)}"
+    where = f"with the platform at {fmt.position(worst.place[:3])}"
     if not found.is_violated:
         text = f"At the worst, {nearest}, {where}."
         return Statement("The clearance is kept", text, "good")
@@ -75,7 +75,11 @@ def _facts(found: Interference, cable: str) -> tuple[Fact, ...]:
     return (
         Fact("Clearance asked for", fmt.millimetres(found.clearance_m), "from axis to axis"),
         Fact("Cable", cable),
-        Fact("Samples", fmt.count(found.samples), "and a search about the worst"),
+        Fact(
+            "Samples",
+            fmt.count(found.samples),
+            "and a search between them",
+        ),
     )
 
 
@@ -94,7 +98,7 @@ def _table(found: Interference) -> Table | None:
     )
     return Table.of(
         "Where they come nearest. A polyline stands for each cable; the bound says how much the "
-        "true distance can be smaller.",
+        "true distance in that pose can be smaller.",
         columns,
         *rows,
     )
@@ -106,7 +110,7 @@ def _row(name: str, nearest: Nearest, found: Interference) -> Row:
         fmt.listing(nearest.names),
         fmt.millimetres(nearest.distance_m),
         fmt.millimetres(nearest.error_m),
-        fmt.position(nearest.position_m),
-        fmt.position(nearest.place_m),
+        fmt.position(nearest.place[:3]),
+        fmt.position(nearest.point_m),
     )
     return Row(cells, "bad" if nearest.distance_m < found.clearance_m else "")

@@ -49,7 +49,8 @@ def stiffness_statement(found: StiffnessSurvey) -> Statement:
     text = (
         f"A force moves the platform by at most {farthest}, "
         "if the cables are held at their lengths: the force in its worst direction, the platform "
-        "at its softest pose among the samples, and the displacement taken as proportional to it."
+        "at its softest pose, searched for between the samples as well, and the displacement taken "
+        "as proportional to it."
     )
     if found.unstable == 0:
         return Statement("Every pose is stable", text)
@@ -67,12 +68,12 @@ def _facts(found: StiffnessSurvey, cable: str) -> tuple[Fact, ...]:
         Fact(
             "Softest pose",
             displacement(found.softest_m_per_N),
-            f"at {fmt.position(found.softest_position_m)}",
+            f"at {fmt.position(found.softest_place[:3])}",
         ),
         Fact(
             "Stiffest pose",
             displacement(found.stiffest_m_per_N),
-            f"at {fmt.position(found.stiffest_position_m)}",
+            f"at {fmt.position(found.stiffest_place[:3])}",
         ),
         Fact("Samples", fmt.count(found.samples)),
     )
