@@ -18,6 +18,7 @@ Json = dict[str, Any]
 
 _LISTS = {
     "longest_m": "longest_{}_m",
+    "shortest_m": "shortest_{}_m",
     "worst_pose": "worst_pose_{}_m",
     "worst_rotation_vector": "worst_rotation_vector_{}_rad",
 }
@@ -95,6 +96,7 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
         "cost": _number(figures.cost),
         "stiffness_N_per_m": _number(figures.stiffness_N_per_m),
         "longest_m": _numbers(found.longest_m),
+        "shortest_m": _numbers(found.shortest_m),
         "worst_pose": _numbers(found.worst_position_m[:3]),
         "worst_rotation_vector": _numbers(turn_of(found.worst_position_m)),
         "verified": candidate.verified,

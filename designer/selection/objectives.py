@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.cable import Cable
 from designer.catalogue.grade import Grade, Size
-from designer.robot import Poses, Robot
-from designer.statics.inverse import solve_sagging
-from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.robot import Robot
 from designer.study import Objective, Workspace
-from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
+from designer.workspace.refine import LIGHT, refine
+from designer.workspace.samples import thinned
+from designer.workspace.stiffness import displacement_demand
 
 STIFFNESS_POSES = 500
-"""Samples that the smallest stiffness is taken from."""
+"""Samples that the smallest stiffness is taken from before the search between them."""
 
 _NOT_KNOWN = float("inf")
 
@@ -58,7 +56,7 @@ class Figures:
     max_tension_N : float
         Largest tension, which the winch has to bear [N].
     stiffness_N_per_m : float
-        Smallest force over displacement of the platform, over some samples [N/m].
+        Smallest force over displacement of the platform [N/m].
     """
 
     mass_kg: float
@@ -107,26 +105,30 @@ def common_currency(grades: Sequence[Grade]) -> str | None:
     return max(sorted(set(priced)), key=priced.count, default=None)
 
 
-def stiffness_positions_m(workspace: Workspace) -> FloatArray:
-    """Return the places at which stiffness is compared, at most `STIFFNESS_POSES` [m, rad]."""
-    chunks = list(islice(places(workspace), 1))
-    first = chunks[0] if chunks else np.empty((0, workspace.space.n_coordinates))
-    step = max(len(first) // STIFFNESS_POSES, 1)
-    return np.asarray(first[::step][:STIFFNESS_POSES])
-
-
 def smallest_stiffness_N_per_m(
-    robot: Robot, workspace: Workspace, cable: Cable, positions_m: FloatArray
+    robot: Robot, workspace: Workspace, cable: Cable, *, searched: bool
 ) -> float:
-    """Return the smallest translational stiffness over positions (n, 3) [N/m].
+    """Return the smallest translational stiffness over the workspace [N/m].
 
     The smallest force over displacement in any direction, the platform free to turn, at fixed
-    unstrained lengths, with sag; zero where the equilibrium is not stable. See
-    `designer.statics.stiffness`.
+    unstrained lengths, with sag; zero where the equilibrium is not stable, NaN where no pose
+    counts. See `designer.statics.stiffness`.
+
+    Parameters
+    ----------
+    robot, workspace, cable
+        What to look at.
+    searched : bool
+        Whether to search between the samples as well, or to take `STIFFNESS_POSES` of them.
     """
-    statics = solve_sagging(robot, Poses.at(positions_m), cable)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-    if not counts.any():
-        return float("nan")
-    gives = largest_displacement_m_per_N(statics)[counts]
-    return 0.0 if np.isnan(gives).any() else float(1.0 / gives.max())
+    demand = displacement_demand(robot, workspace, cable)
+    some = thinned(workspace, STIFFNESS_POSES)
+
+    def softness(places: FloatArray) -> FloatArray:
+        return demand(places)[:, 0]
+
+    if searched:
+        softest = refine(workspace.space, softness, some, LIGHT).demand
+    else:
+        softest = float(softness(some).max(initial=-np.inf))
+    return float("nan") if np.isneginf(softest) else 1.0 / softest

@@ -24,7 +24,6 @@ from designer.selection.objectives import (
     cost,
     drum_diameter_m,
     smallest_stiffness_N_per_m,
-    stiffness_positions_m,
 )
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.usable import Usable, usable
@@ -108,6 +107,8 @@ class _Trial:
 
             def search(entry: Entry) -> Verification:
                 advance(1)
+                if "stiffness" in objectives:
+                    self._add_stiffness(entry, searched=True)
                 return refined(self.robot, self.workspace, entry.cable, entry.sampled)
 
             front = settle(entries, objectives, search)
@@ -147,19 +148,18 @@ class _Trial:
             found = one.verification(cable)
             entries.append(Entry(grade, size, cable, share, one, found, figures))
         if "stiffness" in self.selection.objectives:
-            self._add_stiffness(entries)
+            holding = [entry for entry in entries if entry.verification.holds]
+            with self.reporter.task("stiffness", len(holding)) as advance:
+                for entry in holding:
+                    self._add_stiffness(entry, searched=False)
+                    advance(1)
         return entries, not_tried
 
-    def _add_stiffness(self, entries: Sequence[Entry]) -> None:
-        positions = stiffness_positions_m(self.workspace)
-        holding = [entry for entry in entries if entry.verification.holds]
-        with self.reporter.task("stiffness", len(holding)) as advance:
-            for entry in holding:
-                found = smallest_stiffness_N_per_m(
-                    self.robot, self.workspace, entry.cable, positions
-                )
-                entry.figures = replace(entry.figures, stiffness_N_per_m=found)
-                advance(1)
+    def _add_stiffness(self, entry: Entry, *, searched: bool) -> None:
+        found = smallest_stiffness_N_per_m(
+            self.robot, self.workspace, entry.cable, searched=searched
+        )
+        entry.figures = replace(entry.figures, stiffness_N_per_m=found)
 
     def _outcome(
         self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry]

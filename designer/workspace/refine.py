@@ -188,7 +188,7 @@ def _local_maxima(space: Space, places: FloatArray, values: FloatArray, most: in
     highest = np.full((*[_CELLS_A_SIDE] * 3, int(turn.max(initial=0)) + 1), -np.inf)
     highest[*cell] = values[kept]
     is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[kept]
-    return kept[is_top][:most]
+    return np.asarray(kept[is_top][:most])
 
 
 @dataclass(slots=True, eq=False)

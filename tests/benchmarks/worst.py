@@ -242,7 +242,7 @@ def main() -> int:
         for fault in faults:
             print(f"{number} {names[number % len(studies)]}: {fault}", flush=True)
         bad += bool(faults)
-        if done % 25 == 0:
+        if done % 10 == 0:
             spent = time.perf_counter() - start
             print(f"{done} regions, {bad} with a fault, {spent:.0f} s", flush=True)
     print(f"{done} regions, {bad} with a fault")

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ropes import rope
 
+from designer.arrays import frozen_array
 from designer.cable import Cable
-from designer.region import Prism
+from designer.region import PointList, Prism
 from designer.selection.objectives import common_currency, smallest_stiffness_N_per_m
 from designer.selection.pareto import dominator_of, is_undominated
 from designer.selection.select import select
@@ -152,6 +153,16 @@ def test_stiffness_of_taut_cables_is_the_textbooks(fast_robot) -> None:
         :, None, None
     ] * (np.eye(3) - along)
     expected = np.linalg.eigvalsh(matrix.sum(axis=0))[0]
-    workspace = Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=10)
-    found = smallest_stiffness_N_per_m(fast_robot, workspace, cable, position)
-    assert found == pytest.approx(expected, rel=1e-6)
+    workspace = Workspace(PointList(frozen_array(position)))
+    for searched in (False, True):
+        found = smallest_stiffness_N_per_m(fast_robot, workspace, cable, searched=searched)
+        assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_search_finds_softer_poses_than_the_samples(fast_robot, steel) -> None:
+    workspace = Workspace(Prism.over(TRIANGLE, 40.0, (-200.0, -60.0)), samples=50)
+    sampled, found = (
+        smallest_stiffness_N_per_m(fast_robot, workspace, steel.cable(0.05), searched=searched)
+        for searched in (False, True)
+    )
+    assert found < 0.99 * sampled

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from designer.analysis import Analysis
+from designer.arrays import FloatArray
 from designer.report import format as fmt
 from designer.report.findings import Findings
 from designer.report.material_class import class_of
@@ -241,8 +243,6 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     size, found = chosen.size, chosen.verification
     required = fmt.trimmed(analysis.study.selection.safety_factor)
     actual = chosen.efficiency * size.minimum_breaking_load_N / found.max_tension_N
-    lengths = [fmt.fixed(float(x), 1) for x in found.longest_m]
-    longest = fmt.listing(lengths if len({*lengths}) > 1 else lengths[:1])
     return Card(
         heading="Chosen rope",
         size=size.id,
@@ -257,10 +257,19 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
             Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
             Fact("Utilisation", fmt.utilisation(found.utilisation)),
             Fact("Mass", fmt.kilograms_per_metre(size.linear_density_kg_per_m)),
-            Fact("Longest, each cable", f"{longest}\u00a0m", "unstrained, no spare"),
+            Fact(
+                "Longest, each cable", _lengths(found.longest_m, math.ceil), "unstrained, no spare"
+            ),
+            Fact("Shortest", _lengths(found.shortest_m, math.floor), "unstrained"),
             Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
         ),
     )
+
+
+def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:
+    """Return lengths in decimetres, rounded to the side on which a rope is long enough."""
+    each = [fmt.fixed(rounded(10.0 * float(x)) / 10.0, 1) for x in length_m]
+    return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
 
 
 def _group_ropes(analysis: Analysis) -> Iterator[Fact]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from designer.analysis import Analysis
@@ -52,22 +53,28 @@ def stiffness_statement(found: StiffnessSurvey) -> Statement:
         "at its softest pose, searched for between the samples as well, and the displacement taken "
         "as proportional to it."
     )
-    if found.unstable == 0:
-        return Statement("Every pose is stable", text)
-    share = fmt.share(found.unstable, found.samples)
+    if math.isfinite(found.softest_m_per_N):
+        return Statement("No pose was found that is not stable", text)
+    share = (
+        f"in {fmt.share(found.unstable, found.samples)} of the samples"
+        if found.unstable
+        else "between the samples"
+    )
     return Statement(
         "Some poses are not stable",
-        f"In {share} of the samples the platform would not stay where it is put. Elsewhere: {text}",
+        f"The platform would not stay where it is put {share}, "
+        f"such as at {fmt.position(found.softest_place[:3])}.",
         "bad",
     )
 
 
 def _facts(found: StiffnessSurvey, cable: str) -> tuple[Fact, ...]:
+    is_finite = math.isfinite(found.softest_m_per_N)
     return (
         Fact("Cable", cable),
         Fact(
             "Softest pose",
-            displacement(found.softest_m_per_N),
+            displacement(found.softest_m_per_N) if is_finite else "not stable",
             f"at {fmt.position(found.softest_place[:3])}",
         ),
         Fact(
