@@ -54,8 +54,8 @@ class Robot:
         The base is turned by the rotation vector (rx, ry, 0) against the vertical, x and y of the
         upright frame [rad].
     tension_min_N : float
-        Smallest tension of every cable, where there are more cables than degrees of freedom, taken
-        where the cable runs parallel to its chord [N].
+        Least tension anywhere in any cable, where there are more cables than degrees of freedom:
+        at its lower end, or at its lowest point where that hangs below both ends [N].
     gravity_direction : array (3,)
         Where things fall, world frame; its length does not count.
     is_planar : bool

@@ -98,6 +98,13 @@ class Statics:
         return np.asarray(np.maximum(*self._end_tensions_N()))
 
     @property
+    def least_tension_N(self) -> FloatArray:
+        """Least tension anywhere in each cable (..., n_cables) [N]."""
+        return catenary.least_tension_N(
+            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
+        )
+
+    @property
     def largest_tension_N(self) -> FloatArray:
         """Largest tension anywhere in any cable (...) [N]."""
         return np.asarray(self.cable_tension_N.max(axis=-1))
