@@ -75,8 +75,8 @@ def solve_internal(
         strain = np.hypot(force_x, downward) / stiffness
         return np.stack([free, force_x, force_z]), np.arctan2(downward, force_x), strain
 
-    found, run = over_pulleys(robot, poses, solve)
-    closes = rest <= _CLOSES
+    found, run, settled = over_pulleys(robot, poses, solve)
+    closes = (rest <= _CLOSES) & settled
     free, force_x, force_z = np.where(closes[:, None], found, np.nan)
     ones = np.ones((len(rest), 1))
     return Statics(

@@ -13,7 +13,7 @@ from designer.arrays import FloatArray
 from designer.cable import Material
 from designer.robot import Poses, Robot
 from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import Sizing
+from designer.sizing.newton import Sizing, size_poses
 from designer.space import turn_of
 from designer.study import Workspace
 from designer.verdict import Verdict
@@ -132,9 +132,10 @@ def _summarise(
         demand = diameter_demand(robot, material, workspace.hangs_below)
         worst = refine(workspace.space, demand, gathered.best["sagging"][0])
         if np.isfinite(worst.demand):
-            tension = material.cable(worst.demand).allowable_tension_N
+            pose = Poses.at(worst.place)
+            tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
             sagging = Extreme.at(worst.place, worst.demand, tension)
-            ratio = float(limit_ratio(robot, Poses.at(worst.place), material))
+            ratio = float(limit_ratio(robot, pose, material))
         else:
             example = worst.place
     return WorkspaceMap(
