@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
+from designer.arrays import require_number
 from designer.cable import Material
 from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
@@ -50,6 +51,15 @@ class Workspace:
     hangs_below: HangsBelow = "include"
     clearance_m: float | None = None
     orientations: Orientations = field(default_factory=Orientations)
+
+    def __post_init__(self) -> None:
+        require_number("samples", self.samples, least=1)
+        require_number("seed", self.seed, least=0)
+        if self.clearance_m is not None:
+            require_number("clearance_m", self.clearance_m, least=0.0)
+        for value, known in ((self.sampling, Sampling), (self.hangs_below, HangsBelow)):
+            if value not in get_args(known):
+                raise ValueError(f"{value!r} is none of {', '.join(get_args(known))}")
 
     @property
     def space(self) -> Space:

@@ -196,7 +196,14 @@ def solve_sagging(
         with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
+
+    Raises
+    ------
+    ValueError
+        If there are more or fewer `Cables` than exit points, or fewer than degrees of freedom.
     """
+    if isinstance(cable, Cables) and len(cable.each) != robot.n_cables:
+        raise ValueError(f"{len(cable.each)} cables do not fit {robot.n_cables} exit points")
     weight = cable.weight_N_per_m
     heaviest = float(np.max(weight))
     task = Task(
