@@ -18,7 +18,7 @@ class Cable:
     Parameters
     ----------
     diameter_m : float
-        Nominal diameter [m].
+        Nominal diameter [m]; NaN where it is not known.
     linear_density_kg_per_m : float
         Mass per unstrained length [kg/m].
     axial_stiffness_N : float
@@ -33,7 +33,8 @@ class Cable:
     allowable_tension_N: float
 
     def __post_init__(self) -> None:
-        require_number("diameter_m", self.diameter_m, above=0.0)
+        if not math.isnan(self.diameter_m):
+            require_number("diameter_m", self.diameter_m, above=0.0)
         require_number("linear_density_kg_per_m", self.linear_density_kg_per_m, above=0.0)
         require_number("axial_stiffness_N", self.axial_stiffness_N, above=0.0, finite=False)
         require_number("allowable_tension_N", self.allowable_tension_N, above=0.0, finite=False)

@@ -18,6 +18,7 @@ from designer.space import turn_of
 from designer.study import Workspace
 from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
+from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.refine import refine, spread_starts
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.samples import pieces_m
@@ -81,6 +82,7 @@ class _Gathered:
         self.verdicts: Counter[int] = Counter()
         self.hangs_below = 0
         self.excluded = 0
+        self.hanging = HangingCables()
         self.best: dict[str, tuple[FloatArray, FloatArray]] = {}
         self.sampled: Extreme | None = None
         self.infeasible_example: FloatArray | None = None
@@ -92,6 +94,7 @@ class _Gathered:
         self.hangs_below += int(statics.hangs_below.sum())
         self.excluded += int(left_out.sum())
         counts = statics.is_solved & ~left_out
+        self.hanging = look_at(self.hanging, some, statics, counts, self._workspace.floor_m)
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
         massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
         self._keep("sagging", some, diameter)
@@ -103,7 +106,8 @@ class _Gathered:
 
     def census(self) -> Census:
         statuses = {v.label: self.verdicts.get(int(v), 0) for v in Verdict}
-        return Census(sum(statuses.values()), statuses, self.hangs_below, self.excluded)
+        totals = sum(statuses.values()), statuses, self.hangs_below, self.excluded
+        return Census(*totals, self.hanging)
 
     def _keep(self, name: str, some: FloatArray, demand: FloatArray) -> None:
         if name in self.best:
