@@ -26,6 +26,7 @@ from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import MasslessStatics, solve_massless
 from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study
+from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.samples import sample_count
 from designer.workspace.sweep import map_workspace
@@ -153,6 +154,13 @@ class Analysis:
         """What plugins and grade files gave that could not be used, one line each."""
         problems = (*self.study.known_effects.problems, *self.catalogue.problems)
         return tuple(dict.fromkeys(problems))
+
+    @property
+    def hanging(self) -> HangingCables:
+        """Cables that hang too far, with those of the design; else with what each sample needs."""
+        if self.qualities is not None:
+            return self.qualities.hanging
+        return HangingCables() if self.workspace is None else self.workspace.census.hanging
 
     @property
     def is_positive(self) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,3 +18,51 @@ def frozen_array(values: ArrayLike) -> FloatArray:
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
+
+
+def finite_array(name: str, values: ArrayLike, *shape: int | None) -> FloatArray:
+    """Return values as floats, after a look at their shape and that they are finite.
+
+    Parameters
+    ----------
+    name : str
+        What they are, for the message.
+    values : array
+        Kept as they are if they are an array of floats already.
+    shape : int or None
+        Length of each axis; None for any but zero.
+
+    Raises
+    ------
+    ValueError
+        With one sentence.
+    """
+    is_array = isinstance(values, np.ndarray) and values.dtype == np.float64
+    array = np.asarray(values) if is_array else frozen_array(values)
+    require_shape(name, array, *shape)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, and some are not")
+    return array
+
+
+def require_shape(name: str, array: NDArray[Any], *shape: int | None) -> None:
+    """Raise ValueError unless an array has this shape; None stands for any length but zero."""
+    fits = array.ndim == len(shape) and all(
+        have > 0 if want is None else have == want
+        for have, want in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = ", ".join("n" if size is None else str(size) for size in shape)
+        raise ValueError(f"{name} must have the shape ({wanted}), not {array.shape}")
+
+
+def require_number(
+    name: str, value: float, *, above: float = -np.inf, least: float = -np.inf, finite: bool = True
+) -> None:
+    """Raise ValueError unless a number is finite, or at least not NaN, and within its range."""
+    if not value > above and above > -np.inf:
+        raise ValueError(f"{name} must be above {above:g}, not {value:g}")
+    if not value >= least:
+        raise ValueError(f"{name} must not be below {least:g}, and is {value:g}")
+    if np.isnan(value) or (finite and not np.isfinite(value)):
+        raise ValueError(f"{name} must be finite, not {value:g}")

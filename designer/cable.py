@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import FloatArray, frozen_array, require_number
 
 STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
@@ -18,7 +18,7 @@ class Cable:
     Parameters
     ----------
     diameter_m : float
-        Nominal diameter [m].
+        Nominal diameter [m]; NaN where it is not known.
     linear_density_kg_per_m : float
         Mass per unstrained length [kg/m].
     axial_stiffness_N : float
@@ -31,6 +31,13 @@ class Cable:
     linear_density_kg_per_m: float
     axial_stiffness_N: float
     allowable_tension_N: float
+
+    def __post_init__(self) -> None:
+        if not math.isnan(self.diameter_m):
+            require_number("diameter_m", self.diameter_m, above=0.0)
+        require_number("linear_density_kg_per_m", self.linear_density_kg_per_m, above=0.0)
+        require_number("axial_stiffness_N", self.axial_stiffness_N, above=0.0, finite=False)
+        require_number("allowable_tension_N", self.allowable_tension_N, above=0.0, finite=False)
 
     @property
     def weight_N_per_m(self) -> float:
@@ -46,6 +53,10 @@ class Cables:
     """
 
     each: tuple[Cable, ...]
+
+    def __post_init__(self) -> None:
+        if not self.each:
+            raise ValueError("there must be a cable at least")
 
     @property
     def linear_density_kg_per_m(self) -> FloatArray:
@@ -88,6 +99,11 @@ class Material:
     density_kg_per_m3: float
     youngs_modulus_Pa: float
     allowable_stress_Pa: float
+
+    def __post_init__(self) -> None:
+        require_number("density_kg_per_m3", self.density_kg_per_m3, above=0.0)
+        require_number("youngs_modulus_Pa", self.youngs_modulus_Pa, above=0.0, finite=False)
+        require_number("allowable_stress_Pa", self.allowable_stress_Pa, above=0.0)
 
     @property
     def elastic_compliance_per_m(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from designer.cable import Cable, Cables, Material
 from designer.effects.design import AsBuilt
@@ -10,6 +10,7 @@ from designer.interference.survey import Interference, survey
 from designer.selection.groups_result import GroupChoice
 from designer.selection.result import SelectionResult
 from designer.study import Workspace
+from designer.workspace.hanging import HangingCables, survey_hanging
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.stiffness import StiffnessSurvey, survey_stiffness
 
@@ -42,11 +43,14 @@ class Qualities:
         None if no sample is held stably.
     interference : Interference or None
         None if the study asks for no clearance.
+    hanging : HangingCables
+        Cables far longer than their chord, or below the floor.
     """
 
     cable: DesignCable
     stiffness: StiffnessSurvey | None
     interference: Interference | None
+    hanging: HangingCables = field(default_factory=HangingCables)
 
 
 def design_cable(
@@ -106,4 +110,5 @@ def qualities_of(
     if workspace.clearance_m is not None:
         interference = survey(built.robot, workspace, cable.cable, workspace.clearance_m)
     stiffness = survey_stiffness(built.robot, workspace, cable.cable)
-    return Qualities(cable, stiffness, interference)
+    hanging = survey_hanging(built.robot, workspace, cable.cable)
+    return Qualities(cable, stiffness, interference, hanging)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError, cKDTree
 
-from designer.arrays import BoolArray, FloatArray, frozen_array
+from designer.arrays import BoolArray, FloatArray, finite_array, frozen_array, require_number
 
 _OFF_LINE = 1e-9
 
@@ -27,6 +27,17 @@ class Prism:
 
     polygon_m: FloatArray
     z_m: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        polygon = finite_array("polygon_m", self.polygon_m, None, 2)
+        object.__setattr__(self, "polygon_m", polygon)
+        _require_ascending(self.z_m)
+        edge = np.roll(polygon, -1, axis=0) - polygon
+        after = np.roll(edge, -1, axis=0)
+        turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
+        flat = _OFF_LINE * float(np.sum(edge**2))
+        if len(polygon) < 3 or not self.area_m2 > 0.0 or (turn < -flat).any():
+            raise ValueError("polygon_m must be convex, with its corners counter-clockwise")
 
     @classmethod
     def over(cls, points_m: ArrayLike, inset_m: float, z_m: tuple[float, float]) -> Prism:
@@ -122,6 +133,12 @@ class Rectangle:
     ends_m: FloatArray
     z_m: tuple[float, float]
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ends_m", finite_array("ends_m", self.ends_m, 2, 2))
+        _require_ascending(self.z_m)
+        if not np.ptp(self.ends_m, axis=0).any():
+            raise ValueError("the two ends of the rectangle are the same point")
+
     @classmethod
     def over(cls, points_m: ArrayLike, inset_m: float, z_m: tuple[float, float]) -> Rectangle:
         """Return the rectangle over points (n, 2 or 3) on a line, its ends moved inward.
@@ -200,6 +217,9 @@ class PointList:
 
     points_m: FloatArray
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points_m", finite_array("points_m", self.points_m, None, 3))
+
     @property
     def is_discrete(self) -> bool:
         """Whether there is nothing between its points."""
@@ -217,6 +237,14 @@ class PointList:
 
 Region = Prism | Rectangle | PointList
 """Any region."""
+
+
+def _require_ascending(z_m: tuple[float, float]) -> None:
+    low, high = z_m
+    require_number("the lowest z", low)
+    require_number("the highest z", high)
+    if low > high:
+        raise ValueError(f"the lowest z, {low:g} m, is above the highest, {high:g} m")
 
 
 def _deepest_point(halfplanes: FloatArray) -> tuple[FloatArray, float]:

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from designer import __version__
 from designer.analysis import Analysis, PoseAnalysis
 from designer.arrays import FloatArray
@@ -16,9 +18,11 @@ from designer.interference.survey import Interference
 from designer.output import write_whole
 from designer.qualities import Qualities
 from designer.selection_json import selection_dict
+from designer.space import turn_of
 from designer.statics.rest import RestingPlaces
 from designer.study import Study
 from designer.verdict import Verdict
+from designer.workspace.hanging import Hanging, HangingCables
 from designer.workspace.result import Extreme, WorkspaceMap
 from designer.workspace.stiffness import StiffnessSurvey
 
@@ -132,6 +136,7 @@ def _workspace(found: WorkspaceMap) -> Json:
         "statuses": dict(census.statuses),
         "hangs_below": census.hangs_below,
         "excluded": census.excluded,
+        **_hanging(census.hanging),
         "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
         "infeasible_example_m": None if example is None else _numbers(example),
         **_turn(found.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
@@ -142,6 +147,27 @@ def _workspace(found: WorkspaceMap) -> Json:
     }
 
 
+def _hanging(found: HangingCables) -> Json:
+    """Return how many samples have a cable that hangs too far, and the worst of them."""
+    return {
+        "long_cables": _worst_hanging(found.long, "length_over_chord"),
+        "below_floor": _worst_hanging(found.below_floor, "lowest_m"),
+    }
+
+
+def _worst_hanging(found: Hanging | None, name: str) -> Json:
+    if found is None:
+        return {"samples": 0}
+    place = np.array(found.place)
+    return {
+        "samples": found.samples,
+        name: _number(found.extreme),
+        "cable": found.cable,
+        "pose": _numbers(place[:3]),
+        **_turn(turn_of(place)),
+    }
+
+
 def _qualities(found: Qualities | None) -> Json:
     """Return stiffness and clearances; None where they were not looked at."""
     stiffness = None if found is None else found.stiffness
@@ -149,6 +175,7 @@ def _qualities(found: Qualities | None) -> Json:
     return {
         "stiffness": None if stiffness is None else _stiffness(stiffness),
         "interference": None if interference is None else _interference(interference),
+        "hanging": None if found is None else _hanging(found.hanging),
     }
 
 

@@ -8,8 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import FloatArray, IntArray, frozen_array
+from designer.arrays import (
+    FloatArray,
+    IntArray,
+    finite_array,
+    frozen_array,
+    require_number,
+)
 from designer.cable import STANDARD_GRAVITY_M_PER_S2
+
+_NO_ROTATION = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +45,18 @@ class Platform:
     hull_m: FloatArray | None = None
     wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
 
+    def __post_init__(self) -> None:
+        require_number("mass_kg", self.mass_kg, least=0.0)
+        shapes: dict[str, tuple[int | None, ...]] = {
+            "attachments_m": (None, 3),
+            "centre_of_mass_m": (3,),
+            "hull_m": (None, 3),
+            "wrench_N": (6,),
+        }
+        for name, shape in shapes.items():
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Robot:
@@ -54,8 +74,8 @@ class Robot:
         The base is turned by the rotation vector (rx, ry, 0) against the vertical, x and y of the
         upright frame [rad].
     tension_min_N : float
-        Smallest tension of every cable, where there are more cables than degrees of freedom, taken
-        where the cable runs parallel to its chord [N].
+        Least tension anywhere in any cable, where there are more cables than degrees of freedom:
+        at its lower end, or at its lowest point where that hangs below both ends [N].
     gravity_direction : array (3,)
         Where things fall, world frame; its length does not count.
     is_planar : bool
@@ -69,6 +89,24 @@ class Robot:
     tension_min_N: float = 0.0
     gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
     is_planar: bool = False
+
+    def __post_init__(self) -> None:
+        shapes: dict[str, tuple[int | None, ...]] = {
+            "exit_points_m": (None, 3),
+            "tilt_rad": (2,),
+            "gravity_direction": (3,),
+        }
+        for name, shape in shapes.items():
+            object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
+        require_number("pulley_radius_m", self.pulley_radius_m, least=0.0)
+        require_number("tension_min_N", self.tension_min_N, least=0.0)
+        if not self.gravity_direction.any():
+            raise ValueError("gravity_direction must not be zero")
+        if self.attachments_m.shape[0] != self.n_cables:
+            raise ValueError(
+                f"every cable needs an exit point and an attachment: there are {self.n_cables} "
+                f"exit points and {self.attachments_m.shape[0]} attachments"
+            )
 
     @property
     def n_cables(self) -> int:
@@ -186,11 +224,27 @@ class Poses:
     position_m : array (..., 3)
         Origin of the body frame in the world frame [m].
     rotation : array (..., 3, 3)
-        Rotation from the body frame to the world frame; may be one matrix (3, 3) for all.
+        Rotation from the body frame to the world frame; may be one matrix (3, 3) for all. NaN,
+        as in positions, where a pose was not found.
     """
 
     position_m: FloatArray
     rotation: FloatArray
+
+    def __post_init__(self) -> None:
+        position, rotation = self.position_m, self.rotation
+        if position.ndim < 1 or position.shape[-1] != 3:
+            raise ValueError(f"position_m must have the shape (…, 3), not {position.shape}")
+        if rotation.shape[-2:] != (3, 3):
+            raise ValueError(f"rotation must have the shape (…, 3, 3), not {rotation.shape}")
+        have, want = rotation.shape[:-2], position.shape[:-1]
+        pairs = zip(reversed(have), reversed(want), strict=False)
+        if len(have) > len(want) or not all(h in (1, w) for h, w in pairs):
+            raise ValueError(f"rotations for {have} poses do not fit positions for {want}")
+        # The squares of its entries add up to three; cheap enough for every batch.
+        size = np.einsum("...ij,...ij->...", rotation, rotation)
+        if np.any(np.abs(size - 3.0) > _NO_ROTATION):
+            raise ValueError("rotation must consist of rotation matrices")
 
     @classmethod
     def at(cls, position_m: ArrayLike, rotation_vector_rad: ArrayLike | None = None) -> Poses:

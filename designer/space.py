@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import FloatArray, finite_array, frozen_array
 from designer.region import Region
 
 FILLING = 16
@@ -34,6 +34,14 @@ class Orientations:
 
     turns_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros((1, 3))))
     range_rad: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "turns_rad", finite_array("turns_rad", self.turns_rad, None, 3))
+        if self.range_rad is not None:
+            bounds = finite_array("range_rad", self.range_rad, 2, 3)
+            object.__setattr__(self, "range_rad", bounds)
+            if (bounds[0] > bounds[1]).any():
+                raise ValueError("range_rad must have its lowest components first")
 
     @classmethod
     def within(cls, low_rad: ArrayLike, high_rad: ArrayLike) -> Orientations:

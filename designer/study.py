@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
+from designer.arrays import require_number
 from designer.cable import Material
 from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
@@ -41,6 +42,8 @@ class Workspace:
         for none.
     orientations : Orientations
         How the platform shall be turned at every position.
+    floor_m : float or None
+        Height along the vertical that no cable shall hang below [m]; None for no floor.
     """
 
     region: Region
@@ -50,6 +53,18 @@ class Workspace:
     hangs_below: HangsBelow = "include"
     clearance_m: float | None = None
     orientations: Orientations = field(default_factory=Orientations)
+    floor_m: float | None = None
+
+    def __post_init__(self) -> None:
+        require_number("samples", self.samples, least=1)
+        require_number("seed", self.seed, least=0)
+        if self.clearance_m is not None:
+            require_number("clearance_m", self.clearance_m, least=0.0)
+        if self.floor_m is not None:
+            require_number("floor_m", self.floor_m)
+        for value, known in ((self.sampling, Sampling), (self.hangs_below, HangsBelow)):
+            if value not in get_args(known):
+                raise ValueError(f"{value!r} is none of {', '.join(get_args(known))}")
 
     @property
     def space(self) -> Space:

@@ -128,6 +128,8 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
         yield from _summary_of_selection(analysis.selection, _factor(analysis))
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
+    for label, text in analysis.hanging.notes():
+        yield label, f"[bold red]{text}[/]"
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None:
         yield "clearance", _clearance(interference)

@@ -86,6 +86,7 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
         seed=section.seed,
         hangs_below=section.hangs_below,
         clearance_m=section.clearance,
+        floor_m=section.floor,
         orientations=_orientations(section),
     )
 

@@ -31,6 +31,7 @@ from designer.config.fields import (
     Forces,
     FreeMapping,
     Interval,
+    Length,
     LengthNoise,
     LinearDensity,
     ListOf,
@@ -247,6 +248,7 @@ class WorkspaceSection(Section):
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
     hangs_below: HangsBelow = "include"
     clearance: Clearance | None = None
+    floor: Length | None = None
     orientation: OrientationSection | None = None
     orientations: TurnList | None = None
     orientation_range: OrientationRangeSection | None = None

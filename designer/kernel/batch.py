@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray, VerdictArray
+from designer.arrays import FloatArray, VerdictArray, require_shape
 from designer.kernel import layout
 from designer.kernel.calling import plain, pool
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
@@ -82,11 +82,18 @@ def solve_batch(
     Raises
     ------
     ValueError
-        If the robot has fewer cables than degrees of freedom.
+        If the robot has fewer cables than degrees of freedom, or the arrays differ in length.
     """
     n, count = robot.n_cables, len(poses.position_m)
     if n < robot.degrees_of_freedom:
         raise ValueError(f"{n} cables cannot hold {robot.degrees_of_freedom} degrees of freedom")
+    _require_one_batch(robot, poses, exit_points_m, force_N)
+    for name, each in (
+        ("kappa_per_m", kappa_per_m),
+        ("relative_weights", relative_weights),
+        ("strength_m", strength_m),
+    ):
+        require_shape(name, each, n)
     out_cables = np.empty((count, n, 3))
     out_poses = np.empty((count, 5))
     out_verdict = np.empty(count, dtype=np.int8)
@@ -150,6 +157,7 @@ def solve_massless_batch(
         One `Verdict` a pose.
     """
     n, count = robot.n_cables, len(poses.position_m)
+    _require_one_batch(robot, poses, exit_points_m, force_N)
     tension = np.empty((count, n))
     wrench = np.empty((count, robot.degrees_of_freedom))
     verdict = np.empty(count, dtype=np.int8)
@@ -169,6 +177,22 @@ def solve_massless_batch(
     )
     _share_out(solve_massless_range, count, arguments)
     return tension, wrench, verdict
+
+
+def _require_one_batch(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None
+) -> None:
+    """Raise ValueError where compiled code would read beyond the end of an array."""
+    count, n = len(poses.position_m), robot.n_cables
+    require_shape("position_m", poses.position_m, count, 3)
+    if poses.rotation.reshape(-1, 3, 3).shape[0] not in (1, count):
+        raise ValueError(f"{len(poses.rotation)} rotations do not fit {count} poses")
+    if exit_points_m.shape not in ((n, 3), (1, n, 3), (count, n, 3)):
+        raise ValueError(
+            f"exit points {exit_points_m.shape} do not fit {count} poses of {n} cables"
+        )
+    if force_N is not None and force_N.shape not in ((1, 3), (count, 3)):
+        raise ValueError(f"forces {force_N.shape} do not fit {count} poses")
 
 
 def _share_out(solve: Callable[..., None], count: int, arguments: tuple[Any, ...]) -> None:

@@ -5,12 +5,12 @@ chosen: when sizing, the forces that allow the thinnest cable; with a given cabl
 smallest largest tension over strength. As in `designer.kernel.square`, cables have unit weight, the
 unknowns are the pulls p, and the platform's balance is linear in the inverse weight c:
 
-    Σᵢ ωᵢ (pᵢ eᵢ, vᵢ(pᵢ); moments) = c · load,    tᵢ(pᵢ) ≤ f · strengthᵢ,    pᵢ ≥ c · leastᵢ
+    Σᵢ ωᵢ (pᵢ eᵢ, vᵢ(pᵢ); moments) = c · load,    tᵢ(pᵢ) ≤ f · strengthᵢ,    τᵢ(pᵢ) ≥ c · leastᵢ
 
-with c as large, or with c given and f as small, as can be. Straight cables make this a linear
-programme, and so does each Newton step for sagging ones; where enough cables are at a limit, the
-steps end on a vertex and converge quadratically. Where a cable is best left hanging between its
-limits, an interior point takes over.
+with top tension t and least tension τ anywhere in the cable, and with c as large, or with c given
+and f as small, as can be. Straight cables make this a linear programme, and so does each Newton
+step for sagging ones; where enough cables are at a limit, the steps end on a vertex and converge
+quadratically. Where a cable is best left hanging between its limits, an interior point takes over.
 
 What is called for every pose is compiled in place (`element`): to hand so many arrays to a function
 takes longer than most of these functions do.

@@ -18,7 +18,6 @@ from designer.kernel.layout import (
     WEIGHT,
 )
 from designer.kernel.redundant_layout import (
-    CHORD,
     EX,
     EY,
     FORCE,
@@ -40,6 +39,7 @@ from designer.kernel.redundant_layout import (
     T,
     V,
 )  # fmt: skip
+from designer.kernel.redundant_pose import lowest_tension
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 from designer.verdict import Verdict
 
@@ -83,8 +83,8 @@ def measure(pose: Pose, c: float) -> tuple[float, float, float]:
         rest[5] += w * (rx * y - ry * x) / scale[REACH]
         # Sums instead of maxima where NaN has to get through.
         closure = max(closure, abs(F / F_l)) + 0.0 * F
-        least = c * cables[LEAST, i] / cables[CHORD, i]
-        held = p >= PULL_FLOOR and t > 0.0 and p * _AT_LIMIT >= least
+        lowest, _ = lowest_tension(p, cables[L, i], 0.0, v, 0.0, cables[X2, i], cables[D, i])
+        held = p >= PULL_FLOOR and t > 0.0 and lowest * _AT_LIMIT >= c * cables[LEAST, i]
         overload = max(overload, t / cables[STRENGTH, i] if held else np.inf)
     error = 0.0
     for k in range(rows.size):

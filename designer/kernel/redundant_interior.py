@@ -6,6 +6,8 @@ Unknowns are the scaled pulls y of all cables and s; each cable's length follows
                                Tᵢ(yᵢ)/strengthᵢ + ζᵢ = f_0 + s f_s,      ζ > 0, multiplier μ
                                yᵢ - lowᵢ - leastᵢ (c_0 + s c_s) = ηᵢ,     η > 0, multiplier ν
 
+The last line is the least tension of a cable along its tangent, over the slope.
+
 As cables do not act on each other, the Hessian of the Lagrangian is diagonal; its second slopes are
 differences of first ones along the closure. Where it is not convex it is cut at zero. A Newton step
 then costs one m × m factorisation. Nocedal and Wright, Numerical Optimization (2006), chapter 19.
@@ -24,6 +26,9 @@ from designer.kernel.redundant_layout import (
     FORCE,
     FREEDOM,
     HEIGHT,
+    LEAST,
+    LOWEST_P,
+    LOWEST_PP,
     MU_HEIGHT,
     MU_ROOM,
     RHS,
@@ -45,12 +50,19 @@ from designer.kernel.redundant_layout import (
     T,
     V,
 )  # fmt: skip
-from designer.kernel.redundant_pose import bend, lift, smallest_pull, write_wrenches
+from designer.kernel.redundant_pose import (
+    bend,
+    lift,
+    make_straight,
+    smallest_pull,
+    write_wrenches,
+)
 from designer.kernel.unit_cable import PULL_FLOOR
 
 _MOST_ITERATIONS = 80
 _START_OF_STRAIGHT = 0.8
 _START_PULL = 0.5
+_CARRIED = 0.5
 _START_SHARE = 0.05
 _START_BARRIER = 0.05
 _LEAST_BARRIER = 1e-11
@@ -118,6 +130,7 @@ def _begin(pose: Pose, ask: Ask, s: float) -> None:
     """Move every pull well above its smallest, and give all slacks and multipliers a start."""
     c = pose.cables
     scaled_c = ask.c_0 + s * ask.c_s
+    make_straight(pose, _CARRIED)
     for i in range(c.shape[1]):
         low, low_c = smallest_pull(pose, i, PULL_FLOOR)
         least = low + low_c * max(scaled_c, 0.0)
@@ -127,13 +140,21 @@ def _begin(pose: Pose, ask: Ask, s: float) -> None:
             y = least + _START_SHARE
         y = max(y, _START_PULL / c[UNIT, i])
         c[P, i] = y * c[UNIT, i]
-        c[HEIGHT, i] = y - low - low_c * scaled_c
     bend(pose)
     for i in range(c.shape[1]):
+        c[HEIGHT, i] = max(_height(pose, ask, s, i), _START_SHARE)
         limit = ask.f_0 + s * ask.f_s
         c[ROOM, i] = max(limit - c[T, i] / c[STRENGTH, i], _START_SHARE)
         c[MU_ROOM, i] = _START_BARRIER / c[ROOM, i]
         c[MU_HEIGHT, i] = _START_BARRIER / c[HEIGHT, i]
+
+
+@kernel
+def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
+    """Return by how much the scaled pull of a cable is above its smallest."""
+    c = pose.cables
+    low, low_c = smallest_pull(pose, i, PULL_FLOOR)
+    return float(c[P, i] / c[UNIT, i] - low - low_c * (ask.c_0 + s * ask.c_s))
 
 
 @kernel
@@ -171,6 +192,7 @@ def _gap(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
         infeasible = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
         worst = max(worst, abs(stationary), abs(infeasible), c[ROOM, i] * c[MU_ROOM, i])
         worst = max(worst, c[HEIGHT, i] * c[MU_HEIGHT, i])
+        worst = max(worst, abs(_height(pose, ask, s, i) - c[HEIGHT, i]))
     return max(worst, abs(in_s))
 
 
@@ -218,7 +240,8 @@ def _condense(
         d_height = c[MU_HEIGHT, i] / c[HEIGHT, i]
         miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
         push_room = barrier / c[ROOM, i] - c[MU_ROOM, i] - d_room * miss
-        push_height = barrier / c[HEIGHT, i] - c[MU_HEIGHT, i]
+        sunk = _height(pose, ask, s, i) - c[HEIGHT, i]
+        push_height = barrier / c[HEIGHT, i] - c[MU_HEIGHT, i] - d_height * sunk
         c[FREEDOM, i] = 1.0 / (H + d_room * slope * slope + d_height)
         c[RHS, i] = -c[RHS, i] - slope * push_room + push_height
         c[COUPLING, i] = -ask.f_s * d_room * slope - low_s * d_height
@@ -239,7 +262,10 @@ def _curvature(pose: Pose, i: int, dual: FloatArray) -> float:
         arm += dual[k] * lift(pose, pose.rows[k], i)
     of_lift = c[SHARE, i] / pose.scale[FORCE] * c[V_PP, i] * arm
     of_tension = c[MU_ROOM, i] * c[T_PP, i] / c[STRENGTH, i]
-    return float(max(c[UNIT, i] * c[UNIT, i] * (of_lift + of_tension), _FLAT))
+    of_least = 0.0
+    if c[LEAST, i] > 0.0:
+        of_least = c[MU_HEIGHT, i] / c[UNIT, i] * c[LOWEST_PP, i] / c[LOWEST_P, i]
+    return float(max(c[UNIT, i] * c[UNIT, i] * (of_lift + of_tension - of_least), _FLAT))
 
 
 @kernel
@@ -276,7 +302,8 @@ def _changes(
     _, low_c = smallest_pull(pose, i, PULL_FLOOR)
     miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
     room = miss + ask.f_s * ds - c[T_P, i] / c[CHORD, i] * c[STEP, i]
-    height = c[STEP, i] - low_c * ask.c_s * ds
+    sunk = _height(pose, ask, s, i) - c[HEIGHT, i]
+    height = sunk + c[STEP, i] - low_c * ask.c_s * ds
     mu_room = (barrier - c[MU_ROOM, i] * room) / c[ROOM, i] - c[MU_ROOM, i]
     mu_height = (barrier - c[MU_HEIGHT, i] * height) / c[HEIGHT, i] - c[MU_HEIGHT, i]
     return room, height, mu_room, mu_height

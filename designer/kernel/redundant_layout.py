@@ -24,7 +24,10 @@ ROOM, HEIGHT, MU_ROOM, MU_HEIGHT, FREEDOM, RHS, COUPLING, STEP = range(25, 33)
 TOP, TOP_S, UP = range(33, 36)
 # Scaled wrench per unit of scaled pull, force x, y, z and moment x, y, z: six rows.
 WRENCH = 36
-CABLE_ROWS = 42
+# Least tension anywhere in the cable over its weight, with its slopes in the pull, where one is
+# asked for.
+LOWEST, LOWEST_P, LOWEST_PP = range(42, 45)
+CABLE_ROWS = 45
 
 
 class Pose(NamedTuple):

@@ -17,6 +17,9 @@ from designer.kernel.redundant_layout import (
     L_0,
     L_P,
     LEAST,
+    LOWEST,
+    LOWEST_P,
+    LOWEST_PP,
     REACH,
     RX,
     RY,
@@ -126,6 +129,8 @@ def make_straight(pose: Pose, carried: float) -> None:
         c[T_P, i] = c[CHORD, i]
         c[L_0, i] = 0.0
         c[L_P, i] = 0.0
+        c[LOWEST, i] = -carried * abs(c[D, i])
+        c[LOWEST_P, i] = c[CHORD, i]
 
 
 @kernel
@@ -144,6 +149,28 @@ def linearise(pose: Pose) -> None:
         c[T_P, i] = t_p + t_l * lp
         c[L_0, i] = l0
         c[L_P, i] = lp
+        if c[LEAST, i] > 0.0:
+            c[LOWEST, i], c[LOWEST_P, i] = lowest_tension(
+                c[P, i], c[L, i] + l0, lp, c[V, i], c[V_P, i], c[X2, i], c[D, i]
+            )
+
+
+@element
+def lowest_tension(
+    p: float, length: float, length_p: float, v: float, v_p: float, X2: float, D: float
+) -> tuple[float, float]:
+    """Return the least tension anywhere in a cable over its weight, and its slope in the pull.
+
+    Where the cable hangs below both of its ends that is the horizontal force, else the tension at
+    its lower end. It rises with the pull, ever faster: its tangents never promise too much.
+    """
+    up, up_p = (v, v_p) if D >= 0.0 else (-length - v, -length_p - v_p)
+    if up < 0.0:
+        up, up_p = 0.0, 0.0
+    tension = np.sqrt(p * p * X2 + up * up)
+    if not tension > 0.0:
+        return 0.0, np.sqrt(X2 + D * D)
+    return tension, (p * X2 + up * up_p) / tension
 
 
 @element
@@ -171,12 +198,17 @@ def bend(pose: Pose) -> None:
     linearise(pose)
     for i in range(c.shape[1]):
         step = _ALONG * c[P, i]
-        _, F_p, F_l, _, v_p, v_l, _, t_p, t_l = unit_cable(
+        _, F_p, F_l, v, v_p, v_l, _, t_p, t_l = unit_cable(
             c[P, i] + step, c[L, i] + step * c[L_P, i], c[X2, i], c[D, i], c[KAPPA, i]
         )
         lp = -F_p / F_l
         c[V_PP, i] = (v_p + v_l * lp - c[V_P, i]) / step
         c[T_PP, i] = (t_p + t_l * lp - c[T_P, i]) / step
+        if c[LEAST, i] > 0.0:
+            _, slope = lowest_tension(
+                c[P, i] + step, c[L, i] + step * c[L_P, i], lp, v, v_p + v_l * lp, c[X2, i], c[D, i]
+            )
+            c[LOWEST_PP, i] = (slope - c[LOWEST_P, i]) / step
 
 
 @element
@@ -209,12 +241,13 @@ def lift(pose: Pose, row: int, i: int) -> float:
 def smallest_pull(pose: Pose, i: int, floor: float) -> tuple[float, float]:
     """Return the smallest scaled pull of a cable, and its rise per scaled c.
 
-    The smallest tension is meant where the cable runs parallel to its chord; there it is exactly
-    the horizontal force times chord over horizontal distance.
+    Of the line that touches the least tension in the cable at the present pull.
     """
     c, scale = pose.cables, pose.scale
     if c[LEAST, i] > 0.0:
-        return 0.0, c[LEAST, i] * scale[FORCE] / (scale[SIZE] * c[STRENGTH, i])
+        slope = c[LOWEST_P, i] * c[UNIT, i]
+        low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
+        return c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope, low_c
     return floor / c[UNIT, i], 0.0
 
 

@@ -89,6 +89,38 @@ def end_tensions_N(
     return np.hypot(F_x, F_z - w * length), np.hypot(F_x, F_z)
 
 
+def lowest_z_m(
+    length_m: ArrayLike,
+    force_x_N: ArrayLike,
+    force_z_N: ArrayLike,
+    axial_stiffness_N: ArrayLike,
+    weight_N_per_m: ArrayLike,
+) -> FloatArray:
+    """Return z of the lowest point in the cable's frame, never above zero (...) [m].
+
+    V(s) is zero there; without such a point between the ends it is the lower of the two.
+    """
+    length, F_x, F_z, EA, w = _floats(
+        length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m
+    )
+    at = np.clip(length - F_z / w, 0.0, length)
+    return np.minimum(position_m(at, length, F_x, F_z, EA, w)[1], 0.0)
+
+
+def least_tension_N(
+    length_m: ArrayLike, force_x_N: ArrayLike, force_z_N: ArrayLike, weight_N_per_m: ArrayLike
+) -> FloatArray:
+    """Return the least tension anywhere in the cable (...) [N].
+
+    The horizontal force where the lowest point lies between the ends, else the tension at the lower
+    end; V(s) of the module's equations is zero at the lowest point.
+    """
+    length, F_x, F_z, w = _floats(length_m, force_x_N, force_z_N, weight_N_per_m)
+    V_0 = F_z - w * length
+    nearest = np.where(F_z * V_0 > 0.0, np.minimum(np.abs(F_z), np.abs(V_0)), 0.0)
+    return np.asarray(np.hypot(F_x, nearest))
+
+
 def length_and_force_z(
     force_density_N_per_m: ArrayLike,
     horizontal_distance_m: ArrayLike,

@@ -1,11 +1,12 @@
 r"""The thinnest cable of a redundant robot by sequential convex programs: the readable reference.
 
 One pose at a time, in CVXPY. Each cable of unit weight has one free pull :math:`p_i`, horizontal
-force over weight and horizontal distance; its length, its upward pull :math:`v_i` and its top
-tension :math:`T_i` follow. With c the inverse of the weight per length,
+force over weight and horizontal distance; its length, its upward pull :math:`v_i`, its top
+tension :math:`T_i` and the least tension in it :math:`\tau_i` follow. With c the inverse of the
+weight per length,
 
 .. math::  \max c \quad \text{s.t.} \quad \sum_i W_i(p_i) = c\,w, \quad T_i(p_i) \le \sigma/(g\rho),
-           \quad p_i L_i \ge c\,t_{min}.
+           \quad \tau_i(p_i) \ge c\,t_{min}.
 
 Each turn linearises the cables at the last pulls, adds the convex part of the Lagrangian's
 curvature, which is diagonal, keeps the pulls within a trust region, puts a price on what is
@@ -82,6 +83,8 @@ class _State:
         Over the strength length.
     tension, tension_y, tension_yy : array (n_cables,)
         Largest tension over the strength length.
+    lowest, lowest_y : array (n_cables,)
+        Least tension anywhere in the cable, likewise.
     length_m : array (n_cables,)
         Unstrained lengths [m].
     """
@@ -92,6 +95,8 @@ class _State:
     tension: FloatArray
     tension_y: FloatArray
     tension_yy: FloatArray
+    lowest: FloatArray
+    lowest_y: FloatArray
     length_m: FloatArray
 
 
@@ -140,8 +145,8 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
             break
         found = problem.corrected(found)
         moved = problem.state(found.y)
-        better = problem.merit(moved, found.y, found.c)
-        if better > problem.merit(state, y, c) + _ROUNDING:
+        better = problem.merit(moved, found.c)
+        if better > problem.merit(state, c) + _ROUNDING:
             trust *= 0.25
             continue
         y, c, state, multiplier = found.y, found.c, moved, found.balance
@@ -173,7 +178,7 @@ def optimality_of(
     c = problem.load_N / allowable
     y = force_x_N * problem.chord_m / (problem.distance_m * allowable)
     state = problem.state(y)
-    return problem.violation(state, y, c), problem.gap(state, y, c)
+    return problem.violation(state, c), problem.gap(state, y, c)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -224,9 +229,10 @@ class _Problem:
         step = _ALONG * y
         slopes = [(a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True)]
         bends = [(a - 2.0 * h + b) / step**2 for a, h, b in zip(ahead, here, behind, strict=True)]
-        return _State(here[0], slopes[0], bends[0], here[1], slopes[1], bends[1], here[2])
+        wrench, tension = ((here[k], slopes[k], bends[k]) for k in range(2))
+        return _State(*wrench, *tension, here[2], slopes[2], here[3])
 
-    def _cables(self, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _cables(self, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         strength = self.material.strength_length_m
         pull = y * strength / self.chord_m
         kappa = self.material.elastic_compliance_per_m
@@ -236,11 +242,12 @@ class _Problem:
         force_x = pull * self.distance_m
         ends = catenary.end_tensions_N(length, force_x, force_z, 1.0)
         wrench = self.forces[:, 0::2] * force_x + self.forces[:, 1::2] * force_z
-        return wrench / strength, np.maximum(*ends) / strength, length
+        lowest = catenary.least_tension_N(length, force_x, force_z, 1.0)
+        return wrench / strength, np.maximum(*ends) / strength, lowest / strength, length
 
-    def merit(self, state: _State, y: FloatArray, c: float) -> float:
+    def merit(self, state: _State, c: float) -> float:
         """Return what each turn has to lower: -c, and the worst violation at its price."""
-        return -c + _PRICE * self.violation(state, y, c)
+        return -c + _PRICE * self.violation(state, c)
 
     def corrected(self, turn: _Turn) -> _Turn:
         """Bring the balance back by the least relative change, of cables with room for it.
@@ -254,13 +261,13 @@ class _Problem:
         step = np.linalg.lstsq(slopes * freedom, rest, rcond=None)[0] * freedom
         return replace(turn, y=np.maximum(turn.y - step[:-1], 0.5 * turn.y), c=turn.c - step[-1])
 
-    def violation(self, state: _State, y: FloatArray, c: float) -> float:
+    def violation(self, state: _State, c: float) -> float:
         """Return the worst violation of the full equations."""
         rest = state.wrench.sum(axis=1) - c * self.load
         return max(
             float(np.abs(rest).max()),
             float(np.maximum(state.tension - 1.0, 0.0).max()),
-            float(np.maximum(c * self.least - y, 0.0).max()),
+            float(np.maximum(c * self.least - state.lowest, 0.0).max()),
         )
 
     def gap(self, state: _State, y: FloatArray, c: float) -> float:
@@ -272,10 +279,10 @@ class _Problem:
 
         n, dof = len(y), len(self.load)
         full = np.nonzero(state.tension > 1.0 - _AT_BOUND)[0]
-        least = np.nonzero((self.least > 0.0) & (y < c * self.least + _AT_BOUND))[0]
-        in_y = np.hstack(
-            [state.wrench_y.T, np.eye(n)[:, full] * state.tension_y[full], -np.eye(n)[:, least]]
-        )
+        least = np.nonzero((self.least > 0.0) & (state.lowest < c * self.least + _AT_BOUND))[0]
+        at_full = np.eye(n)[:, full] * state.tension_y[full]
+        at_least = -np.eye(n)[:, least] * state.lowest_y[least]
+        in_y = np.hstack([state.wrench_y.T, at_full, at_least])
         in_c = np.concatenate([-self.load, np.zeros(len(full)), self.least[least]])
         slopes = np.vstack([in_y, in_c])
         wanted = np.eye(n + 1)[n]
@@ -284,7 +291,7 @@ class _Problem:
 
     def answer(self, state: _State, y: FloatArray, c: float, turns: int) -> ScpSizing:
         """Return the result in SI units."""
-        infeasible = self.violation(state, y, c)
+        infeasible = self.violation(state, c)
         gap = self.gap(state, y, c)
         converged = infeasible < 1e-6 and gap < 1e-6 and c > 0.0
         allowable_N = self.load_N / c
@@ -313,7 +320,8 @@ def _programme(dof: int, n: int) -> dict[str, Any]:
         "tension": cp.Parameter(n),
         "tension_slope": cp.Parameter(n),
         "bend": cp.Parameter(n, nonneg=True),
-        "y": cp.Parameter(n),
+        "lowest": cp.Parameter(n),
+        "lowest_slope": cp.Parameter(n),
         "load": cp.Parameter(dof),
         "least": cp.Parameter(n, nonneg=True),
         "trust": cp.Parameter(n, nonneg=True),
@@ -323,7 +331,7 @@ def _programme(dof: int, n: int) -> dict[str, Any]:
         balance <= gap,
         -balance <= gap,
         data["tension"] + cp.multiply(data["tension_slope"], step) - 1.0 <= gap,
-        c * data["least"] - data["y"] - step <= gap,
+        c * data["least"] - data["lowest"] - cp.multiply(data["lowest_slope"], step) <= gap,
         cp.abs(step) <= data["trust"],
     ]
     curved = 0.5 * cp.sum_squares(cp.multiply(data["bend"], step))
@@ -352,7 +360,8 @@ def _solve(
     programme["tension"].value = state.tension
     programme["tension_slope"].value = state.tension_y
     programme["bend"].value = np.sqrt(np.maximum(bend, 0.0))
-    programme["y"].value = y
+    programme["lowest"].value = state.lowest
+    programme["lowest_slope"].value = state.lowest_y
     programme["load"].value = problem.load
     programme["least"].value = problem.least
     programme["trust"].value = trust * y

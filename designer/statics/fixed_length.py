@@ -52,8 +52,8 @@ def cables_of_length(
         strain = np.hypot(force_x, downward) / axial_stiffness_N
         return (force_x, force_z), np.arctan2(downward, force_x), strain
 
-    (force_x, force_z), run = over_pulleys(robot, poses, solve)
-    held = np.isfinite(force_x).all(axis=-1)
+    (force_x, force_z), run, settled = over_pulleys(robot, poses, solve)
+    held = np.isfinite(force_x).all(axis=-1) & settled
     return Statics(
         robot=robot,
         poses=poses,

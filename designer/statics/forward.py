@@ -207,7 +207,8 @@ def _result(search: _Search, shape: tuple[int, ...], force_N: FloatArray | None)
     statics = search.statics(everything, Poses(search.position, search.rotation))
     with np.errstate(invalid="ignore"):
         left = np.abs(_push(statics)).max(axis=-1)
-        solved = left <= _TOLERANCE * np.maximum(statics.largest_tension_N, robot.weight_N)
+        close = left <= _TOLERANCE * np.maximum(statics.largest_tension_N, robot.weight_N)
+    solved = close & statics.is_solved
     stable = solved & is_stable(robot, upright_stiffness(statics))
 
     def whole(values: FloatArray) -> FloatArray:

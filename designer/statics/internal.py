@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, require_shape
 from designer.cable import Cable
 from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
@@ -60,6 +60,8 @@ def solve_internal(
     Statics
         ``not converged`` where the balance does not close to 1e-9 of the largest tension.
     """
+    require_shape("length_m", length_m, len(poses.position_m), robot.n_cables)
+    require_shape("tension_N", tension_N, len(poses.position_m), robot.n_cables)
     weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
     load_N = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
     _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
@@ -75,8 +77,8 @@ def solve_internal(
         strain = np.hypot(force_x, downward) / stiffness
         return np.stack([free, force_x, force_z]), np.arctan2(downward, force_x), strain
 
-    found, run = over_pulleys(robot, poses, solve)
-    closes = rest <= _CLOSES
+    found, run, settled = over_pulleys(robot, poses, solve)
+    closes = (rest <= _CLOSES) & settled
     free, force_x, force_z = np.where(closes[:, None], found, np.nan)
     ones = np.ones((len(rest), 1))
     return Statics(

@@ -98,6 +98,13 @@ class Statics:
         return np.asarray(np.maximum(*self._end_tensions_N()))
 
     @property
+    def least_tension_N(self) -> FloatArray:
+        """Least tension anywhere in each cable (..., n_cables) [N]."""
+        return catenary.least_tension_N(
+            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
+        )
+
+    @property
     def largest_tension_N(self) -> FloatArray:
         """Largest tension anywhere in any cable (...) [N]."""
         return np.asarray(self.cable_tension_N.max(axis=-1))
@@ -189,7 +196,14 @@ def solve_sagging(
         with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
+
+    Raises
+    ------
+    ValueError
+        If there are more or fewer `Cables` than exit points, or fewer than degrees of freedom.
     """
+    if isinstance(cable, Cables) and len(cable.each) != robot.n_cables:
+        raise ValueError(f"{len(cable.each)} cables do not fit {robot.n_cables} exit points")
     weight = cable.weight_N_per_m
     heaviest = float(np.max(weight))
     task = Task(

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
 from designer.cable import Cable
 from designer.kernel.calling import plain, pool
 from designer.robot import Poses, Robot
@@ -77,6 +77,9 @@ def meet(
     leaves_out_hanging : bool
         Whether poses in which a cable hangs below the platform do not count.
     """
+    require_shape("cells", cells, len(poses.position_m))
+    if cells.size and not (cells.min() >= 0 and cells.max() < n_cells):
+        raise ValueError(f"cells must be numbered from 0 to {n_cells - 1}")
     found = _nothing(len(cables), robot.n_cables, n_cells, len(poses.position_m))
     if not cables:
         return found

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.physics import pulley
 from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_poses
+from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
 _MOST_TURNS = 40
 _STILL_RAD = 1e-13
+_SETTLED_RAD = 1e-9
+_PATIENCE = 8
+"""Turns after which a pose that does not come nearer moves by half as much."""
+_LEAST_SHARE = 1.0 / 32.0
 
 Answer = TypeVar("Answer")
 
@@ -107,9 +112,10 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
             downward = weight * solution.length_m - solution.force_z_N
         return solution, np.arctan2(downward, solution.force_x_N), 0.0
 
-    solution, run = over_pulleys(robot, flat, solve)
+    solution, run, settled = over_pulleys(robot, flat, solve)
     if robot.pulley_radius_m == 0.0:
         return solution, run
+    solution = _keep(solution, settled)
     shape = (*poses.shape, robot.n_cables)
     points = run.exit_points_m.reshape(*shape, 3)
     return solution, PulleyRun(points, run.wrap_m.reshape(shape))
@@ -119,11 +125,12 @@ def over_pulleys(
     robot: Robot,
     poses: Poses,
     solve: Callable[[PulleyRun], tuple[Answer, FloatArray, FloatArray | float]],
-) -> tuple[Answer, PulleyRun]:
+) -> tuple[Answer, PulleyRun, BoolArray]:
     """Solve until the tangent points on the pulleys rest; once, where there are none.
 
     The tangent point follows the slope of the sagging cable at its upper end, which moves by about
-    radius over length of what the tangent point moved: a handful of turns reach rounding.
+    radius over length of what the tangent point moved: a handful of turns reach rounding. Slack
+    cables over a large pulley may swing between two ways to hang; steps are then made shorter.
 
     Parameters
     ----------
@@ -137,25 +144,44 @@ def over_pulleys(
     -------
     answer, run
         Of the last turn.
+    settled : array (...)
+        Poses in which every cable leaves its pulley as a tangent.
     """
     if robot.pulley_radius_m == 0.0:
         run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-        return solve(run)[0], run
+        return solve(run)[0], run, np.ones(poses.shape, dtype=np.bool_)
     geometry = cable_geometry(robot, poses)
     straight = pulley.straight_slope_rad(
         geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
     )
     slope = straight
     strain: FloatArray | float = 0.0
-    for _ in range(_MOST_TURNS):
+    share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
+    for turn in range(_MOST_TURNS):
         run = _run(robot, geometry.outward, slope).unstrained(strain)
         answer, found, strain = solve(run)
-        new = np.where(np.isfinite(found), found, straight)
-        change = np.nanmax(np.abs(new - slope), initial=0.0)
-        slope = new
-        if change <= _STILL_RAD:
+        step = np.where(np.isfinite(found), found, straight) - slope
+        before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
+        if np.all(gap <= _STILL_RAD):
             break
-    return answer, run
+        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > _SETTLED_RAD)
+        share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
+        slope = slope + share[..., None] * step
+    return answer, run, gap <= _SETTLED_RAD
+
+
+def _keep(solution: Solution, settled: BoolArray) -> Solution:
+    """Take back what is said of the poses (n_poses,) whose tangent points did not settle."""
+    lost = ~settled & (solution.verdict == Verdict.SOLVED)
+    if not lost.any():
+        return solution
+    blank = {
+        field.name: np.where(lost.reshape(-1, *[1] * (value.ndim - 1)), np.nan, value)
+        for field in fields(solution)
+        if (value := getattr(solution, field.name)).dtype == np.float64
+    }
+    verdict = np.where(lost, np.int8(Verdict.NOT_CONVERGED), solution.verdict)
+    return replace(solution, verdict=verdict, **blank)
 
 
 def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:

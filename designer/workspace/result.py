@@ -10,6 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.robot import Poses
 from designer.space import turn_of
+from designer.workspace.hanging import HangingCables
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,12 +64,15 @@ class Census:
         Solved samples in which a cable hangs below the platform.
     excluded : int
         Those of them that the study leaves out.
+    hanging : HangingCables
+        Those that count in which a cable is far longer than its chord, or hangs below the floor.
     """
 
     samples: int
     statuses: Mapping[str, int]
     hangs_below: int
     excluded: int
+    hanging: HangingCables = field(default_factory=HangingCables)
 
     def fraction(self, status: str) -> float:
         """Return the share of the samples, hence of the volume, with this verdict."""

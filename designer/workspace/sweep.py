@@ -13,11 +13,12 @@ from designer.arrays import FloatArray
 from designer.cable import Material
 from designer.robot import Poses, Robot
 from designer.sizing.limit import limit_ratio
-from designer.sizing.newton import Sizing
+from designer.sizing.newton import Sizing, size_poses
 from designer.space import turn_of
 from designer.study import Workspace
 from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
+from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.refine import Pool, refine
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.samples import pieces_m
@@ -79,6 +80,7 @@ class _Gathered:
         self.verdicts: Counter[int] = Counter()
         self.hangs_below = 0
         self.excluded = 0
+        self.hanging = HangingCables()
         self.starts = Pool(workspace.space)
         self.massless_starts = Pool(workspace.space)
         self.sampled: Extreme | None = None
@@ -91,6 +93,7 @@ class _Gathered:
         self.hangs_below += int(statics.hangs_below.sum())
         self.excluded += int(left_out.sum())
         counts = statics.is_solved & ~left_out
+        self.hanging = look_at(self.hanging, some, statics, counts, self._workspace.floor_m)
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
         massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
         self.starts.add(some, diameter)
@@ -102,7 +105,8 @@ class _Gathered:
 
     def census(self) -> Census:
         statuses = {v.label: self.verdicts.get(int(v), 0) for v in Verdict}
-        return Census(sum(statuses.values()), statuses, self.hangs_below, self.excluded)
+        totals = sum(statuses.values()), statuses, self.hangs_below, self.excluded
+        return Census(*totals, self.hanging)
 
     def _keep_worst(self, some: FloatArray, diameter: FloatArray, tension: FloatArray) -> None:
         at = int(np.argmax(diameter))
@@ -123,9 +127,10 @@ def _summarise(
         demand = diameter_demand(robot, material, workspace.hangs_below)
         worst = refine(workspace.space, demand, gathered.starts.places)
         if np.isfinite(worst.demand):
-            tension = material.cable(worst.demand).allowable_tension_N
+            pose = Poses.at(worst.place)
+            tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
             sagging = Extreme.at(worst.place, worst.demand, tension)
-            ratio = float(limit_ratio(robot, Poses.at(worst.place), material))
+            ratio = float(limit_ratio(robot, pose, material))
         else:
             example = worst.place
     return WorkspaceMap(

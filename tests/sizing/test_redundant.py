@@ -251,12 +251,19 @@ def test_no_cable_falls_below_the_least_tension(case) -> None:
         for statics in (sizing.statics, solve_sagging(robot, poses, material.cable(0.01))):
             solved = statics.is_solved
             assert solved.any()
-            geometry = statics.geometry()
-            along = statics.force_x_N * geometry.chord_m / geometry.horizontal_distance_m
-            assert along[solved].min() > robot.tension_min_N * (1.0 - 1e-8)
+            tension = tension_along_N(statics)[solved]
+            assert tension.min() >= robot.tension_min_N * (1.0 - 1e-9)
         free = size_poses(slack, poses, material)
         both = sizing.statics.is_solved & free.statics.is_solved
         assert np.all(sizing.diameter_m[both] >= free.diameter_m[both] * (1.0 - 1e-9))
+
+
+def tension_along_N(statics):
+    """Integrate down each cable from its upper end: the load changes by its weight alone."""
+    weight = statics.weight_N_per_m[..., None]
+    s = np.linspace(0.0, 1.0, 20_001) * statics.length_m[..., None]
+    upward = statics.force_z_N[..., None] - weight * s
+    return np.hypot(statics.force_x_N[..., None], upward)
 
 
 def test_pulleys_tilt_and_wrench_are_in_the_balance() -> None:
@@ -300,6 +307,16 @@ def test_robots_in_a_plane(is_body) -> None:
             reference = size_by_scp(robot, one(poses, k), steel(weights))
             assert reference.has_converged
             assert sizing.diameter_m[k] == pytest.approx(reference.diameter_m, rel=1e-8)
+
+
+@pytest.mark.parametrize("weights", [1.0, 10.0])
+def test_a_least_tension_that_governs_is_met_and_no_more(weights) -> None:
+    poses = Poses.at([[12.0, 0.0, 9.0], [20.0, 0.0, 12.0], [15.0, 0.0, 5.0]])
+    sizing = size_poses(FACADE, poses, steel(weights))
+    for statics in (sizing.statics, solve_sagging(FACADE, poses, steel(weights).cable(0.02))):
+        least = tension_along_N(statics).min(axis=(-2, -1))
+        assert np.abs(least / FACADE.tension_min_N - 1.0).max() < 1e-9
+        assert statics.least_tension_N.min(axis=-1) == pytest.approx(least, rel=1e-9)
 
 
 def test_batch_equals_loop_over_any_leading_axes() -> None:

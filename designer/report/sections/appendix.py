@@ -161,7 +161,7 @@ def _loads(robot: Robot) -> str:
         parts.append(f"Things fall along ({row}).")
     if robot.tension_min_N > 0.0:
         least = fmt.newtons(robot.tension_min_N)
-        parts.append(f"No cable has less than {least}, where it runs parallel to its chord.")
+        parts.append(f"No cable has less than {least} anywhere along it.")
     return " ".join(parts)
 
 

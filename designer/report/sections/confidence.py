@@ -11,6 +11,7 @@ from designer.report import format as fmt
 from designer.report.findings import Findings
 from designer.report.material_class import class_of
 from designer.report.parts import Statement
+from designer.report.sections.hanging import hanging_statements
 from designer.selection.result import Candidate
 
 _NEAR_BOUNDARY = 0.9
@@ -20,6 +21,7 @@ def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     """Return what a reviewer should know before relying on the answer."""
     chosen = analysis.selection.chosen if analysis.selection else None
     statements = [*_margin(analysis, findings), *_sampling(analysis), *_hanging(analysis, findings)]
+    statements += hanging_statements(analysis)
     if chosen is not None:
         statements += [_trust(chosen), _modulus(chosen, findings)]
     ropes = [*_ropes(analysis)]

@@ -1,0 +1,137 @@
+"""Samples in which a cable hangs as none should: far longer than its chord, or below the floor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.cable import Cable, Cables
+from designer.robot import Poses, Robot
+from designer.statics.hanging import length_over_chord, lowest_m
+from designer.statics.inverse import Statics, solve_sagging
+from designer.study import Workspace
+from designer.workspace.demand import is_left_out
+from designer.workspace.samples import places
+
+LONG = 1.5
+"""Length over chord above which a cable counts as long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hanging:
+    """Samples in which a cable hangs too far, and the worst of them.
+
+    Parameters
+    ----------
+    samples : int
+        How many there are.
+    extreme : float
+        The largest length over chord; or the height of the lowest point [m].
+    cable : int
+        Which cable, counted from 1.
+    place : tuple of float
+        In which sample, see `designer.space` [m, rad].
+    """
+
+    samples: int
+    extreme: float
+    cable: int
+    place: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HangingCables:
+    """What hangs too far over a workspace; None where nothing does.
+
+    Parameters
+    ----------
+    samples : int
+        Samples looked at: those that are solved and count.
+    long : Hanging or None
+        Cables longer than `LONG` times their chord.
+    below_floor : Hanging or None
+        Cables that hang below the floor; None also where the study has no floor.
+    """
+
+    samples: int = 0
+    long: Hanging | None = None
+    below_floor: Hanging | None = None
+
+    def notes(self) -> Iterator[tuple[str, str]]:
+        """Yield a heading and a few words for each of the two that there is."""
+        kinds = (
+            ("long cables", self.long, "times its chord"),
+            ("below floor", self.below_floor, "m"),
+        )
+        for heading, found, unit in kinds:
+            if found is not None:
+                share = f"{found.samples / self.samples:.2%} of the samples"
+                yield (
+                    heading,
+                    f"{share}, cable {found.cable} at the worst {found.extreme:.4g} {unit}",
+                )
+
+
+def look_at(
+    found: HangingCables,
+    some: FloatArray,
+    statics: Statics,
+    counts: BoolArray,
+    floor_m: float | None,
+) -> HangingCables:
+    """Return what was found before with these samples added.
+
+    Parameters
+    ----------
+    some : array (n, n_coordinates)
+        The samples, as places.
+    statics : Statics
+        Their cables.
+    counts : array (n,)
+        Which of them count.
+    floor_m : float or None
+        Height that no cable may hang below, upright frame [m].
+    """
+    long = _add(found.long, some, length_over_chord(statics), counts, LONG, sign=1.0)
+    below = found.below_floor
+    if floor_m is not None:
+        below = _add(below, some, lowest_m(statics), counts, floor_m, sign=-1.0)
+    return HangingCables(found.samples + int(counts.sum()), long, below)
+
+
+def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
+    """Return which samples of the workspace have such a cable, with these cables on the machine."""
+    found = HangingCables()
+    for some in places(workspace):
+        statics = solve_sagging(robot, Poses.at(some), cable)
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        found = look_at(found, some, statics, counts, workspace.floor_m)
+    return found
+
+
+def _add(
+    before: Hanging | None,
+    some: FloatArray,
+    values: FloatArray,
+    counts: BoolArray,
+    limit: float,
+    *,
+    sign: float,
+) -> Hanging | None:
+    """Count samples with a value beyond the limit; `sign` tells on which side of it."""
+    beyond = np.where(counts[:, None], sign * (values - limit), -np.inf)
+    worst = beyond.max(axis=1, initial=-np.inf)
+    samples = int((worst > 0.0).sum())
+    if samples == 0:
+        return before
+    at = int(worst.argmax())
+    cable = int(beyond[at].argmax())
+    here = Hanging(samples, float(values[at, cable]), cable + 1, tuple(some[at].tolist()))
+    if before is None:
+        return here
+    farthest = max(before, here, key=lambda one: sign * one.extreme)
+    total = before.samples + samples
+    return Hanging(total, farthest.extreme, farthest.cable, farthest.place)

@@ -1,0 +1,104 @@
+"""Values that cannot be are refused where they are made, in one sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from designer.arrays import frozen_array
+from designer.cable import Cable, Cables, Material
+from designer.kernel.batch import solve_batch
+from designer.region import PointList, Prism, Rectangle
+from designer.robot import Platform, Poses, Robot
+from designer.space import Orientations
+from designer.statics.inverse import solve_sagging
+from designer.study import Workspace
+
+EXITS = frozen_array([[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9]])
+BODY = frozen_array([[-1, -1, 0], [1, -1, 0], [1, 1, 1], [-1, 1, 0], [0, -1, 1], [0, 1, 1]])
+ROBOT = Robot(EXITS, Platform(100.0, BODY))
+ROPE = Cable(0.01, 0.4, 6e6, 1e4)
+STEEL = Material(7800.0, 200e9, 180e6)
+BOX = Prism.box((0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
+ONE = Poses.at([4.0, 4.0, 3.0])
+nan, inf = np.nan, np.inf
+
+WRONG = {
+    "five attachments of six": (lambda: Robot(EXITS, Platform(1.0, BODY[:5])), "6 exit points and"),
+    "exit points in a plane": (lambda: Robot(EXITS[:, :2], Platform(1.0)), r"\(n, 3\)"),
+    "no exit points": (lambda: Robot(EXITS[:0], Platform(1.0)), r"\(n, 3\)"),
+    "an exit point nowhere": (lambda: Robot(EXITS * nan, Platform(1.0)), "finite"),
+    "a pulley": (lambda: replace(ROBOT, pulley_radius_m=-0.1), "pulley_radius_m"),
+    "a tilt": (lambda: replace(ROBOT, tilt_rad=np.zeros(3)), "tilt_rad"),
+    "a least tension": (lambda: replace(ROBOT, tension_min_N=nan), "tension_min_N"),
+    "no gravity": (lambda: replace(ROBOT, gravity_direction=np.zeros(3)), "gravity"),
+    "a mass": (lambda: Platform(-1.0), "mass_kg"),
+    "no mass": (lambda: Platform(nan), "mass_kg"),
+    "a wrench": (lambda: Platform(1.0, wrench_N=np.zeros(3)), r"wrench_N .*\(6\)"),
+    "a centre of mass": (lambda: Platform(1.0, centre_of_mass_m=np.array([inf, 0, 0])), "finite"),
+    "a hull": (lambda: Platform(1.0, hull_m=np.zeros((0, 3))), "hull_m"),
+    "a diameter": (lambda: replace(ROPE, diameter_m=0.0), "diameter_m"),
+    "a weightless cable": (lambda: replace(ROPE, linear_density_kg_per_m=0.0), "linear_density"),
+    "a stiffness": (lambda: replace(ROPE, axial_stiffness_N=nan), "axial_stiffness_N"),
+    "a strength": (lambda: replace(ROPE, allowable_tension_N=-1.0), "allowable_tension_N"),
+    "no cables": (lambda: Cables(()), "at least"),
+    "a density": (lambda: replace(STEEL, density_kg_per_m3=-1.0), "density"),
+    "a modulus": (lambda: replace(STEEL, youngs_modulus_Pa=0.0), "youngs_modulus_Pa"),
+    "a stress": (lambda: replace(STEEL, allowable_stress_Pa=inf), "allowable_stress_Pa"),
+    "a position": (lambda: Poses(np.zeros(2), np.eye(3)), r"\(…, 3\)"),
+    "a rotation": (lambda: Poses(np.zeros(3), np.eye(2)), r"\(…, 3, 3\)"),
+    "no rotation": (lambda: Poses(np.zeros(3), 2.0 * np.eye(3)), "rotation matrices"),
+    "two of three": (lambda: Poses(np.zeros((3, 3)), np.stack([np.eye(3)] * 2)), "do not fit"),
+    "a clockwise base": (lambda: Prism(BOX.polygon_m[::-1], (0.0, 1.0)), "counter-clockwise"),
+    "a dented base": (
+        lambda: Prism(frozen_array([[0, 0], [4, 0], [1, 1], [0, 4]]), (0.0, 1.0)),
+        "convex",
+    ),
+    "a line": (lambda: Prism(BOX.polygon_m[:2], (0.0, 1.0)), "convex"),
+    "upside down": (lambda: replace(BOX, z_m=(1.0, 0.0)), "above the highest"),
+    "a height": (lambda: replace(BOX, z_m=(nan, 0.0)), "lowest z"),
+    "a rectangle of no width": (lambda: Rectangle(np.ones((2, 2)), (0.0, 1.0)), "same point"),
+    "no points": (lambda: PointList(np.zeros((0, 3))), "points_m"),
+    "no turns": (lambda: Orientations(np.zeros((0, 3))), "turns_rad"),
+    "a range": (lambda: Orientations(np.zeros((1, 3)), np.array([[1.0] * 3, [0.0] * 3])), "lowest"),
+    "no samples": (lambda: Workspace(BOX, samples=0), "samples"),
+    "a seed": (lambda: Workspace(BOX, seed=-1), "seed"),
+    "a sampling": (lambda: Workspace(BOX, sampling="random"), "low_discrepancy, grid"),
+    "a policy": (lambda: Workspace(BOX, hangs_below="perhaps"), "include, exclude"),
+    "a clearance": (lambda: Workspace(BOX, clearance_m=nan), "clearance_m"),
+    "two cables for six": (lambda: solve_sagging(ROBOT, ONE, Cables((ROPE,) * 2)), "2 cables"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_cannot_be_is_refused_in_one_sentence(what) -> None:
+    make, why = WRONG[what]
+    with pytest.raises(ValueError, match=why) as caught:
+        make()
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("what", ["exits", "kappa", "force", "rotation"])
+def test_arrays_of_another_length_do_not_enter_compiled_code(what) -> None:
+    poses = Poses(np.tile([4.0, 4.0, 3.0], (3, 1)), np.eye(3))
+    exits, kappa, force = EXITS, np.full(6, 1e-6), np.zeros((3, 3))
+    if what == "exits":
+        exits = np.stack([EXITS] * 2)
+    elif what == "kappa":
+        kappa = kappa[:5]
+    elif what == "force":
+        force = force[:2]
+    else:
+        object.__setattr__(poses, "rotation", np.stack([np.eye(3)] * 2))
+    with pytest.raises(ValueError, match=r"fit|shape"):
+        solve_batch(ROBOT, poses, exits, kappa, np.ones(6), np.full(6, 2e3), None, force)
+
+
+def test_lists_are_taken_and_what_is_right_stays_as_it_is() -> None:
+    robot = Robot([[0, 0, 9], [9, 0, 9], [4, 9, 9]], Platform(100.0))  # type: ignore[arg-type]
+    assert robot.exit_points_m.dtype == np.float64
+    assert ROBOT.exit_points_m is EXITS
+    assert replace(ROPE, axial_stiffness_N=inf).axial_stiffness_N == inf
+    assert np.isnan(Poses.at([nan, 0.0, 0.0]).position_m[0])
