@@ -38,6 +38,11 @@ REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "w
 class Commands(TyperGroup):
     """All commands; typer itself would give a closed pipe the status of a negative answer."""
 
+    def make_context(self, *arguments: Any, **named: Any) -> Any:
+        """Read the arguments; those that ask for help are answered here."""
+        with readable_output():
+            return super().make_context(*arguments, **named)
+
     def invoke(self, ctx: Any) -> Any:
         """Run the command that is asked for."""
         with readable_output():
@@ -59,11 +64,12 @@ app.add_typer(catalog, name="catalog")
 def main() -> None:
     """Run the command line; a user's mistake ends with one line a fault and exit status 2."""
     settle_in()
-    try:
-        app()
-    except DesignerError as error:
-        print(error, file=sys.stderr)
-        sys.exit(WRONG_INPUT)
+    with readable_output():
+        try:
+            app()
+        except DesignerError as error:
+            print(error, file=sys.stderr)
+            sys.exit(WRONG_INPUT)
 
 
 def _version(wanted: bool) -> None:
