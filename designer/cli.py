@@ -110,9 +110,14 @@ def report(
     """
     from designer.output import file_names, output_folder
     from designer.plugins.find import find_plugins
-    from designer.report.figures.opengl import require_opengl
+    from designer.report.figures.opengl import begin_probe, why_no_scenes
     from designer.study import require_enough_cables
-    from designer.terminal import ProgressBars, announce_compiling, print_summary
+    from designer.terminal import (
+        ProgressBars,
+        announce_compiling,
+        print_left_out,
+        print_summary,
+    )
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = _study(config, plugins)
@@ -122,7 +127,7 @@ def report(
             [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
         )
     folder = output or Path(f"{config.stem}-report")
-    require_opengl()
+    begin_probe()
     catalogue = _catalogue(study, plugins)
     announce_compiling()
 
@@ -140,6 +145,7 @@ def report(
         if analysis.selection is not None:
             write_candidates(analysis.selection, building / "candidates.csv")
         written = file_names(building)
+    print_left_out(filter(None, [why_no_scenes()]))
     print_summary(analysis, folder, written)
     if not analysis.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
