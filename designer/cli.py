@@ -38,6 +38,11 @@ REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "w
 class Commands(TyperGroup):
     """All commands; typer itself would give a closed pipe the status of a negative answer."""
 
+    def make_context(self, *arguments: Any, **named: Any) -> Any:
+        """Read the arguments; those that ask for help are answered here."""
+        with readable_output():
+            return super().make_context(*arguments, **named)
+
     def invoke(self, ctx: Any) -> Any:
         """Run the command that is asked for."""
         with readable_output():
@@ -59,11 +64,12 @@ app.add_typer(catalog, name="catalog")
 def main() -> None:
     """Run the command line; a user's mistake ends with one line a fault and exit status 2."""
     settle_in()
-    try:
-        app()
-    except DesignerError as error:
-        print(error, file=sys.stderr)
-        sys.exit(WRONG_INPUT)
+    with readable_output():
+        try:
+            app()
+        except DesignerError as error:
+            print(error, file=sys.stderr)
+            sys.exit(WRONG_INPUT)
 
 
 def _version(wanted: bool) -> None:
@@ -104,9 +110,14 @@ def report(
     """
     from designer.output import file_names, output_folder
     from designer.plugins.find import find_plugins
-    from designer.report.figures.opengl import require_opengl
+    from designer.report.figures.opengl import begin_probe, why_no_scenes
     from designer.study import require_enough_cables
-    from designer.terminal import ProgressBars, announce_compiling, print_summary
+    from designer.terminal import (
+        ProgressBars,
+        announce_compiling,
+        print_left_out,
+        print_summary,
+    )
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = _study(config, plugins)
@@ -116,7 +127,7 @@ def report(
             [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
         )
     folder = output or Path(f"{config.stem}-report")
-    require_opengl()
+    begin_probe()
     catalogue = _catalogue(study, plugins)
     announce_compiling()
 
@@ -134,6 +145,7 @@ def report(
         if analysis.selection is not None:
             write_candidates(analysis.selection, building / "candidates.csv")
         written = file_names(building)
+    print_left_out(filter(None, [why_no_scenes()]))
     print_summary(analysis, folder, written)
     if not analysis.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)

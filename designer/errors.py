@@ -5,7 +5,7 @@
     DesignerError
     ├── InputError          the user's files or arguments are wrong (exit status 2)
     ├── OutputError         the results cannot be written where asked (exit status 2)
-    ├── MissingLibraryError the machine lacks a system library (exit status 2)
+    ├── MissingLibraryError the machine lacks what draws in space (exit status 2)
     └── EffectError         an effect that a plugin brought in fails at work (exit status 2)
 """
 

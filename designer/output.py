@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import errno
+import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Container, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from designer.errors import OutputError
+from designer.process import Undo, undone_at_end
+
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
+
+_HIDDEN = ".designer-"
+_NEW, _OLD, _LOCK = "new", "old", "lock"
+"""In the hidden folder: what is being made, what it replaces, and what tells that a run lives."""
 
 _FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", None))  # Windows knows no quota by this name
 
@@ -30,15 +41,16 @@ def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
     OutputError
         If ``folder`` is a file, cannot be written, or has a folder where a file is to go.
     """
-    with ExitStack() as undo:
+    with undone_at_end() as undo:
         with _explained(folder):
             building = _begin(folder, undo)
         with _explained(folder, only=_FULL):
             yield building
-        with _explained(folder):
-            _move(building, folder, outdated, undo)
-        undo.pop_all()
-    shutil.rmtree(building, ignore_errors=True)
+        with _explained(folder), undone_at_end() as back:
+            aside = _move(building, folder, outdated, back)
+            back.forget()
+            # In one step: from here on a run that is killed has nothing to give back.
+            aside.replace(aside.with_name("outdated"))
 
 
 @contextmanager
@@ -52,37 +64,70 @@ def _explained(folder: Path, only: Container[int | None] | None = None) -> Itera
         raise OutputError(_not_writable(folder, error)) from error
 
 
-def _begin(folder: Path, undo: ExitStack) -> Path:
-    """Return a new folder to build in; what is made for it goes again on failure."""
+def _begin(folder: Path, undo: Undo) -> Path:
+    """Return a new folder to build in; what is made for it goes again at the end."""
+    from filelock import FileLock
+
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder}: is a file (expected a folder to write into)")
     for missing in reversed([one for one in (folder, *folder.parents) if not one.exists()]):
-        undo.callback(_remove_empty, missing)
+        undo.add(partial(_remove_empty, missing))
     folder.mkdir(parents=True, exist_ok=True)
+    clear_left_overs(folder)
     # Inside it, so that a folder which cannot be written shows before the work and not after, and
     # the final move stays on one file system.
-    building = Path(tempfile.mkdtemp(prefix=".designer-", dir=folder))
-    undo.callback(shutil.rmtree, building, ignore_errors=True)
+    hidden = folder / f"{_HIDDEN}{secrets.token_hex(4)}"
+    lock = FileLock(hidden / _LOCK)
+    undo.add(partial(_remove_hidden, hidden, lock))
+    hidden.mkdir(mode=0o700)
+    with suppress(NotImplementedError):  # a file system without locks
+        lock.acquire()
+    building = hidden / _NEW
+    building.mkdir()
     return building
 
 
-def _move(building: Path, folder: Path, outdated: Iterable[str], undo: ExitStack) -> None:
-    """Put all new files in place, or none: old ones wait aside until the last is there."""
+def _remove_hidden(hidden: Path, lock: BaseFileLock) -> None:
+    lock.release()  # Windows removes no file that is open
+    shutil.rmtree(hidden, ignore_errors=True)
+
+
+def clear_left_overs(folder: Path) -> None:
+    """Remove what runs left in a folder that were killed; what they had put aside comes back.
+
+    A run that lives holds the lock in its hidden folder, which ends with the process.
+    """
+    from filelock import FileLock, Timeout
+
+    for lock_file in folder.glob(f"{_HIDDEN}*/{_LOCK}"):
+        hidden, lock = lock_file.parent, FileLock(lock_file)
+        with suppress(Timeout, NotImplementedError, OSError), lock.acquire(timeout=0):
+            for file in (hidden / _OLD).glob("*"):
+                file.replace(folder / file.name)
+            shutil.rmtree(hidden, ignore_errors=True)
+            if os.name == "nt":
+                _remove_hidden(hidden, lock)
+
+
+def _move(building: Path, folder: Path, outdated: Iterable[str], back: Undo) -> Path:
+    """Put all new files in place, or none; old ones wait in the folder that is returned."""
     new = list(building.iterdir())
     in_the_way = [file.name for file in new if file.is_file() and (folder / file.name).is_dir()]
     if in_the_way:
         place = folder / in_the_way[0]
         raise OutputError(f"{place}: is a folder (expected a file, or nothing)")
-    aside = Path(tempfile.mkdtemp(dir=building))
+    aside = building.with_name(_OLD)
+    aside.mkdir()
     for name in {*(file.name for file in new), *outdated}:
         if (folder / name).is_file():
-            _move_one(folder / name, aside / name, undo)
+            _move_one(folder / name, aside / name, back)
     for file in new:
-        _move_one(file, folder / file.name, undo)
+        _move_one(file, folder / file.name, back)
+    return aside
 
 
-def _move_one(source: Path, target: Path, undo: ExitStack) -> None:
-    undo.callback(_put_back, target, source)  # first: an interrupt may come in between
+def _move_one(source: Path, target: Path, back: Undo) -> None:
+    back.add(partial(_put_back, target, source))
     source.replace(target)
 
 

@@ -6,7 +6,7 @@ import errno
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import NoReturn, TextIO
@@ -23,8 +23,10 @@ def settle_in() -> None:
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None and not (stream.encoding or "").lower().startswith("utf"):
             reconfigure(errors="replace")  # a '?' is better than no answer
-    with suppress(ValueError):  # only the main thread of a program may do this
-        signal.signal(signal.SIGTERM, _end)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        with suppress(ValueError):  # only the main thread of a program may do this
+            if signal.getsignal(number) is not signal.SIG_IGN:  # as in a background job
+                signal.signal(number, _end)
 
 
 def is_terminal(stream: TextIO | None) -> bool:
@@ -36,32 +38,102 @@ def is_terminal(stream: TextIO | None) -> bool:
 def readable_output() -> Iterator[None]:
     """End quietly where nobody reads on, and in one line where the output cannot be written.
 
-    Neither of them is an answer, so neither has the exit status of one.
+    Neither of them is an answer, so neither has the exit status of one. What is left in the
+    buffers is written here: Python's own last attempt would end with a status of its own.
     """
     try:
-        yield
+        try:
+            yield
+        finally:
+            for stream in _streams():
+                stream.flush()
+    except SystemExit as end:  # what rich makes of a closed pipe has the status of an answer
+        if isinstance(end.__context__, BrokenPipeError):
+            end_at_closed_pipe()
+        raise
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             end_at_closed_pipe()
         if error.errno == errno.ENOSPC:
-            silence_output()
+            silence_broken_output()
             raise OutputError(f"standard output: cannot be written ({error.strerror})") from error
         raise
 
 
 def end_at_closed_pipe() -> NoReturn:
     """End as a program does whose reader went away."""
-    silence_output()
+    silence_broken_output()
     raise SystemExit(CLOSED_PIPE)
 
 
-def silence_output() -> None:
-    """Lead standard output to nowhere, so that what is left in its buffer does no harm."""
+def silence_broken_output() -> None:
+    """Lead each stream that takes nothing any more to nowhere, so that its buffer does no harm."""
+    for stream in _streams():
+        try:
+            stream.flush()
+        except OSError:
+            _silence(stream)
+
+
+def _silence(stream: TextIO) -> None:
     with suppress(OSError, ValueError, AttributeError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
+        os.dup2(nowhere, stream.fileno())
         os.close(nowhere)
 
 
+def _streams() -> list[TextIO]:
+    """Return those of the two streams that the program was started with and has not closed."""
+    return [one for one in (sys.stdout, sys.stderr) if one is not None and not one.closed]
+
+
+class Undo:
+    """What is to be done at the end, the last first; each step does no harm when done twice."""
+
+    def __init__(self) -> None:
+        self._steps: list[Callable[[], object]] = []
+
+    def add(self, step: Callable[[], object]) -> None:
+        """Add a step, before that which it undoes: a request to end may come in between."""
+        self._steps.append(step)
+
+    def forget(self) -> None:
+        """Drop all steps: what they would undo is to stay."""
+        self._steps.clear()
+
+    def run(self) -> None:
+        """Do all steps; one that is broken off by a request to end is done again by that."""
+        while self._steps:
+            self._steps[-1]()
+            self._steps.pop()
+
+
+_undo_at_end: list[Undo] = []
+
+
+@contextmanager
+def undone_at_end() -> Iterator[Undo]:
+    """Hand out steps that are done where the block ends, or where the program is asked to end."""
+    undo = Undo()
+    _undo_at_end.append(undo)
+    try:
+        yield undo
+    finally:
+        undo.run()
+        _undo_at_end.remove(undo)
+
+
 def _end(number: int, _: FrameType | None) -> NoReturn:
-    raise SystemExit(128 + number)
+    """Undo what is half-done, and leave without a look back.
+
+    An exception from here could come up anywhere, such as inside a library that is half-loaded,
+    which may then crash; so may libraries where Python takes them down. So neither is done.
+    """
+    for other in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(other, signal.SIG_IGN)
+    for undo in reversed(_undo_at_end):
+        undo.run()
+    if is_terminal(sys.stderr):
+        with suppress(OSError):
+            os.write(2, b"\x1b[?25h\n")  # show the cursor, which a progress bar hides
+    os._exit(128 + number)

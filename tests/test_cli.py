@@ -237,13 +237,6 @@ def test_catalog_list_show_check(designer) -> None:
 
 
 def test_report_end_to_end(designer) -> None:
-    from designer.errors import MissingLibraryError
-    from designer.report.figures.opengl import require_opengl
-
-    try:
-        require_opengl()
-    except MissingLibraryError as missing:
-        pytest.skip(str(missing))
     Path("study.yaml").write_text(STUDY + WORKSPACE)
     told = designer("report", "study.yaml")
     assert told.status == 0, told.err
@@ -258,13 +251,6 @@ def test_report_end_to_end(designer) -> None:
 
 
 def test_report_without_a_product_is_a_negative_answer(designer) -> None:
-    from designer.errors import MissingLibraryError
-    from designer.report.figures.opengl import require_opengl
-
-    try:
-        require_opengl()
-    except MissingLibraryError as missing:
-        pytest.skip(str(missing))
     text = STUDY + WORKSPACE.replace("unirope-6x36-iwrc-1960", "unirope-7x19-galvanised")
     Path("study.yaml").write_text(text)
     told = designer("report", "study.yaml", "-o", "deep/out")

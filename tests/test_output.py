@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -105,7 +109,7 @@ def test_old_files_come_back_where_the_move_breaks_off(
     replace, moved = Path.replace, []
 
     def break_off(source: Path, target: Path) -> None:
-        if target.parent == report and source.parent.parent == report:
+        if target.parent == report and source.parent.name == "new":
             moved.append(target.name)
             if len(moved) == 2:
                 raise stop
@@ -155,3 +159,60 @@ def test_a_new_file_that_breaks_off_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(UnicodeEncodeError):
         write_new_file(tmp_path / "a", "half \ud800")
     assert everything(tmp_path) == []
+
+
+HALTING = """
+import pathlib, sys, time
+from designer.output import output_folder
+
+def halt():
+    print("there", flush=True)
+    time.sleep(60)
+
+def replace(source, target, do=pathlib.Path.replace):
+    if target.name == "b.txt" and source.parent.name == "new":
+        halt()
+    return do(source, target)
+
+pathlib.Path.replace = replace
+with output_folder(pathlib.Path(sys.argv[1])) as building:
+    for name in ("a.txt", "b.txt"):
+        (building / name).write_text("new")
+    if sys.argv[2] == "at work":
+        halt()
+"""
+
+
+@contextmanager
+def another_run(folder: Path, where: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Begin in another process, which halts at work or while files are moved; kill it."""
+    with subprocess.Popen(
+        [sys.executable, "-c", HALTING, str(folder), where], stdout=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"there\n"
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("where", ["at work", "moving"])
+def test_left_overs_of_a_killed_run_are_cleared_by_the_next(tmp_path: Path, where: str) -> None:
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text("old")
+    with another_run(tmp_path, where):
+        pass
+    assert len(list(tmp_path.glob(".designer-*"))) == 1
+    with pytest.raises(RuntimeError), output_folder(tmp_path):
+        raise RuntimeError
+    assert everything(tmp_path) == ["a.txt", "b.txt"]
+    assert {path.read_text() for path in tmp_path.iterdir()} == {"old"}
+
+
+def test_a_run_that_lives_is_left_alone(tmp_path: Path) -> None:
+    with another_run(tmp_path, "at work"):
+        before = everything(tmp_path)
+        with output_folder(tmp_path) as building:
+            (building / "c.txt").write_text("new")
+        assert everything(tmp_path) == sorted([*before, "c.txt"])

@@ -30,9 +30,20 @@ def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
         os.close(write_end)
 
 
+# With its streams buffered, and without: what waits in a buffer fails later, as Python ends.
+buffered = pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
+
+
 @posix
-@pytest.mark.parametrize("command", [("init", "--list"), LIST], ids=["plain", "table"])
-def test_a_reader_who_goes_away_is_no_negative_answer(command: tuple[str, ...]) -> None:
+@buffered
+@pytest.mark.parametrize(
+    "command", [("init", "--list"), LIST, ("--help",), ("--version",), ("size", "--help")],
+    ids=["plain", "table", "help", "version", "help of a command"],
+)  # fmt: skip
+def test_a_reader_who_goes_away_is_no_negative_answer(
+    command: tuple[str, ...], unbuffered: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     done = into_closed_pipe(*command)
     assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, b"")
 
@@ -99,15 +110,63 @@ def test_a_request_to_end_leaves_nothing_behind(
     assert list(tmp_path.iterdir()) == []
 
 
+LOADING = """
+import os, signal, sys
+from pathlib import Path
+
+class Ask:
+    # Asks this program to end while a library is half-loaded, and then goes on loading it.
+    def find_spec(self, name, path=None, target=None):
+        if name == "half_loaded":
+            os.kill(os.getpid(), getattr(signal, sys.argv[1]))
+
+sys.meta_path.insert(0, Ask())
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from designer.output import output_folder
+from designer.process import settle_in
+settle_in()
+try:
+    with output_folder(Path("deep/report")) as building:
+        (building / "half").write_text("")
+        import half_loaded
+finally:
+    print("unwound")
+"""
+
+
 @posix
-def test_notes_that_nobody_reads_are_no_negative_answer() -> None:
-    note = "from designer.terminal import print_left_out; print_left_out(['a note'])"
+@pytest.mark.parametrize("request_to_end", [signal.SIGTERM, signal.SIGINT])
+def test_a_request_to_end_does_not_unwind_a_library_that_is_half_loaded(
+    tmp_path: Path, request_to_end: signal.Signals
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", LOADING, request_to_end.name],
+        cwd=tmp_path,
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (128 + request_to_end, b"")
+    assert list(tmp_path.iterdir()) == []
+
+
+NOTE = "from designer.terminal import print_left_out; print_left_out(['a note'])"
+
+
+@posix
+@buffered
+@pytest.mark.parametrize(
+    "command", [("-c", NOTE), ("-m", "designer", "size", "none.yaml"), ("-m", "designer", "siez")],
+    ids=["note", "fault", "usage"],
+)  # fmt: skip
+def test_notes_that_nobody_reads_are_no_negative_answer(
+    command: tuple[str, ...], unbuffered: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     read_end, write_end = os.pipe()
     os.close(read_end)
     try:
-        done = subprocess.run(
-            [sys.executable, "-c", note], stderr=write_end, timeout=60, check=False
-        )
+        done = subprocess.run([sys.executable, *command], stderr=write_end, timeout=60, check=False)
     finally:
         os.close(write_end)
     assert done.returncode == 128 + signal.SIGPIPE

@@ -15,8 +15,6 @@ from twins.robots import FAST3
 
 from designer.catalogue.registry import load_catalogue
 from designer.cli import main
-from designer.errors import MissingLibraryError
-from designer.report.figures.opengl import require_opengl
 
 DENSITY, MODULUS, STRESS = 7800.0, 200e9, 180e6
 GRADE = "unirope-6x36-iwrc-1960"
@@ -55,10 +53,6 @@ def machine(effect: str, linear_mass: float, stiffness_N: float) -> physics.Mach
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Return the ``result.json`` that the command writes for each effect."""
-    try:
-        require_opengl()
-    except MissingLibraryError as missing:
-        pytest.skip(str(missing))
     found = {}
     for effect, declared in EFFECTS.items():
         folder = tmp_path_factory.mktemp(effect)

@@ -51,6 +51,8 @@ class ReportContext:
         This program and its version.
     created, created_iso : str
         Date and time of the analysis, to read and as ISO 8601.
+    missing : str
+        Why pictures in space are left out, and what to install; empty where they are not.
     headings : tuple of Heading
         The sections that this report has, in order; ids are ``answer``, ``inputs``, ``pose``,
         ``workspace``, ``selection``, ``groups``, ``stiffness``, ``clearance``, ``left-out``,
@@ -83,6 +85,7 @@ class ReportContext:
     generator: str
     created: str
     created_iso: str
+    missing: str
     headings: tuple[Heading, ...]
     first_page: FirstPage
     inputs: InputsSection
@@ -117,6 +120,7 @@ def build_context(analysis: Analysis, pictures: Pictures) -> ReportContext:
         generator=f"cdpr-designer {analysis.provenance.version}",
         created=created(analysis),
         created_iso=analysis.provenance.created.isoformat(timespec="seconds"),
+        missing=pictures.missing,
         headings=_headings(analysis),
         first_page=first_page(analysis, findings, pictures.robot),
         inputs=inputs_section(analysis),

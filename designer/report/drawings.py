@@ -23,15 +23,18 @@ _LITTLE = 0.02
 
 def draw(analysis: Analysis) -> Pictures:
     """Return all figures of a report; what a study has no results for is left out."""
+    from designer.report.figures.opengl import why_no_scenes
+
     maps = None
     if analysis.workspace is not None:
         from designer.report.figures.maps import workspace_maps
 
         maps = workspace_maps(analysis)
-    workspace = tuple(_workspace(maps)) if maps is not None else ()
-    robot = _robot(analysis)
+    missing = why_no_scenes()
+    workspace = tuple(_workspace(maps, draws_scenes=not missing)) if maps is not None else ()
+    robot = None if missing else _robot(analysis)
     return Pictures(
-        robot=_cover(maps) if maps is not None else robot,
+        robot=_cover(maps) if maps is not None and not missing else robot,
         loop_chart=_loop(analysis),
         pose_scene=robot,
         verdicts=_verdicts(analysis),
@@ -39,10 +42,11 @@ def draw(analysis: Analysis) -> Pictures:
         candidates=_candidates(analysis),
         pareto=_pareto(analysis),
         usable_chart=_usable_chart(analysis),
-        usable_scene=_usable_scene(analysis, maps),
+        usable_scene=None if missing else _usable_scene(analysis, maps),
         stiffness=_stiffness(analysis),
         clearance=_clearance(analysis),
         groups=_groups(analysis),
+        missing=missing,
     )
 
 
@@ -92,7 +96,7 @@ def _verdicts(analysis: Analysis) -> Picture | None:
     )
 
 
-def _workspace(maps: WorkspaceMaps) -> Iterator[Picture]:
+def _workspace(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_served import served_chart
     from designer.report.figures.charts_slice import slice_chart, slice_panels
@@ -100,12 +104,13 @@ def _workspace(maps: WorkspaceMaps) -> Iterator[Picture]:
     from designer.report.figures.quantity import DIAMETER, RATIO, tension_of
     from designer.report.figures.workspace_scene import workspace_scene
 
-    yield _scene(
-        captions.scene(maps),
-        "The region in space, coloured by diameter",
-        workspace_scene(maps),
-        workspace_scene_html(maps),
-    )
+    if draws_scenes:
+        yield _scene(
+            captions.scene(maps),
+            "The region in space, coloured by diameter",
+            workspace_scene(maps),
+            workspace_scene_html(maps),
+        )
     view = "plane" if maps.is_upright else "plan"
     tension = tension_of(maps.section)
     sag_matters = captions.largest_change(maps) > _LITTLE

@@ -37,6 +37,8 @@ class Pictures:
         Smallest clearance at the middle height.
     groups : Picture or None
         The robot from above with the cables of each group.
+    missing : str
+        Why pictures in space are left out; empty where they are not.
     """
 
     robot: Picture | None = None
@@ -51,3 +53,4 @@ class Pictures:
     stiffness: Picture | None = None
     clearance: Picture | None = None
     groups: Picture | None = None
+    missing: str = ""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from designer.output import write_whole
 from designer.report.context import build_context
 from designer.report.drawings import draw
+from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
 from designer.resources import data_folder
 
@@ -72,7 +73,7 @@ def render_html(
         If a template of the user is faulty.
     """
     template = environment(user_folder).get_template(f"{page}.html.j2")
-    return template.render(report=context, paged=paged)
+    return with_fonts(template.render(report=context, paged=paged))
 
 
 def render_pdf(html: str) -> bytes:

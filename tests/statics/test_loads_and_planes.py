@@ -181,7 +181,8 @@ def test_rectangle() -> None:
     assert not rectangle.contains(off).any()
     np.testing.assert_allclose(rectangle.nearest(off), inside, atol=1e-12)
     far = np.array([[-100.0, -75.0, 100.0], [100.0, 75.0, -100.0]])
-    np.testing.assert_allclose(rectangle.shares(rectangle.nearest(far)) % 1.0, 0.0, atol=1e-12)
+    corners = rectangle.shares(rectangle.nearest(far))
+    np.testing.assert_allclose(corners, [[0.0, 1.0], [1.0, 0.0]], atol=1e-12)
     with pytest.raises(ValueError, match="one line"):
         Rectangle.over([[0, 0], [1, 0], [0, 1]], 0.0, (0.0, 1.0))
     with pytest.raises(ValueError, match="nothing is left"):

@@ -26,6 +26,7 @@ from designer.report.figures.quantity import DIAMETER, Quantity
 from designer.report.figures.stage import SCREEN
 from designer.report.figures.view import View
 from designer.report.figures.workspace_scene import add_workspace, scale_of, size_m, view_of
+from designer.report.fonts import with_fonts
 
 if TYPE_CHECKING:
     from pyvista import Plotter
@@ -98,7 +99,7 @@ def _page(scene: bytes, title: str, overlay: str) -> str:
     page = f"{head}<title>{escape(title)}</title>\n<style>{style}</style>{rest}"
     page = page.replace("<body>", f'<body>\n<div class="content"></div>\n{overlay}', 1)
     before, after = page.rsplit("</body>", 1)
-    return f"{before}<script>{script}</script>\n</body>{after}"
+    return with_fonts(f"{before}<script>{script}</script>\n</body>{after}")
 
 
 def _without_web(page: str) -> str:

@@ -1,66 +1,77 @@
-"""Whether this machine can draw in three dimensions."""
+"""Whether this machine can draw in three dimensions, found out where a crash does no harm."""
 
 from __future__ import annotations
 
-import ctypes
 import os
+import subprocess
 import sys
+from functools import cache
 
-from designer.errors import MissingLibraryError
+_CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"
+_EGL = "vtkEGLRenderWindow"
+_LONGEST_S = 120.0
+_DRAW = """
+import sys
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(40, 40))
+plotter.add_mesh(pyvista.Plane(), color="#3366cc", lighting=False)
+plotter.view_xy()
+sys.exit(tuple(plotter.screenshot(return_img=True)[20, 20]) != (0x33, 0x66, 0xCC))
+"""
 
-_EGL = "libEGL.so.1"
-_MESA_OFFSCREEN = ("libOSMesa.so.8", "libOSMesa.so.6")
-_DESKTOP = "libGL.so.1"
 
+@cache
+def why_no_scenes() -> str:
+    """Return why scenes cannot be drawn here, and what to install; empty where they can.
 
-def require_opengl() -> None:
-    """Make sure that scenes can be drawn off-screen, before the work on their content begins.
-
-    VTK ends the whole process where it finds no OpenGL library, so this looks first. Only Linux
-    can be without one.
-
-    Raises
-    ------
-    MissingLibraryError
-        If there is none; the message names the package to install.
+    VTK ends the whole process where it finds no OpenGL, or a library without a driver. So another
+    process draws first, and its way of drawing, where it comes to a picture, is taken here.
     """
-    if not sys.platform.startswith("linux") or _can_draw():
-        return
-    raise MissingLibraryError(
-        "the pictures of the report need an OpenGL library and this machine has none; install "
-        "it by 'apt-get install libegl1' (Debian, Ubuntu) or 'dnf install mesa-libEGL' (Fedora)"
+    for window in _windows():
+        if _has_drawn(window):
+            if window:
+                os.environ[_CHOICE] = window
+            return ""
+    return "Pictures in space are left out, since this machine cannot draw them. " + _remedy()
+
+
+def begin_probe() -> None:
+    """Begin to find it out, so that `why_no_scenes` need not wait for it later."""
+    _probe(_windows()[0])
+
+
+def _remedy() -> str:
+    if not sys.platform.startswith("linux"):
+        return "They need a graphics driver with OpenGL."
+    return (
+        "What they need is installed by 'apt-get install libegl1 libgl1-mesa-dri' (Debian, "
+        "Ubuntu) or 'dnf install mesa-libEGL mesa-dri-drivers' (Fedora)."
     )
 
 
-def prefer_offscreen() -> None:
-    """Let VTK go straight for EGL where there is no display, instead of warning about it."""
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and _has_egl_device():
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+def _windows() -> tuple[str, ...]:
+    """Return what to try: VTK's own choice (empty), or EGL, which needs no display."""
+    if not sys.platform.startswith("linux") or os.environ.get(_CHOICE):
+        return ("",)
+    return ("", _EGL) if os.environ.get("DISPLAY") else (_EGL, "")
 
 
-def _can_draw() -> bool:
-    on_screen = bool(os.environ.get("DISPLAY")) and _library(_DESKTOP) is not None
-    return on_screen or _has_egl_device() or any(_library(name) for name in _MESA_OFFSCREEN)
-
-
-def _has_egl_device() -> bool:
-    """Ask EGL for its devices: the library without a driver behind it is of no use."""
-    egl = _library(_EGL)
-    if egl is None:
-        return False
-    egl.eglGetProcAddress.restype = ctypes.c_void_p
-    address = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
-    if not address:
-        return True  # too old to ask
-    count = ctypes.c_int32(0)
-    query = ctypes.CFUNCTYPE(
-        ctypes.c_uint32, ctypes.c_int32, ctypes.c_void_p, ctypes.POINTER(ctypes.c_int32)
-    )(address)
-    return bool(query(0, None, ctypes.byref(count))) and count.value > 0
-
-
-def _library(name: str) -> ctypes.CDLL | None:
+def _has_drawn(window: str) -> bool:
+    process = _probe(window)
     try:
-        return ctypes.CDLL(name)
-    except OSError:
-        return None
+        return process.wait(_LONGEST_S) == 0
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return False
+
+
+@cache
+def _probe(window: str) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", _DRAW],
+        env={**os.environ, _CHOICE: window} if window else None,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from designer.arrays import BoolArray, FloatArray
+from designer.errors import MissingLibraryError
 from designer.report.figures import palette
 from designer.report.figures.colours import Steps
 from designer.report.figures.field import Field
-from designer.report.figures.opengl import prefer_offscreen
+from designer.report.figures.opengl import why_no_scenes
 from designer.report.figures.quantity import Quantity
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
@@ -42,8 +43,16 @@ SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0)
 
 
 def empty_stage() -> Plotter:
-    """Return a white stage without lamps: a colour is what the colour bar says it is."""
-    prefer_offscreen()
+    """Return a white stage without lamps: a colour is what the colour bar says it is.
+
+    Raises
+    ------
+    MissingLibraryError
+        If this machine cannot draw; the message names the packages to install.
+    """
+    missing = why_no_scenes()
+    if missing:
+        raise MissingLibraryError(missing)
     import pyvista
 
     plotter = pyvista.Plotter(

@@ -1,0 +1,57 @@
+"""The fonts of the pages, in the pages: they look the same whatever fonts a machine has.
+
+They are the DejaVu fonts that come with Matplotlib, which draws the charts in them too.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from functools import lru_cache
+from pathlib import Path
+
+FACES = (
+    ("Report Sans", 400, "normal", "DejaVuSans"),
+    ("Report Sans", 700, "normal", "DejaVuSans-Bold"),
+    ("Report Sans", 400, "italic", "DejaVuSans-Oblique"),
+    ("Report Serif", 400, "normal", "DejaVuSerif"),
+    ("Report Serif", 400, "italic", "DejaVuSerif-Italic"),
+    ("Report Mono", 400, "normal", "DejaVuSansMono"),
+)
+"""Family, weight and style as style sheets name them, and the file."""
+
+_BY_STYLE = "0123456789 pageof•◦▪▸▾"
+"""Letters that come from style sheets: page numbers, marks of lists."""
+
+
+def with_fonts(page: str) -> str:
+    """Return an HTML page with those letters in its head that it shows, of each of its fonts."""
+    letters = "".join(sorted({*html.unescape(page), *_BY_STYLE}))
+    rules = [
+        f'@font-face {{ font-family: "{family}"; font-weight: {weight}; font-style: {style}; '
+        f"src: url(data:font/woff;base64,{_letters_of(file, letters)}) }}\n"
+        for family, weight, style, file in FACES
+        if f'"{family}"' in page
+    ]
+    return page.replace("</head>", f"<style>\n{''.join(rules)}</style>\n</head>", 1)
+
+
+@lru_cache(maxsize=2 * len(FACES))
+def _letters_of(file: str, letters: str) -> str:
+    """Return these letters of a font as a WOFF file in base64."""
+    import matplotlib
+    from fontTools import subset
+
+    options = subset.Options(
+        flavor="woff", hinting=False, layout_features=["kern"], notdef_outline=True
+    )
+    options.drop_tables += ["FFTM"]  # FontForge's notes, which it does not know
+    path = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf"
+    subsetter = subset.Subsetter(options)
+    subsetter.populate(text=letters)
+    stream = io.BytesIO()
+    with subset.load_font(path, options) as font:
+        subsetter.subset(font)
+        subset.save_font(font, stream, options)
+    return base64.b64encode(stream.getvalue()).decode()

@@ -1,0 +1,80 @@
+"""Pages look the same whatever fonts a machine has."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pypdf
+import pytest
+from fontTools.ttLib import TTFont
+
+from designer.analysis import Analysis
+from designer.report.context import ReportContext, build_context
+from designer.report.fonts import FACES, with_fonts
+from designer.report.pictures import Pictures
+from designer.report.render import render_html
+
+PRINT = """
+import sys
+from pathlib import Path
+from designer.report.render import render_pdf
+Path(sys.argv[2]).write_bytes(render_pdf(Path(sys.argv[1]).read_text(encoding="utf-8")))
+"""
+NO_FONTS = '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig/>'
+
+
+@pytest.fixture(scope="module")
+def context(pose_only: Analysis) -> ReportContext:
+    return build_context(pose_only, Pictures())
+
+
+def fonts_in(page: str) -> list[TTFont]:
+    found = re.findall(r"url\(data:font/woff;base64,([^)]+)\)", page)
+    return [TTFont(io.BytesIO(base64.b64decode(one))) for one in found]
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="fontconfig's settings")
+def test_without_any_font_installed_the_pdf_is_the_same(
+    context: ReportContext, tmp_path: Path
+) -> None:
+    page, none = tmp_path / "page.html", tmp_path / "fonts.conf"
+    page.write_text(render_html(context, paged=True), encoding="utf-8")
+    none.write_text(NO_FONTS, encoding="utf-8")
+    made = []
+    for name, fonts in (("with", {}), ("without", {"FONTCONFIG_FILE": str(none)})):
+        file = tmp_path / f"{name}.pdf"
+        environment = {k: v for k, v in os.environ.items() if k != "FONTCONFIG_FILE"} | fonts
+        command = [sys.executable, "-c", PRINT, str(page), str(file)]
+        subprocess.run(command, env=environment, check=True, timeout=120)
+        made.append([page.extract_text() for page in pypdf.PdfReader(file).pages])
+    assert made[0] == made[1]
+    assert "How sure this is" in " ".join(made[1][0].split())
+
+
+def test_a_page_carries_the_letters_that_it_shows_and_no_others() -> None:
+    page = with_fonts("<head></head><p style='font-family: \"Report Sans\"'>a&Sigma;b √</p>")
+    fonts = fonts_in(page)
+    assert len(fonts) == sum(face[0] == "Report Sans" for face in FACES)
+    for font in fonts:
+        assert set(map(ord, "abΣ√")) <= set(font.getBestCmap())
+        assert ord("Ж") not in font.getBestCmap()
+    assert fonts_in(with_fonts("<head></head><p>plain</p>")) == []
+
+
+def test_every_letter_of_a_report_is_in_its_fonts(context: ReportContext) -> None:
+    page = render_html(context)
+    for font in fonts_in(page):
+        text = re.sub(r"<(style|svg|script).*?</\1>|<[^>]*>", "", page, flags=re.DOTALL)
+        shown = {
+            letter
+            for letter in html.unescape(text)
+            if letter.isprintable() and not letter.isspace()
+        }
+        assert shown - set(map(chr, font.getBestCmap())) == set()
