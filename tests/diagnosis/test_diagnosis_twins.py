@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shared_data import needs_shared, shared
 from twins import physics
 from twins.dataset import DataSet, make, size_for
 from twins.robots import HALL6, YARD3, TwinRobot
@@ -27,7 +28,7 @@ from designer.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study
 
-SHARED = Path(__file__).parents[3] / "shared" / "measured" / "simulated-twins"
+TWINS = ("measured", "simulated-twins")
 
 
 def study_of(dataset: DataSet, folder: Path) -> Study:
@@ -210,9 +211,9 @@ def test_heavier_cables_change_the_choice(tmp_path) -> None:
     assert json.dumps(diagnosis_dict(told), allow_nan=False)
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared twins are not here")
+@needs_shared(*TWINS)
 @pytest.mark.parametrize(
-    "folder", sorted(SHARED.glob("*/truth.json")), ids=lambda path: path.parent.name
+    "folder", sorted(shared(*TWINS).glob("*/truth.json")), ids=lambda path: path.parent.name
 )
 def test_shared_twins(folder) -> None:
     folder = folder.parent
