@@ -119,7 +119,10 @@ def edge(maps: WorkspaceMaps) -> str:
     last = profile.limit_distance_m
     if last is None or last < _NEGLIGIBLE * profile.region_distance_m:
         return f"{text}."
-    return f"{text}; within {_metres(last)} of it no cable holds, however thick."
+    if profile.holds_again:
+        return f"{text}; within {_metres(last)} of it some poses are held and others are not."
+    none = "no cable holds, however thick" if profile.is_proved else "no cable was found that holds"
+    return f"{text}; within {_metres(last)} of it {none}."
 
 
 def _metres(length_m: float) -> str:
