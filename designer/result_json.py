@@ -101,6 +101,7 @@ def _pose(pose: PoseAnalysis) -> Json:
         },
         "loop": {
             "converged": pose.loop.has_converged,
+            "diverged": pose.loop.has_diverged,
             "iterates": [
                 {"diameter_m": i.diameter_m, "max_tension_N": i.max_tension_N}
                 for i in pose.loop.iterates
