@@ -184,9 +184,12 @@ def usable(found: Usable, chosen: Candidate | None) -> str:
 
 def layers(found: Usable) -> str:
     """Return the caption of the layers that sizes serve."""
+    text = f"Where sizes of {found.grade.id} may go, a part of the region cut away:"
+    if found.is_nested:
+        return f"{text} each serves its own layer and those of all thinner ones."
     return (
-        f"Where sizes of {found.grade.id} may go, a part of the region cut away: each serves its "
-        "own layer and those of all thinner ones."
+        f"{text} each part has the colour of the thinnest of them that serves there. Not all "
+        "thicker ones serve there too; the table says which."
     )
 
 
