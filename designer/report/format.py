@@ -19,6 +19,7 @@ _THIN = "\u202f"
 _BEFORE_UNIT = "\u00a0"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POSITION_DIGITS = 2
+_FORCES = (("N", 1.0, 1e3), ("kN", 1e3, 1e7), ("MN", 1e6, math.inf))
 _TINY, _TOO_WIDE = 1e-9, 1e12
 """Beyond these, numbers are written as powers of ten, so that none is wider than a column."""
 
@@ -87,7 +88,15 @@ def millimetres(value_m: float) -> str:
 
 def newtons(value: float) -> str:
     """Return a force in N, kN or MN, such as ``371.0 kN``."""
-    return _scaled(value, (("N", 1.0, 1e3), ("kN", 1e3, 1e7), ("MN", 1e6, math.inf)))
+    return _scaled(value, _FORCES)
+
+
+def newtons_alike(*values: float) -> tuple[str, ...]:
+    """Return forces that are to be compared, all in the unit that suits the smallest."""
+    sizes = [abs(value) for value in values if math.isfinite(value) and value != 0.0]
+    smallest = min(sizes, default=0.0)
+    unit, scale = next((name, scale) for name, scale, end in _FORCES if smallest < end)
+    return tuple(_scaled(value, ((unit, scale, math.inf),)) for value in values)
 
 
 def pascals(value: float) -> str:

@@ -127,3 +127,9 @@ def test_notes_of_tables_are_set_as_print() -> None:
 )
 def test_shorter_cuts_what_a_change_of_units_brought(text: str, short: str) -> None:
     assert fmt.shorter(text) == short
+
+
+def test_forces_to_be_compared_have_one_unit() -> None:
+    assert [plain(text) for text in fmt.newtons_alike(185.4, 1200.0)] == ["185.4 N", "1 200 N"]
+    assert [plain(text) for text in fmt.newtons_alike(1850.0, 12e6)] == ["1.850 kN", "12 000 kN"]
+    assert fmt.newtons_alike(math.nan, 5.0)[0] == fmt.MISSING

@@ -72,10 +72,12 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
         return
     best = f"the worst of {fmt.count(workspace.census.samples)} samples"
+    sampled, searched = fmt.newtons_alike(
+        workspace.sampled.max_tension_N, workspace.sagging.max_tension_N
+    )
     text = (
-        f"In the configured family {best} meets {fmt.newtons(workspace.sampled.max_tension_N)}. "
-        f"A search between them found {fmt.newtons(workspace.sagging.max_tension_N)}. Searched "
-        "values count, here and for the ropes."
+        f"In the configured family {best} meets {sampled}. A search between them found {searched}. "
+        "Searched values count, here and for the ropes."
     )
     yield Statement("Sampled and searched maximum", text)
 
