@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from designer.interference.survey import Interference
     from designer.selection.groups_result import GroupChoice
     from designer.selection.result import SelectionResult
-    from designer.study import Study
+    from designer.study import Selection, Study
     from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 
@@ -135,12 +135,15 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
     if analysis.pose is not None:
         sizing = analysis.pose.sizing
         yield "pose", _extreme(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
+        if analysis.study.pose_outside:
+            yield "", f"[bold red]{analysis.study.pose_outside}[/]"
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
-    if analysis.selection is not None:
-        yield from _summary_of_selection(analysis.selection, _factor(analysis))
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
+    if analysis.selection is not None:
+        label = "cable" if analysis.groups is None else "one for all"
+        yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None:
         yield "clearance", _clearance(interference)
@@ -175,15 +178,15 @@ def _placed(extreme: Extreme) -> str:
 
 
 def _summary_of_selection(
-    selection: SelectionResult, safety_factor: str
+    selection: SelectionResult, label: str, asked: Selection | None
 ) -> Iterator[tuple[str, str]]:
     chosen = selection.chosen
     if chosen is None:
-        yield "cable", f"[bold red]none[/]: {escape(selection.reason or '')}"
+        yield label, f"[bold red]none[/]: {escape(selection.reason or '')}"
         return
-    yield "cable", f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
+    yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     used = chosen.verification.utilisation
-    yield "  utilisation", f"{used:.1%} at safety factor {safety_factor}"
+    yield "  utilisation", f"{used:.1%} {_terms(asked, chosen.efficiency)}"
     mass = f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
@@ -205,6 +208,8 @@ def _summary_of_groups(choice: GroupChoice) -> Iterator[tuple[str, str]]:
         yield "groups", f"[bold red]none[/]: {escape(choice.proof_sentence)}"
         return
     found = zip(choice.groups, choice.chosen.products, strict=True)
+    n_products = len({*choice.chosen.products})
+    yield "cables", f"[bold]{n_products} product{'' if n_products == 1 else 's'} for the groups[/]"
     for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
         yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
     saving = "" if choice.saving_kg is None else _saving(choice.saving_kg)
@@ -254,8 +259,11 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
     _out.print(f"{folder}: {', '.join(written)}", markup=False)
 
 
-def _factor(analysis: Analysis) -> str:
-    return f"{analysis.study.selection.safety_factor:g}" if analysis.study.selection else ""
+def _terms(asked: Selection | None, efficiency: float) -> str:
+    """Return what a utilisation refers to: safety factor, and what ends and bends take away."""
+    assert asked is not None
+    losses = "no loss" if efficiency == 1.0 else f"{efficiency:.3g} left"
+    return f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
 
 
 def _extreme(diameter_m: float, tension_N: float) -> str:
@@ -295,7 +303,8 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
         _out.print(f"loop: {pose.loop.outcome}")
     if statics.is_solved:
         _print_cables(pose)
-    for remark in (pose.caution, pose.rest.sentence if pose.rest else ""):
+    outside = f"The configured pose {study.pose_outside}." if study.pose_outside else ""
+    for remark in (outside, pose.caution, pose.rest.sentence if pose.rest else ""):
         if remark:
             _out.print(remark, markup=False, soft_wrap=True)
 

@@ -9,6 +9,7 @@ import numpy as np
 from designer.analysis import Analysis, PoseAnalysis
 from designer.report import format as fmt
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.sections.scope import pose_statement
 from designer.sizing.loop import LoopSizing
 from designer.verdict import Verdict
 
@@ -24,6 +25,8 @@ class PoseSection:
     ----------
     verdict : Statement
         Whether it can be held.
+    outside : Statement or None
+        Where it is none of the workspace; None if it is one of it.
     facts : tuple of Fact
         Position, margins and residuals.
     methods : Table or None
@@ -37,6 +40,7 @@ class PoseSection:
     """
 
     verdict: Statement
+    outside: Statement | None
     facts: tuple[Fact, ...]
     methods: Table | None
     cables: Table | None
@@ -56,6 +60,7 @@ def pose_section(
     solved = verdict is Verdict.SOLVED
     return PoseSection(
         verdict=_statement(pose, verdict),
+        outside=next(pose_statement(analysis), None),
         facts=_facts(pose),
         methods=_methods(pose),
         cables=_cables(pose) if solved else None,
