@@ -125,11 +125,11 @@ def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]
     for grade in grades.values():
         yield _trust(grade, f"Figures of {grade.id}")
     known = [
-        f"{grade.id} {grade.elasticity.basis}, known to ±\u00a0"
+        f"{grade.id}: {grade.elasticity.basis}, known to ±\u00a0"
         f"{fmt.trimmed(100 * grade.elasticity.uncertainty)}\u00a0%"
         for grade in grades.values()
     ]
-    yield Statement("Modulus", f"The modulus is, of {fmt.listing(known)}.")
+    yield Statement("Modulus", f"{'; '.join(known)}.")
 
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:

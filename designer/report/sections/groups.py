@@ -85,6 +85,8 @@ def groups_hold(choice: GroupChoice) -> str:
         f"{product.label} for {group.name}"
         for group, product in zip(choice.groups, found.products, strict=True)
     ]
+    if len({*found.products}) == 1:
+        each = [f"Ropes of {found.products[0].label} for all groups"]
     most = float(found.verification.utilisation.max())
     tight = " There is hardly any reserve beyond it." if most > 0.97 else ""
     return (

@@ -41,49 +41,48 @@ def orientation_fact(study: Study) -> Iterator[Fact]:
 
 def _how_tried(orientations: Orientations) -> str:
     if orientations.is_level:
-        return "no position was tried with the platform turned"
+        return "the platform was not turned"
     if orientations.range_rad is None:
-        each = "in its worst one; none between them" if orientations.count > 1 else "in that one"
-        return f"rotation vectors; a position counts {each}"
-    tried = f"{orientations.count} tried at each position, the worst searched between them"
-    return f"rotation vectors; {tried}"
+        return "rotation vectors, the worst of them counts" if orientations.count > 1 else ""
+    return f"{orientations.count} of them at each sample, the worst searched between"
 
 
 def orientation_statement(study: Study) -> Iterator[Statement]:
     """Yield the same for the first page."""
     for fact in orientation_fact(study):
-        text = f"{fact.value[0].upper()}{fact.value[1:]}: {fact.note}."
+        text = f"{fact.value[0].upper()}{fact.value[1:]}{fact.note and ': '}{fact.note}."
         yield Statement("Orientations checked", text)
 
 
 def strength_statement(
     selection: Selection | None, ropes: Iterable[tuple[Grade, Size]]
 ) -> Iterator[Statement]:
-    """Yield which losses at end fittings and by bending are taken off the breaking loads."""
+    """Yield what end fittings and bending are taken to leave of the breaking loads."""
     if selection is None:
         return
     share, sheave_m = selection.termination_efficiency, selection.sheave_diameter_m
-    ends = f"End fittings are taken to keep {fmt.percent(share)} of the breaking load"
-    if share == 1.0:
-        ends += " (selection.termination_efficiency; a ferrule keeps 89\u00a0%, clips 80\u00a0%)"
+    if share == 1.0 and sheave_m is None:
+        text = "None assumed: end fittings 100\u00a0%, bending 100\u00a0% of the breaking load."
+        yield Statement("Losses of strength", text, "doubt")
+        return
+    ends = f"End fittings {fmt.percent(share)}{' (none assumed)' if share == 1.0 else ''}, bending "
     if sheave_m is None:
-        bends = "Bending is taken to cost nothing (selection.sheave_diameter is not given)"
+        bends = "100\u00a0% (none assumed) of the breaking load"
     else:
         left = _after_bending(Allowance.of(selection), ropes)
-        bends = f"Bending over {fmt.millimetres(sheave_m)}{left}; the smaller share counts"
-    is_lossless = share == 1.0 or sheave_m is None
-    title = "Losses of strength"
-    yield Statement(title, f"{ends}. {bends}.", "doubt" if is_lossless else "")
+        bends = f"over {fmt.millimetres(sheave_m)}{left}; the smaller share counts"
+    is_assumed = share == 1.0 or sheave_m is None
+    yield Statement("Losses of strength", f"{ends}{bends}.", "doubt" if is_assumed else "")
 
 
 def _after_bending(allowance: Allowance, ropes: Iterable[tuple[Grade, Size]]) -> str:
     assert allowance.sheave_diameter_m is not None
     parts = [
-        f"{fmt.percent(allowance.bending_efficiency(grade, size.diameter_m))} of {size.id} "
+        f"{fmt.percent(allowance.bending_efficiency(grade, size.diameter_m))} for {size.id} "
         f"(D/d {fmt.trimmed(allowance.sheave_diameter_m / size.diameter_m, 3)})"
         for grade, size in ropes
     ]
-    return f" leaves {fmt.listing(parts)}" if parts else " is counted"
+    return f" {fmt.listing(parts)} of the breaking load" if parts else ""
 
 
 def pose_statement(analysis: Analysis) -> Iterator[Statement]:
@@ -91,7 +90,7 @@ def pose_statement(analysis: Analysis) -> Iterator[Statement]:
     outside = analysis.study.pose_outside
     if not outside:
         return
-    text = f"It {outside}, so what is said of the workspace does not cover it."
+    text = f"It {outside}."
     tone, used = _used_there(analysis)
     yield Statement("The configured pose is not in the workspace", f"{text}{used}", tone)
 
