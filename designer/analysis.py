@@ -173,8 +173,19 @@ class Analysis:
         """Whether the pose is solved, the workspace served, a product found."""
         pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
         workspace_ok = self.workspace is None or self.workspace.is_feasible
-        product_ok = self.selection is None or self.selection.chosen is not None
-        return pose_ok and workspace_ok and product_ok
+        return pose_ok and workspace_ok and self.has_products
+
+    @property
+    def has_groups(self) -> bool:
+        """Whether products for groups of cables are the answer."""
+        return self.groups is not None and self.groups.chosen is not None
+
+    @property
+    def has_products(self) -> bool:
+        """Whether a product was found, or one for each group where the study has groups."""
+        if self.groups is not None:
+            return self.groups.chosen is not None
+        return self.selection is None or self.selection.chosen is not None
 
 
 def _needs_programmes(study: Study) -> bool:

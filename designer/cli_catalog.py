@@ -42,7 +42,8 @@ def catalog_list(
     """
     from designer.catalogue.listing import Wanted, list_rows, split_nominal
     from designer.catalogue.registry import load_catalogue
-    from designer.terminal import print_grades, print_left_out
+    from designer.terminal import print_left_out
+    from designer.terminal_catalog import print_grades
 
     catalogue = load_catalogue(with_plugins=not no_plugins)
     print_left_out(catalogue.problems)
@@ -92,7 +93,8 @@ def catalog_show(
     Example:  designer catalog show unirope-7x19-galvanised
     """
     from designer.catalogue.registry import load_catalogue
-    from designer.terminal import print_grade, print_left_out
+    from designer.terminal import print_left_out
+    from designer.terminal_catalog import print_grade
 
     catalogue = load_catalogue(with_plugins=not no_plugins)
     print_left_out(catalogue.problems)

@@ -35,11 +35,16 @@ def result_dict(analysis: Analysis) -> Json:
     return {
         "name": study.name,
         "positive": analysis.is_positive,
-        "pose": None if analysis.pose is None else _pose(analysis.pose),
+        "answer": _answer(analysis),
+        "pose": None if analysis.pose is None else _pose(study, analysis.pose),
         "workspace": (
             None
             if analysis.workspace is None
-            else {**_workspace(analysis.workspace), **_qualities(analysis.qualities)}
+            else {
+                **_workspace(analysis.workspace),
+                "orientations": _orientations(study),
+                **_qualities(analysis.qualities),
+            }
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
         "provenance": {
@@ -59,7 +64,7 @@ def result_dict(analysis: Analysis) -> Json:
 
 def size_dict(study: Study, pose: PoseAnalysis) -> Json:
     """Return what ``designer size --json`` prints: the pose alone, under the same names."""
-    return {"name": study.name, "pose": _pose(pose), "provenance": _origin(study)}
+    return {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
 
 
 def size_text(study: Study, pose: PoseAnalysis) -> str:
@@ -80,11 +85,29 @@ def _origin(study: Study) -> Json:
     return {"version": __version__, "config_sha256": study.source.sha256}
 
 
-def _pose(pose: PoseAnalysis) -> Json:
+def _answer(analysis: Analysis) -> Json | None:
+    """Return what to put on each cable: the products of groups where there are any."""
+    choice = analysis.groups
+    if choice is not None:
+        if choice.chosen is None:
+            return None
+        names = ("name", "cables", "grade", "size_id")
+        products = [{name: one[name] for name in names} for one in groups_dict(choice)["groups"]]
+        return {"products": products, "total_mass_kg": _number(choice.chosen.total_mass_kg)}
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if chosen is None:
+        return None
+    cables = list(range(1, analysis.study.robot.n_cables + 1))
+    product = {"cables": cables, "grade": chosen.grade.id, "size_id": chosen.size.id}
+    return {"products": [{"name": None, **product}], "total_mass_kg": _number(chosen.total_mass_kg)}
+
+
+def _pose(study: Study, pose: PoseAnalysis) -> Json:
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter = _number(sizing.diameter_m)
     return {
         "position_m": _numbers(statics.poses.position_m),
+        "in_workspace": None if study.workspace is None else not study.pose_outside,
         "limit_ratio": _number(pose.limit_ratio),
         "sagging": {
             "diameter_m": diameter,
@@ -105,6 +128,7 @@ def _pose(pose: PoseAnalysis) -> Json:
         },
         "loop": {
             "converged": pose.loop.has_converged,
+            "diverged": pose.loop.has_diverged,
             "iterates": [
                 {"diameter_m": i.diameter_m, "max_tension_N": i.max_tension_N}
                 for i in pose.loop.iterates
@@ -165,6 +189,18 @@ def _worst_hanging(found: Hanging | None, name: str) -> Json:
         "cable": found.cable,
         "pose": _numbers(place[:3]),
         **_turn(turn_of(place)),
+    }
+
+
+def _orientations(study: Study) -> Json | None:
+    """Return which orientations were tried at each position; None of a point mass."""
+    if study.workspace is None or study.robot.is_point_mass:
+        return None
+    asked = study.workspace.orientations
+    ends = asked.range_rad
+    return {
+        "rotation_vectors": [_numbers(turn) for turn in asked.turns_rad],
+        "range": None if ends is None else [_numbers(end) for end in ends],
     }
 
 

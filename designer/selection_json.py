@@ -71,6 +71,7 @@ def _usable_list(usable: Usable) -> list[Json]:
             "diameter_m": one.size.diameter_m,
             "volume_m3": one.volume_m3,
             "fraction": one.fraction,
+            "lost_fraction": one.lost_fraction,
         }
         for one in usable.sizes
     ]

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from designer.arrays import FloatArray, finite_array, frozen_array
 from designer.region import Region
 
+_APART = 1e-7
 FILLING = 16
 """Orientations inside a range that are tried beside its middle and its corners."""
 
@@ -107,6 +108,23 @@ class Space:
             return positions_m
         turns = np.tile(self.orientations.turns_rad, (len(positions_m), 1))
         return np.hstack([np.repeat(positions_m, self.orientations.count, axis=0), turns])
+
+    def outside(self, place: FloatArray) -> tuple[bool, bool]:
+        """Tell whether position and orientation of a place (6,) are none of this space."""
+        position, turn = np.split(place, [3])
+        away = np.linalg.norm(self.region.nearest(position[None])[0] - position)
+        beyond = bool(away > _APART * (1.0 + np.abs(self.region.bounds_m).max()))
+        return beyond, not self._is_asked_for(turn)
+
+    def _is_asked_for(self, turn_rad: FloatArray) -> bool:
+        from scipy.spatial.transform import Rotation
+
+        if self.orientations.range_rad is not None:
+            low, high = self.orientations.range_rad
+            return bool(((turn_rad >= low - _APART) & (turn_rad <= high + _APART)).all())
+        asked = Rotation.from_rotvec(np.array(self.orientations.turns_rad))  # read-only: refused
+        here = Rotation.from_rotvec(np.array(turn_rad))
+        return bool(((asked.inv() * here).magnitude() < _APART).any())
 
     def nearest(self, places: FloatArray) -> FloatArray:
         """Return the place nearest to each of these (..., n_coordinates)."""

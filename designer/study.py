@@ -254,6 +254,17 @@ class Study:
     effects: tuple[DeclaredEffect, ...] = ()
     known_effects: KnownEffects = SHIPPED
 
+    @property
+    def pose_outside(self) -> str:
+        """In what the pose is none of the workspace, as ``lies outside the region``; or empty."""
+        if self.pose is None or self.workspace is None:
+            return ""
+        beyond, turned = self.workspace.space.outside(self.pose.place)
+        is_list = self.workspace.region.is_discrete
+        where = "is none of the listed points" if is_list else "lies outside the region"
+        turn = "is turned as the workspace is not"
+        return " and ".join([where] * beyond + [turn] * (turned and not self.robot.is_point_mass))
+
 
 def require_enough_cables(study: Study) -> None:
     """Refuse a robot that has fewer cables than degrees of freedom.

@@ -12,10 +12,9 @@ import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Column, Table
+from rich.table import Table
+from rich.text import Text
 
-from designer.catalogue.grade import TYPICAL_LOAD_FRACTION, Grade
-from designer.catalogue.listing import GradeRow, facts, size_rows
 from designer.process import end_at_closed_pipe, is_terminal
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from designer.interference.survey import Interference
     from designer.selection.groups_result import GroupChoice
     from designer.selection.result import SelectionResult
-    from designer.study import Study
+    from designer.study import Selection, Study
     from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 
@@ -36,9 +35,10 @@ class _Console(Console):
         end_at_closed_pipe()
 
 
-# A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns.
-_out = _Console(highlight=False, width=None if is_terminal(sys.stdout) else 240)
-_notes = _Console(stderr=True, highlight=False)
+# A pipe has no width: then tables are as wide as they need to be, not cut at 80 columns. Names may
+# hold what rich takes for emoji, such as ":1:".
+_out = _Console(highlight=False, emoji=False, width=None if is_terminal(sys.stdout) else 240)
+_notes = _Console(stderr=True, highlight=False, emoji=False)
 _SMALLEST_SAVING_KG = 1e-6
 _MOST_TURNS = 12
 """Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
@@ -50,7 +50,7 @@ class ProgressBars:
 
     def __init__(self) -> None:
         self._progress = Progress(
-            TextColumn("{task.description:<10}"),
+            TextColumn("{task.description:<10}", markup=False),
             BarColumn(),
             MofNCompleteColumn(),
             TimeRemainingColumn(),
@@ -77,7 +77,7 @@ class Spinner:
     """Context manager that shows what is being tried; call it with a new text."""
 
     def __init__(self, text: str) -> None:
-        self._status = _notes.status(text)
+        self._status = _notes.status(Text(text))
 
     def __enter__(self) -> Spinner:
         self._status.start()
@@ -88,7 +88,20 @@ class Spinner:
 
     def __call__(self, text: str) -> None:
         """Show another text."""
-        self._status.update(escape(text))
+        self._status.update(Text(text))
+
+
+def bare_table(*headings: str, title: str | None = None) -> Table:
+    """Return an empty table whose headings and title are printed as they are, brackets and all."""
+    shown = None if title is None else escape(title)
+    return Table(
+        *map(escape, headings), title=shown, title_justify="left", show_header=bool(headings)
+    )
+
+
+def show(shown: Table | str) -> None:
+    """Print a table, or a line with rich's markup, on standard output."""
+    _out.print(shown)
 
 
 def announce_compiling() -> None:
@@ -111,7 +124,7 @@ def print_left_out(problems: Iterable[str]) -> None:
 
 def print_summary(analysis: Analysis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer report``."""
-    table = Table(title=escape(analysis.study.name), title_justify="left", show_header=False)
+    table = bare_table(title=analysis.study.name)
     for row in _summary(analysis):
         table.add_row(*row)
     _out.print(table)
@@ -122,14 +135,17 @@ def _summary(analysis: Analysis) -> Iterator[tuple[str, str]]:
     if analysis.pose is not None:
         sizing = analysis.pose.sizing
         yield "pose", _extreme(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
+        if analysis.study.pose_outside:
+            yield "", f"[bold red]{analysis.study.pose_outside}[/]"
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
-    if analysis.selection is not None:
-        yield from _summary_of_selection(analysis.selection, _factor(analysis))
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
     for label, text in analysis.hanging.notes():
         yield label, f"[bold red]{text}[/]"
+    if analysis.selection is not None:
+        label = "cable" if analysis.groups is None else "one for all"
+        yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None:
         yield "clearance", _clearance(interference)
@@ -164,15 +180,15 @@ def _placed(extreme: Extreme) -> str:
 
 
 def _summary_of_selection(
-    selection: SelectionResult, safety_factor: str
+    selection: SelectionResult, label: str, asked: Selection | None
 ) -> Iterator[tuple[str, str]]:
     chosen = selection.chosen
     if chosen is None:
-        yield "cable", f"[bold red]none[/]: {escape(selection.reason or '')}"
+        yield label, f"[bold red]none[/]: {escape(selection.reason or '')}"
         return
-    yield "cable", f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
+    yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     used = chosen.verification.utilisation
-    yield "  utilisation", f"{used:.1%} at safety factor {safety_factor}"
+    yield "  utilisation", f"{used:.1%} {_terms(asked, chosen.efficiency)}"
     mass = f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
@@ -183,7 +199,7 @@ def _clearance(found: Interference) -> str:
         return "nothing to compare: " + (
             "all cables meet at the platform" if found.samples else "no pose is solved"
         )
-    nearest = f"{1e3 * worst.distance_m:.4g} mm between {' and '.join(worst.names)}"
+    nearest = f"{1e3 * worst.distance_m:.4g} mm between {escape(' and '.join(worst.names))}"
     if not found.is_violated:
         return f"kept, {nearest}"
     return f"[bold red]not kept[/]: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
@@ -194,6 +210,8 @@ def _summary_of_groups(choice: GroupChoice) -> Iterator[tuple[str, str]]:
         yield "groups", f"[bold red]none[/]: {escape(choice.proof_sentence)}"
         return
     found = zip(choice.groups, choice.chosen.products, strict=True)
+    n_products = len({*choice.chosen.products})
+    yield "cables", f"[bold]{n_products} product{'' if n_products == 1 else 's'} for the groups[/]"
     for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
         yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
     saving = "" if choice.saving_kg is None else _saving(choice.saving_kg)
@@ -210,14 +228,14 @@ def _saving(saving_kg: float) -> str:
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer diagnose``."""
-    table = Table(title=escape(diagnosis.study.name), title_justify="left", show_header=False)
+    table = bare_table(title=diagnosis.study.name)
     for finding in diagnosis.findings:
         values = ", ".join(
             f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
         )
-        table.add_row(f"[bold]{finding.effect.key}[/]", values)
+        table.add_row(f"[bold]{escape(finding.effect.key)}[/]", escape(values))
         if finding.rivals:
-            table.add_row("  or", ", ".join(finding.rivals))
+            table.add_row("  or", escape(", ".join(finding.rivals)))
     if not diagnosis.findings:
         table.add_row("effects", "none found")
     if diagnosis.is_unexplained:
@@ -237,13 +255,17 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
         ("after", diagnosis.design_after),
     ):
         if choice is not None:
-            table.add_row(label, f"{choice.grade}, {choice.size_id}" if choice.grade else "none")
+            named = f"{choice.grade}, {choice.size_id}" if choice.grade else "none"
+            table.add_row(label, escape(named))
     _out.print(table)
     _out.print(f"{folder}: {', '.join(written)}", markup=False)
 
 
-def _factor(analysis: Analysis) -> str:
-    return f"{analysis.study.selection.safety_factor:g}" if analysis.study.selection else ""
+def _terms(asked: Selection | None, efficiency: float) -> str:
+    """Return what a utilisation refers to: safety factor, and what ends and bends take away."""
+    assert asked is not None
+    losses = "no loss" if efficiency == 1.0 else f"{efficiency:.3g} left"
+    return f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
 
 
 def _extreme(diameter_m: float, tension_N: float) -> str:
@@ -260,7 +282,7 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
     """Print the sizing of the configured pose."""
     statics = pose.sizing.statics
     _out.print(f"{study.name}: {statics_sentence(pose)}", markup=False)
-    table = Table("", "diameter [mm]", "largest tension [N]", title="Sizing", title_justify="left")
+    table = bare_table("", "diameter [mm]", "largest tension [N]", title="Sizing")
     sizing = pose.sizing
     rows = [("massless", float(sizing.massless_diameter_m), float(sizing.massless_tension_N))]
     turns = [
@@ -279,9 +301,12 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
         f"[bold]{_figure(float(statics.largest_tension_N), 2)}[/]",
     )
     _out.print(table)
+    if pose.loop.iterates and not pose.loop.has_converged:
+        _out.print(f"loop: {pose.loop.outcome}")
     if statics.is_solved:
         _print_cables(pose)
-    for remark in (pose.caution, pose.rest.sentence if pose.rest else ""):
+    outside = f"The configured pose {study.pose_outside}." if study.pose_outside else ""
+    for remark in (outside, pose.caution, pose.rest.sentence if pose.rest else ""):
         if remark:
             _out.print(remark, markup=False, soft_wrap=True)
 
@@ -296,16 +321,16 @@ def _figure(value: float, decimals: int) -> str:
 
 def _print_cables(pose: PoseAnalysis) -> None:
     statics = pose.sizing.statics
-    table = Table(
+    table = bare_table(
         "cable", "length [m]", "F_x [N]", "F_z [N]", "tension at exit [N]", "at platform [N]",
-        title="Cables at the optimum", title_justify="left",
+        title="Cables at the optimum",
     )  # fmt: skip
     columns = (
         statics.length_m, statics.force_x_N, statics.force_z_N,
         statics.exit_tension_N, statics.platform_tension_N,
     )  # fmt: skip
     for index, (length, *forces) in enumerate(zip(*columns, strict=True), 1):
-        table.add_row(str(index), f"{length:.8f}", *(f"{force:.3f}" for force in forces))
+        table.add_row(str(index), _figure(length, 8), *(_figure(force, 3) for force in forces))
     _out.print(table)
     closure = float(pose.sizing.closure_residual_m)
     balance = float(pose.sizing.equilibrium_residual_N)
@@ -317,76 +342,3 @@ def statics_sentence(pose: PoseAnalysis) -> str:
     from designer.verdict import Verdict
 
     return Verdict(int(pose.sizing.statics.verdict)).sentence
-
-
-def print_grades(rows: Sequence[GradeRow]) -> None:
-    """Print the list of grades, those of one publisher together."""
-    table = Table(
-        "grade", "construction", "material", "sizes", "d [mm]", "MBL [kN]", "trust", "from"
-    )
-    for publisher in sorted({row.publisher for row in rows}, key=str.casefold):
-        table.add_section()
-        table.add_row(f"[bold]{escape(publisher)}[/]")
-        for row in rows:
-            if row.publisher == publisher:
-                table.add_row(*_grade_cells(row))
-    _out.print(table)
-    _out.print(
-        "trust: A maker's or standard's table, B seller's transcript, C third hand; (n?) doubtful "
-        "sizes; for document and address: designer catalog show GRADE"
-    )
-
-
-def _grade_cells(row: GradeRow) -> tuple[str, ...]:
-    return (
-        f"  {escape(row.id)}",
-        escape(_known(row.construction, row.core)),
-        escape(_known(row.material, row.finish.removeprefix("stainless, "))),
-        f"{row.n_sizes}" + (f" ({row.n_doubtful}?)" if row.n_doubtful else ""),
-        _range(row.diameter_m, 1e3),
-        _range(row.minimum_breaking_load_N, 1e-3),
-        row.trust,
-        escape(row.origin),
-    )
-
-
-def _known(*texts: str) -> str:
-    """Join what a source states; catalogue files say "not stated" where it does not."""
-    return ", ".join(text for text in texts if text not in ("", "not stated")) or "not stated"
-
-
-def print_grade(grade: Grade) -> None:
-    """Print all that is known of one grade."""
-    known = Table(title=escape(grade.id), title_justify="left", show_header=False)
-    for name, text in facts(grade):
-        known.add_row(name, escape(text))
-    _out.print(known)
-    names = ("size", "d [mm]", "MBL [kN]", "mass [kg/m]", "A [mm²]", "EA [MN]", "price", "doubt")
-    prices = f"price [{grade.currency}/m]"
-    sizes = Table(*(escape(prices if name == "price" else name) for name in names))
-    for row in size_rows(grade):
-        area_m2 = row.metallic_area_m2
-        sizes.add_row(
-            escape(row.id),
-            f"{1e3 * row.diameter_m:.4g}",
-            f"{row.minimum_breaking_load_N / 1e3:.4g}",
-            f"{row.linear_density_kg_per_m:.4g}",
-            "" if area_m2 is None else f"{1e6 * area_m2:.4g}",
-            f"{row.axial_stiffness_N / 1e6:.4g}",
-            "" if row.price_per_m is None else f"{row.price_per_m:.4g}",
-            escape(row.doubt),
-        )
-    for column in _empty_columns(sizes):
-        sizes.columns.remove(column)
-    _out.print(sizes)
-    if grade.stiffness is not None and len(grade.stiffness.load_fraction) > 1:
-        _out.print(f"EA at {TYPICAL_LOAD_FRACTION:g} of the breaking load")
-
-
-def _empty_columns(table: Table) -> list[Column]:
-    return [column for column in table.columns if not any(column.cells)]
-
-
-def _range(ends: tuple[float, float], scale: float) -> str:
-    first, last = f"{scale * ends[0]:.4g}", f"{scale * ends[1]:.4g}"
-    return first if first == last else f"{first}–{last}"

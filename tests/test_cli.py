@@ -185,16 +185,38 @@ def test_an_empty_path_is_not_this_folder(designer, arguments) -> None:
     assert outcome.err == "command line: a path is empty (expected a file or folder)\n"
 
 
-def test_a_loop_that_diverges_is_told_in_a_few_rows(designer) -> None:
-    pose = "pose: [250, 200, -1]"
-    Path("a.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", pose))
-    outcome = designer("size", "a.yaml")
-    assert outcome.status == 1
-    assert "nan" not in outcome.out
-    rows = outcome.out.splitlines()
-    assert sum("loop" in row for row in rows) == 13
+@pytest.mark.parametrize(
+    ("pose", "status", "outcome"),
+    [
+        ("[250, 200, -1]", 1, "loop: diverges, given up after"),
+        ("[250, 4.85, -40]", 0, "loop: not settled after 400 turns"),
+    ],
+)
+def test_a_loop_that_does_not_settle_is_told_in_a_few_rows(designer, pose, status, outcome) -> None:
+    Path("a.yaml").write_text(STUDY.replace("pose: [250, 200, -50]", f"pose: {pose}"))
+    told = designer("size", "a.yaml")
+    assert told.status == status
+    assert "nan" not in told.out
+    rows = told.out.splitlines()
+    assert sum("│ loop" in row for row in rows) <= 13
+    assert any(row.startswith(outcome) for row in rows)
     assert max(len(row) for row in rows) < 120
-    assert "…" in rows[rows.index(next(row for row in rows if "loop 12" in row)) + 1]
+    assert ("…" in told.out) == (status == 0)
+
+
+def test_units_and_names_in_brackets_are_printed_as_they_are(designer) -> None:
+    name = "Crane [red] [/] [mm] :smile: \\\\"
+    Path("a.yaml").write_text(STUDY.replace("name: small crane", f"name: '{name}'"))
+    told = designer("size", "a.yaml").out
+    assert f"{name}: " in told
+    assert all(
+        heading in told
+        for heading in ("diameter [mm]", "largest tension [N]", "length [m]", "tension at exit [N]")
+    )
+    grades = designer("catalog", "list", "--material", "HMPE").out
+    assert "d [mm]" in grades and "MBL [kN]" in grades
+    sizes = designer("catalog", "show", "unirope-7x19-galvanised").out
+    assert "mass [kg/m]" in sizes
 
 
 def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> None:

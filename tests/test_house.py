@@ -13,7 +13,7 @@ ROOMS = [
     "measured_data", "kernel", "statics", "sizing", "plugins", "effects", "study", "declared",
     "measured", "config", "catalogue", "workspace", "interference", "selection", "diagnosis",
     "qualities", "analysis", "selection_json", "groups_json", "result_json", "diagnosis_files",
-    "report", "terminal", "cli_options", "cli_catalog", "cli", "__main__",
+    "report", "terminal", "terminal_catalog", "cli_options", "cli_catalog", "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

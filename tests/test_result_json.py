@@ -109,7 +109,8 @@ def test_selection_has_its_parts(result: Any) -> None:
     assert selection["objectives"] == ["mass", "drum_diameter", "max_tension"]
     assert selection["chosen"] == selection["pareto"][0]
     for usable in selection["usable"]:
-        assert usable.keys() == {"grade", "size_id", "diameter_m", "volume_m3", "fraction"}
+        names = {"grade", "size_id", "diameter_m", "volume_m3", "fraction", "lost_fraction"}
+        assert usable.keys() == names
         assert usable["grade"] == selection["chosen"]["grade"]
     shares = [usable["fraction"] for usable in selection["usable"]]
     assert shares == sorted(shares)

@@ -119,7 +119,10 @@ def edge(maps: WorkspaceMaps) -> str:
     last = profile.limit_distance_m
     if last is None or last < _NEGLIGIBLE * profile.region_distance_m:
         return f"{text}."
-    return f"{text}; within {_metres(last)} of it no cable holds, however thick."
+    if profile.holds_again:
+        return f"{text}; within {_metres(last)} of it some poses are held and others are not."
+    none = "no cable holds, however thick" if profile.is_proved else "no cable was found that holds"
+    return f"{text}; within {_metres(last)} of it {none}."
 
 
 def _metres(length_m: float) -> str:
@@ -181,9 +184,12 @@ def usable(found: Usable, chosen: Candidate | None) -> str:
 
 def layers(found: Usable) -> str:
     """Return the caption of the layers that sizes serve."""
+    text = f"Where sizes of {found.grade.id} may go, a part of the region cut away:"
+    if found.is_nested:
+        return f"{text} each serves its own layer and those of all thinner ones."
     return (
-        f"Where sizes of {found.grade.id} may go, a part of the region cut away: each serves its "
-        "own layer and those of all thinner ones."
+        f"{text} each part has the colour of the thinnest of them that serves there. Not all "
+        "thicker ones serve there too; the table says which."
     )
 
 

@@ -178,7 +178,7 @@ def _usable_scene(analysis: Analysis, maps: WorkspaceMaps | None) -> Picture | N
     if png is None:
         return None
     caption = captions.layers(selection.usable)
-    return _scene(caption, "The region in nested layers", png)
+    return _scene(caption, "The region in layers", png)
 
 
 def _groups(analysis: Analysis) -> Picture | None:

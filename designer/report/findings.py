@@ -113,8 +113,9 @@ class Findings:
     other_policy : OtherPolicy or None
         None where no cable hangs below the platform.
     hanging : float or None
-        Share of the samples in which a cable hangs below the platform: with the chosen rope where
-        there is one, else with what the configured family needs. None without a workspace.
+        Share of the samples in which a cable hangs below the platform: with the chosen rope, or
+        those of groups, where there is one, else with what the configured family needs. None
+        without a workspace.
     unserved : Unserved or None
         None where every sample is served, and for a list of points.
     """
@@ -145,7 +146,7 @@ def find(analysis: Analysis) -> Findings:
         findings,
         chosen_outcome=outcome,
         chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
-        massless_choice=_massless_choice(analysis, outcome),
+        massless_choice=None if analysis.has_groups else _massless_choice(analysis, outcome),
         modulus_utilisation=modulus_utilisation(robot, chosen),
     )
 
@@ -196,12 +197,12 @@ def _hanging(analysis: Analysis) -> float | None:
     if workspace is None or found is None:
         return None
     chosen = analysis.selection.chosen if analysis.selection else None
-    if chosen is None:
+    if analysis.qualities is None or not (chosen or analysis.has_groups):
         return found.census.hangs_below / found.census.samples
-    robot = analysis.built.robot
+    robot, cable = analysis.built.robot, analysis.qualities.cable.cable
     few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
     hangs = [
-        is_left_out(solve_sagging(robot, Poses.at(positions), chosen.cable), "exclude")
+        is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
         for positions in places(few)
     ]
     return float(np.concatenate(hangs).mean())

@@ -19,16 +19,17 @@ _THIN = "\u202f"
 _BEFORE_UNIT = "\u00a0"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POSITION_DIGITS = 2
+_FORCES = (("N", 1.0, 1e3), ("kN", 1e3, 1e7), ("MN", 1e6, math.inf))
+_TINY, _TOO_WIDE = 1e-9, 1e12
+"""Beyond these, numbers are written as powers of ten, so that none is wider than a column."""
 
 
 def number(value: float, digits: int = 4) -> str:
     """Return a number rounded to ``digits`` significant digits."""
-    if math.isnan(value):
-        return MISSING
-    if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
-    if value == 0.0:
-        return "0"
+    if value == 0.0 or not math.isfinite(value):
+        return fixed(value, 0)
+    if not _TINY <= abs(value) < _TOO_WIDE:
+        return power_of_ten(value)
     rounded = float(f"{value:.{digits - 1}e}")
     leading = math.floor(math.log10(abs(rounded)))
     return fixed(rounded, max(digits - 1 - leading, 0))
@@ -41,7 +42,13 @@ def trimmed(value: float, digits: int = 4) -> str:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with ``decimals`` digits after the point."""
+    """Return a number with ``decimals`` digits after the point; a huge one as a power of ten."""
+    if math.isnan(value):
+        return MISSING
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if abs(value) >= _TOO_WIDE:
+        return power_of_ten(value)
     text = f"{round(value, decimals) + 0.0:,.{decimals}f}"  # 0.0 makes a plain zero of −0
     return text.replace(",", _THIN).replace("-", "−")
 
@@ -61,7 +68,7 @@ def count(value: int) -> str:
 
 def metres(value: float) -> str:
     """Return a length such as ``324.22 m``."""
-    return _with_unit(fixed(value, 2) if math.isfinite(value) else number(value), "m")
+    return _with_unit(fixed(value, 2), "m")
 
 
 def square_metres(value: float) -> str:
@@ -81,7 +88,15 @@ def millimetres(value_m: float) -> str:
 
 def newtons(value: float) -> str:
     """Return a force in N, kN or MN, such as ``371.0 kN``."""
-    return _scaled(value, (("N", 1.0, 1e3), ("kN", 1e3, 1e7), ("MN", 1e6, math.inf)))
+    return _scaled(value, _FORCES)
+
+
+def newtons_alike(*values: float) -> tuple[str, ...]:
+    """Return forces that are to be compared, all in the unit that suits the smallest."""
+    sizes = [abs(value) for value in values if math.isfinite(value) and value != 0.0]
+    smallest = min(sizes, default=0.0)
+    unit, scale = next((name, scale) for name, scale, end in _FORCES if smallest < end)
+    return tuple(_scaled(value, ((unit, scale, math.inf),)) for value in values)
 
 
 def pascals(value: float) -> str:
@@ -118,7 +133,7 @@ def share(part: int, whole: int) -> str:
 def signed_percent(fraction: float) -> str:
     """Return a change such as ``+12.3 %``."""
     text = fixed(100.0 * fraction, 1)
-    return _with_unit(text if text.startswith("−") else f"+{text}", "%")
+    return _with_unit(text if text.startswith(("−", MISSING)) else f"+{text}", "%")
 
 
 def utilisation(fraction: float) -> str:
@@ -127,7 +142,7 @@ def utilisation(fraction: float) -> str:
         return "cannot hold"
     if fraction > 1.0 and round(100.0 * fraction, 1) == 100.0:
         return f"over{_BEFORE_UNIT}100{_BEFORE_UNIT}%"
-    return _with_unit(fixed(100.0 * fraction, 1) if math.isfinite(fraction) else MISSING, "%")
+    return _with_unit(fixed(100.0 * fraction, 1), "%")
 
 
 def factor(value: float) -> str:

@@ -212,14 +212,19 @@ def _usable(
     chosen: Candidate | None,
 ) -> Usable | None:
     """Return what the sizes of the chosen grade serve, or of the one whose best serves most."""
+    shown = [o for o in outcomes if o.candidates]
     if chosen is not None:
-        outcomes = [o for o in outcomes if o.grade is chosen.grade]
-    found = [
-        usable(robot, workspace, o.grade, [(c.size, c.cable) for c in o.candidates])
-        for o in outcomes
-        if o.candidates
-    ]
-    return max(found, key=lambda u: max(s.fraction for s in u.sizes), default=None)
+        shown = [o for o in shown if o.grade is chosen.grade]
+    if len(shown) > 1:
+        shown = [max(shown, key=lambda o: _most_served(robot, workspace, o))]
+    for one in shown:
+        return usable(robot, workspace, one.grade, [(c.size, c.cable) for c in one.candidates])
+    return None
+
+
+def _most_served(robot: Robot, workspace: Workspace, outcome: GradeOutcome) -> float:
+    cables = [c.cable for c in outcome.candidates]
+    return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
 
 def _reason(

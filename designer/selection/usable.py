@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
 from designer.cable import Cable
 from designer.catalogue.grade import Grade, Size
 from designer.region import Prism
-from designer.robot import Robot
-from designer.selection.verify_sizes import Sampled, verify_sizes
+from designer.robot import Poses, Robot
+from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
+from designer.workspace.demand import is_left_out
+from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,12 +32,16 @@ class UsableSize:
         Share of the samples at which it stays within its allowable tension.
     volume_m3 : float or None
         That share of the region [m³]; None for a list of points.
+    lost_fraction : float
+        Share of the samples that a thinner size of the grade serves and this one does not: it may
+        be weaker, or too heavy for what it bears.
     """
 
     size: Size
     cable: Cable
     fraction: float
     volume_m3: float | None
+    lost_fraction: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,25 +56,50 @@ class Usable:
         """Whether some sizes serve more than others."""
         return len({one.fraction for one in self.sizes}) > 1
 
+    @property
+    def is_nested(self) -> bool:
+        """Whether each size serves all that thinner ones serve."""
+        return all(one.lost_fraction == 0.0 for one in self.sizes)
+
+    @property
+    def first_for_good(self) -> int | None:
+        """Index of the size from which on all serve everything; None where the last does not."""
+        partly = [k for k, one in enumerate(self.sizes) if one.fraction < 1.0]
+        first = partly[-1] + 1 if partly else 0
+        return first if first < len(self.sizes) else None
+
 
 def usable(
     robot: Robot, workspace: Workspace, grade: Grade, cables: Sequence[tuple[Size, Cable]]
 ) -> Usable:
-    """Count the samples that each size of a grade serves, with its own figures.
+    """Find at how many samples each size of a grade, thinnest first, serves with its own figures.
 
-    A pose that the study leaves out because a cable hangs below the platform is not served.
+    A position is served where the size holds it in every orientation that the study asks for. One
+    that the study leaves out because a cable hangs below the platform is not served.
     """
-    sampled = verify_sizes(robot, workspace, [cable for _, cable in cables], gives_up=False)
+    samples = 0
+    served, lost = np.zeros((2, len(cables)))
+    for some in places(workspace):
+        each = np.stack([_serves(robot, workspace, cable, some) for _, cable in cables])
+        at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
+        samples += at.shape[1]
+        served += at.sum(axis=1)
+        lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)
+    region = workspace.region
+    volume_m3 = region.volume_m3 if isinstance(region, Prism) else None
     return Usable(
         grade,
         tuple(
-            _usable_size(workspace, size, cable, one)
-            for (size, cable), one in zip(cables, sampled, strict=True)
+            UsableSize(size, cable, share, None if volume_m3 is None else share * volume_m3, gone)
+            for (size, cable), share, gone in zip(
+                cables, (served / samples).tolist(), (lost / samples).tolist(), strict=True
+            )
         ),
     )
 
 
-def _usable_size(workspace: Workspace, size: Size, cable: Cable, sampled: Sampled) -> UsableSize:
-    region = workspace.region
-    volume = sampled.served * region.volume_m3 if isinstance(region, Prism) else None
-    return UsableSize(size, cable, sampled.served, volume)
+def _serves(robot: Robot, workspace: Workspace, cable: Cable, some: FloatArray) -> BoolArray:
+    statics = solve_sagging(robot, Poses.at(some), cable)
+    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))

@@ -10,6 +10,10 @@ from designer.cable import Material
 from designer.robot import Poses, Robot
 from designer.statics.inverse import solve_massless, solve_sagging
 
+_RUNAWAY = 1e4
+"""Largest tension over the massless one at which the loop is given up: far beyond what its turns
+can reach where it settles, since each of them then adds less than the one before."""
+
 
 @dataclass(frozen=True, slots=True)
 class Iterate:
@@ -29,10 +33,22 @@ class LoopSizing:
         Every turn; empty if no straight cables can hold the pose.
     has_converged : bool
         Whether the last turn changed the diameter by less than the threshold.
+    has_diverged : bool
+        Whether it was given up since it runs away.
     """
 
     iterates: tuple[Iterate, ...]
     has_converged: bool
+    has_diverged: bool = False
+
+    @property
+    def outcome(self) -> str:
+        """How it ended, in a few words."""
+        turns = len(self.iterates) - 1
+        after = f"after {turns} turn{'' if turns == 1 else 's'}"
+        if self.has_diverged:
+            return f"diverges, given up {after}"
+        return f"{'settled' if self.has_converged else 'not settled'} {after}"
 
     @property
     def diameter_m(self) -> float:
@@ -61,7 +77,8 @@ def size_by_loop(
     threshold_m : float
         Change of diameter that ends the loop; the paper uses 1e-6 m.
     max_turns : int
-        Gives up after so many: the loop crawls near poses that no cable can hold.
+        Gives up after so many: the loop crawls near poses that no cable can hold. Where none can,
+        it runs away, and is given up as soon as that is plain.
     """
     tension = float(solve_massless(robot, pose).largest_tension_N)
     if not np.isfinite(tension):
@@ -73,6 +90,8 @@ def size_by_loop(
         if not np.isfinite(tension):
             return LoopSizing(tuple(iterates), has_converged=False)
         iterates.append(Iterate(tension, material.diameter_for_tension_m(tension)))
+        if tension > _RUNAWAY * iterates[0].max_tension_N:
+            return LoopSizing(tuple(iterates), has_converged=False, has_diverged=True)
         if abs(iterates[-1].diameter_m - iterates[-2].diameter_m) < threshold_m:
             return LoopSizing(tuple(iterates), has_converged=True)
     return LoopSizing(tuple(iterates), has_converged=False)

@@ -175,7 +175,7 @@ class TestLoop:
         svg = loop_chart(pose)
         check(svg)
         found = texts(svg)
-        assert f"not settled after {len(pose.loop.iterates) - 1} turns" in found
+        assert f"diverges, given up after {len(pose.loop.iterates) - 1} turns" in found
         assert not any("optimum" in text for text in found)
 
     def test_slow_loop_still_shows_the_optimum(self) -> None:

@@ -10,8 +10,11 @@ import pytest
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
 from designer.analysis import analyse_pose
+from designer.config import read_study
 from designer.region import Prism
+from designer.report import captions
 from designer.report.figures import grids
+from designer.report.figures.charts_edge import _not_held
 from designer.report.figures.edge import edge_profile
 from designer.report.figures.field import (
     cable_curves_m,
@@ -22,6 +25,7 @@ from designer.report.figures.field import (
 from designer.report.figures.maps import as_built, workspace_maps
 from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, tension_of
+from designer.resources import example_file
 from designer.robot import Poses
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
@@ -223,6 +227,36 @@ class TestEdge:
         assert profile is not None
         assert not profile.field.is_solved.any()
         assert profile.limit_distance_m is None
+
+    def test_limit_is_the_first_failure_on_the_way_out(self) -> None:
+        """Farther out this robot of seven cables is held again, twice."""
+        study = read_study(example_file("falcon"))
+        assert study.workspace is not None
+        low, high = study.workspace.region.bounds_m
+        profile = edge_profile(study, np.array([low[0], high[1], low[2]]))
+        assert profile is not None
+        held = profile.distance_m[profile.field.is_solved]
+        lost = profile.distance_m[~profile.field.is_solved]
+        assert profile.limit_distance_m == pytest.approx(0.32, abs=0.005)
+        assert lost.max() < profile.limit_distance_m < held[held > lost.max()].min()
+        assert profile.holds_again
+        stretches = _not_held(profile)
+        assert len(stretches) == 2
+        for start, stop in stretches:
+            inside = (profile.distance_m < start) & (profile.distance_m > stop)
+            assert not profile.field.is_solved[inside].any()
+
+    def test_only_a_proof_is_called_impossible(self) -> None:
+        profile = maps_of("served").edge
+        assert profile is not None
+        assert profile.is_proved and not profile.holds_again
+        assert "no cable holds, however thick" in captions.edge(maps_of("served"))
+        verdict = profile.field.verdict.copy()
+        verdict[-1] = Verdict.NOT_CONVERGED
+        unsure = replace(profile, field=replace(profile.field, verdict=verdict))
+        assert not unsure.is_proved
+        text = captions.edge(replace(maps_of("served"), edge=unsure))
+        assert "no cable was found that holds" in text
 
 
 class TestServed:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
 
 from designer.arrays import FloatArray
 from designer.catalogue.grade import Grade, Modulus, Reference, Size
+from designer.report import captions
 from designer.report.figures.usable_scene import chosen_sizes, colours, layers_of, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
 from designer.robot import Poses
@@ -84,3 +87,17 @@ def test_picture_has_its_size(case: str) -> None:
 
 def test_points_have_no_layers() -> None:
     assert usable_scene(maps_of("points"), usable_of("points")) is None
+
+
+def test_sizes_that_are_not_nested_are_said_to_be() -> None:
+    found = usable_of("served")
+    first, *rest = found.sizes
+    weak = replace(rest[0], lost_fraction=0.1)
+    odd = replace(found, sizes=(first, weak, *rest[1:]))
+    assert "those of all thinner ones" in captions.layers(found)
+    assert "the thinnest of them that serves there" in captions.layers(odd)
+    assert "those of all thinner ones" not in captions.layers(odd)
+    mixed = replace(found, sizes=(*found.sizes[:-1], replace(found.sizes[-1], fraction=0.5)))
+    shown = chosen_sizes(mixed)
+    diameters = [one.size.diameter_m for one in shown]
+    assert diameters == sorted(diameters)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import importlib
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from markupsafe import escape
 from report_cases import CASES, DEFAULTS, FAST
 
 from designer.analysis import Analysis
+from designer.report import format as fmt
 from designer.report import sections
 from designer.report.context import ReportContext, build_context
 from designer.report.parts import MOST_ROWS, Picture, Table
@@ -148,6 +149,18 @@ def test_pose_section_shows_the_papers_loop(contexts: dict[str, ReportContext]) 
         ("1", "123.08", "29.51"),
         ("2", "138.69", "31.32"),
     ]
+
+
+def test_a_loop_that_diverges_is_said_to(solve: Callable[[str], Analysis]) -> None:
+    text = FAST.format(**{**DEFAULTS, "pose": "[250, 200, -1]"})
+    section = build_context(solve(text[: text.index("workspace:")]), Pictures()).pose
+    assert section is not None and section.turns is not None and section.methods is not None
+    assert "It diverges" in section.turns.caption
+    cells = [cell for row in section.turns.groups[0].rows for cell in row.cells]
+    assert max(map(len, cells)) <= 15
+    row = section.methods.groups[0].rows[-1].cells
+    assert row[1:3] == (fmt.MISSING, fmt.MISSING)
+    assert row[3].startswith("diverges, given up after")
 
 
 def test_a_loop_that_does_not_settle_is_cut_short() -> None:

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.report import format as fmt
+from designer.report.figures import canvas
 
 
 def plain(text: str) -> str:
@@ -60,6 +61,16 @@ def test_text_of_a_value(text: str, expected: str) -> None:
 def test_a_missing_number_has_no_unit(show: object) -> None:
     assert callable(show)
     assert show(math.nan) == fmt.MISSING
+
+
+@given(st.floats())
+def test_no_number_is_wider_than_a_column(value: float) -> None:
+    shows = (fmt.number, fmt.newtons, fmt.metres, fmt.millimetres, fmt.percent, fmt.kilograms)
+    texts = [show(value) for show in (*shows, fmt.utilisation, fmt.signed_percent)]
+    texts += [fmt.fixed(value, 3), fmt.trimmed(value), fmt.position([value])]
+    texts += [canvas.number(value), canvas.significant(value)]
+    assert max(map(len, texts)) <= 24
+    assert not any(word in text for word in ("nan", "inf") for text in texts[:-2])
 
 
 def test_no_figure_can_be_broken_over_lines() -> None:
@@ -116,3 +127,9 @@ def test_notes_of_tables_are_set_as_print() -> None:
 )
 def test_shorter_cuts_what_a_change_of_units_brought(text: str, short: str) -> None:
     assert fmt.shorter(text) == short
+
+
+def test_forces_to_be_compared_have_one_unit() -> None:
+    assert [plain(text) for text in fmt.newtons_alike(185.4, 1200.0)] == ["185.4 N", "1 200 N"]
+    assert [plain(text) for text in fmt.newtons_alike(1850.0, 12e6)] == ["1.850 kN", "12 000 kN"]
+    assert fmt.newtons_alike(math.nan, 5.0)[0] == fmt.MISSING

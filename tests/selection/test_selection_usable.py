@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ropes import rope
 
 from designer.arrays import frozen_array
+from designer.config import read_study
 from designer.region import PointList, Prism
+from designer.resources import example_file
 from designer.robot import Poses
 from designer.selection.select import select
+from designer.selection.usable import usable
 from designer.sizing.newton import size_poses
+from designer.space import Orientations
+from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Workspace
 from designer.workspace.samples import positions_m
 
@@ -52,3 +59,41 @@ def test_points_have_no_volume(fast_robot) -> None:
     assert found.usable is not None
     assert [one.fraction for one in found.usable.sizes] == pytest.approx([1 / 3, 2 / 3])
     assert {one.volume_m3 for one in found.usable.sizes} == {None}
+
+
+def test_a_weak_thicker_size_does_not_serve_what_a_thinner_one_does(fast_robot) -> None:
+    """Each size counts on its own samples, and what it loses against thinner ones is told."""
+    workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=1000)
+    grade = rope("a", [14.0, 18.0, 20.0, 32.0], weaker={20.0: 0.6})
+    found = select(fast_robot, workspace, Selection(None, 2.0), [grade]).usable
+    assert found is not None and not found.is_nested
+    positions = np.concatenate(list(positions_m(workspace)))
+    holds = []
+    for size in grade.sizes:
+        statics = solve_sagging(fast_robot, Poses.at(positions), grade.cable(size, 2.0))
+        allowable = size.minimum_breaking_load_N / 2.0
+        holds.append(statics.is_solved & (np.nan_to_num(statics.largest_tension_N) <= allowable))
+    assert [one.fraction for one in found.sizes] == pytest.approx([h.mean() for h in holds])
+    assert found.sizes[2].fraction < found.sizes[1].fraction
+    lost = ((holds[0] | holds[1]) & ~holds[2]).mean()
+    assert 0.0 < lost == pytest.approx(found.sizes[2].lost_fraction)
+    assert [one.lost_fraction for one in found.sizes[:2]] == [0.0, 0.0]
+    assert found.first_for_good == 3
+
+
+def test_a_position_is_served_only_in_all_its_orientations() -> None:
+    study = read_study(example_file("robocrane"))
+    turns = frozen_array(np.radians([[0.0, 0.0, 0.0], [12.0, 0.0, 0.0]]))
+    few = replace(study.workspace, samples=200, orientations=Orientations(turns))
+    grade = rope("a", [1.0, 2.0, 3.0, 4.0])
+    cables = [(size, grade.cable(size, 5.0)) for size in grade.sizes]
+    both = usable(study.robot, few, grade, cables)
+    each = [
+        usable(
+            study.robot, replace(few, orientations=Orientations(turns[k : k + 1])), grade, cables
+        )
+        for k in range(2)
+    ]
+    for k, one in enumerate(both.sizes):
+        assert one.fraction <= min(found.sizes[k].fraction for found in each)
+    assert any(0.0 < one.fraction < 1.0 for one in both.sizes)

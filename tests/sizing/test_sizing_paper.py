@@ -45,6 +45,17 @@ def test_loop_iterates_of_figures_6_and_7(fast_robot, steel) -> None:
     assert diameter == pytest.approx([24.719, 29.506, 31.321, 32.062, 32.372, 32.503], abs=5e-4)
 
 
+def test_loop_that_runs_away_is_given_up_and_said_to_diverge(fast_robot, steel) -> None:
+    beyond = size_by_loop(fast_robot, Poses.at([250.0, 200.0, -1.0]), steel)
+    assert beyond.has_diverged and not beyond.has_converged
+    assert "diverges" in beyond.outcome
+    turns = [turn.max_tension_N for turn in beyond.iterates]
+    assert turns[-2] < 1e4 * turns[0] < turns[-1] < 1e6 * turns[0]
+    slow = size_by_loop(fast_robot, Poses.at([250.0, 4.85, -40.0]), steel)
+    assert not slow.has_diverged and not slow.has_converged
+    assert slow.outcome == f"not settled after {len(slow.iterates) - 1} turns"
+
+
 @pytest.mark.parametrize(
     "position", [(250, 200, -50), (250, 150, -120), (120, 90, -60), (300, 40, -180), (200, 20, -40)]
 )

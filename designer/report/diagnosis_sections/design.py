@@ -155,14 +155,15 @@ def _design_table(diagnosis: Diagnosis) -> Table | None:
 
 
 def _row(title: str, choice: Choice) -> Row:
+    chosen, optimum = fmt.newtons_alike(choice.max_tension_N, choice.optimum_tension_N)
     return Row(
         (
             title,
             _named(choice),
             fmt.millimetres(choice.diameter_m),
-            fmt.newtons(choice.max_tension_N),
+            chosen,
             fmt.millimetres(choice.optimum_m),
-            fmt.newtons(choice.optimum_tension_N),
+            optimum,
         )
     )
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
 
+_TINY, _TOO_WIDE = 1e-9, 1e12
 _STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": palette.FONT_POINTS,
@@ -81,14 +82,14 @@ def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
 
 def number(value: float) -> str:
     """Return a number as short as it can be, with a true minus sign."""
-    text = f"{value:.6g}" if abs(value) < 1e4 else f"{value:,.0f}"
+    text = f"{value:,.0f}" if 1e4 <= abs(value) < _TOO_WIDE else f"{value:.6g}"
     return text.replace(",", "\N{NARROW NO-BREAK SPACE}").replace("-", "\N{MINUS SIGN}")
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """Return a number to so many significant digits, without an exponent."""
-    if value == 0.0 or not math.isfinite(value):
-        return f"{value:g}"
+    """Return a number to so many significant digits; only a tiny or huge one has an exponent."""
+    if not _TINY <= abs(value) < _TOO_WIDE:
+        return f"{value:.{digits}g}"
     places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
     return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}").replace(
         "-", "\N{MINUS SIGN}"

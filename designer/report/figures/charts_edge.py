@@ -115,21 +115,42 @@ def _zones(axes: Axes, profile: EdgeProfile) -> None:
             textcoords="offset points",
             va="top",
         )
+    for start, stop in _not_held(profile):
+        axes.axvspan(
+            start,
+            stop,
+            linewidth=0,
+            facecolor=palette.WARNING_PALE,
+            edgecolor=palette.WARNING,
+            hatch="//////",
+        )
     end = profile.limit_distance_m
-    failed = ~field.is_solved if end is None else ~field.is_solved & (x > end)
-    hatch: dict[str, Any] = {
-        "facecolor": palette.WARNING_PALE,
-        "edgecolor": palette.WARNING,
-        "hatch": "//////",
-    }
-    axes.fill_between(x, 0, 1, where=failed, **hatch, **band)
     if end is not None and _is_visible(axes, end):
-        axes.axvspan(end, 0.0, linewidth=0, **hatch)
         axes.axvline(end, color=palette.WARNING, linewidth=0.9)
-        distance = canvas.significant(end, 2 if end < 100.0 else 3)
-        text = f"no cable holds within {distance} m of the edge"
         inside = end > 0.02 * axes.get_xlim()[0]
-        _upright(axes, end, text, palette.WARNING, 3.0 if inside else -3.0)
+        _upright(axes, end, _limit_text(profile, end), palette.WARNING, 3.0 if inside else -3.0)
+
+
+def _not_held(profile: EdgeProfile) -> list[tuple[float, float]]:
+    """Return where each stretch of poses that are not held starts and stops on the way out [m]."""
+    x, failed = profile.distance_m, ~profile.field.is_solved
+    turns = np.flatnonzero(np.diff(failed)) + 1
+    between = 0.5 * (x[turns - 1] + x[turns])
+    if profile.limit_distance_m is not None:
+        between[0] = profile.limit_distance_m
+    ends = [
+        *([float(x[0])] if failed[0] else []),
+        *between.tolist(),
+        *([0.0] if failed[-1] else []),
+    ]
+    return list(zip(ends[::2], ends[1::2], strict=True))
+
+
+def _limit_text(profile: EdgeProfile, end: float) -> str:
+    distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m of the edge"
+    if profile.holds_again:
+        return f"not held everywhere within {distance}"
+    return f"{'no cable holds' if profile.is_proved else 'no cable was found'} within {distance}"
 
 
 def _region_end(axes: Axes, profile: EdgeProfile) -> None:

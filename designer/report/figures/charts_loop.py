@@ -43,7 +43,7 @@ def loop_chart(pose: PoseAnalysis) -> str:
             _panel(left, tension, scale * largest_N, unit)
             _panel(right, diameter, float(pose.sizing.diameter_m) * 1e3, "mm")
             if not pose.loop.has_converged:
-                _say_unsettled(left, len(turns) - 1)
+                _say_unsettled(left, pose.loop.outcome)
         else:
             text = "Straight cables cannot hold this pose, so the loop has no start."
             figure.text(0.01, 0.5, text, va="center", color=palette.WARNING)
@@ -106,11 +106,11 @@ def _mark_start(axes: Axes, value: float, unit: str) -> None:
     )
 
 
-def _say_unsettled(axes: Axes, turns: int) -> None:
+def _say_unsettled(axes: Axes, outcome: str) -> None:
     axes.text(
         0.04,
         0.94,
-        f"not settled after {turns} turns",
+        outcome,
         transform=axes.transAxes,
         va="top",
         color=palette.WARNING,

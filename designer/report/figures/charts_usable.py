@@ -35,7 +35,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         low = _LOW if min(shares) > _LOW else 0.0
         axes.set(
             ylim=(low - 0.02 * (100.0 - low), 100.0 + 0.16 * (100.0 - low)),
-            xlim=_range(diameters, shares),
+            xlim=_range(usable),
         )
         axes.plot(diameters, shares, color=palette.SAG, linewidth=1.0, alpha=0.6)
         axes.plot(
@@ -51,12 +51,13 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         return canvas.svg(figure, "usable", "Share of the workspace that each size serves")
 
 
-def _range(diameters: list[float], shares: list[float]) -> tuple[float, float]:
-    """From the last size that serves nothing to a few above the first that serves all."""
-    none = [d for d, s in zip(diameters, shares, strict=True) if s == 0.0]
-    every = [d for d, s in zip(diameters, shares, strict=True) if s == 100.0]
-    low = none[-1] if none and none[-1] < diameters[-1] else diameters[0]
-    high = min(1.5 * every[0], diameters[-1]) if every else diameters[-1]
+def _range(usable: Usable) -> tuple[float, float]:
+    """From the last size before any serves to a few above the one from which on all serve all."""
+    diameters = [1e3 * one.size.diameter_m for one in usable.sizes]
+    serving = [k for k, one in enumerate(usable.sizes) if one.fraction > 0.0]
+    low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
+    whole = usable.first_for_good
+    high = diameters[-1] if whole is None else min(1.5 * diameters[whole], diameters[-1])
     room = max(0.05 * (high - low), 0.02 * high)
     return low - room, high + room
 

@@ -1,4 +1,4 @@
-"""The way from the middle of the region outward, to where no cable is thick enough any more."""
+"""The way from the middle of the region outward, to the first pose that is not held."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, VerdictArray
 from designer.region import PointList, Prism, Rectangle
 from designer.report.figures import grids
 from designer.report.figures.field import Field, field_at
 from designer.study import Study
+from designer.verdict import Verdict
 
 _STEPS = 400
 _BISECTIONS = 40
+_IMPOSSIBLE = (Verdict.OUTSIDE_HULL, Verdict.NO_FINITE_CABLE, Verdict.RANK_DEFICIENT)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,8 +34,8 @@ class EdgeProfile:
     region_distance_m : float or None
         Where the line leaves the region [m]; None for a list of points.
     limit_distance_m : float or None
-        Where the outermost pose that a cable can hold lies [m]; None if the outermost pose of all
-        can be held, or none can.
+        Where the first pose that is not held lies, on the way outward [m]; farther out some may be
+        held again. None where all are held, and where the centre is not.
     """
 
     distance_m: FloatArray
@@ -41,6 +43,21 @@ class EdgeProfile:
     focus_distance_m: float
     region_distance_m: float | None
     limit_distance_m: float | None
+
+    @property
+    def holds_again(self) -> bool:
+        """Whether poses beyond the first that is not held are held."""
+        return bool((self._beyond == Verdict.SOLVED).any())
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether no cable can hold what is not held beyond the limit, instead of none found."""
+        return bool(np.isin(self._beyond, [Verdict.SOLVED, *_IMPOSSIBLE]).all())
+
+    @property
+    def _beyond(self) -> VerdictArray:
+        limit = -np.inf if self.limit_distance_m is None else self.limit_distance_m
+        return self.field.verdict[self.distance_m < limit]
 
 
 def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
@@ -92,11 +109,11 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
 
 
 def _limit(at: Callable[[FloatArray], Field], distance: FloatArray, field: Field) -> float | None:
-    """Bisect between the outermost pose that can be held and the next one."""
-    held = np.flatnonzero(field.is_solved)
-    if len(held) == 0 or held[-1] == len(distance) - 1:
+    """Bisect between the first pose that is not held and the one before it."""
+    failed = np.flatnonzero(~field.is_solved)
+    if len(failed) == 0 or failed[0] == 0:
         return None
-    holds, fails = distance[held[-1]], distance[held[-1] + 1]
+    holds, fails = distance[failed[0] - 1], distance[failed[0]]
     for _ in range(_BISECTIONS):
         middle = 0.5 * (holds + fails)
         if at(np.array([middle])).is_solved[0]:

@@ -1,6 +1,7 @@
 // Keeps the labels at their points and the view parallel, and lets a page with this scene in it
 // scroll until the scene is asked for: without the shield it would swallow every wheel and swipe.
 (function () {
+  const POSE = ["position", "focalPoint", "viewUp"];
   const SHAPE = 1.6; // width over height of the picture that the view was fitted to
   const labels = Array.from(document.querySelectorAll(".label"));
   const shield = document.getElementById("shield");
@@ -17,8 +18,9 @@
 
   function goHome({ window_, renderer }) {
     const camera = renderer.getActiveCamera();
-    if (home === null) home = camera.get("position", "focalPoint", "viewUp");
-    camera.set(home);
+    // Copies: the camera hands out and takes in its own arrays, which turning it writes into.
+    if (home === null) home = POSE.map((name) => [...camera.getReferenceByName(name)]);
+    POSE.forEach((name, k) => camera.set({ [name]: [...home[k]] }));
     camera.setParallelProjection(true);
     const narrow = Math.max(1, (SHAPE * window.innerHeight) / window.innerWidth);
     camera.setParallelScale(Number(button.dataset.halfHeight) * narrow);

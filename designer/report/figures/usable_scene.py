@@ -47,7 +47,7 @@ class Layers:
 
 
 def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
-    """Return a picture of the opened region in layers, each served by a size and all above, as PNG.
+    """Return a picture of the opened region, each part in the colour of its thinnest size, as PNG.
 
     None for a list of points, and where no size serves a part only.
     """
@@ -66,7 +66,7 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
     with canvas.drawing():
         figure, axes = overlay.over(image)
         overlay.box_axes(axes, view, bounds_m(maps))
-        _legend(figure, layers)
+        _legend(figure, layers, usable)
         labels.write_exits(axes, view, exits, np.empty((0, 2)))
         return overlay.png(figure)
 
@@ -84,17 +84,18 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
 
 
 def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
-    """Return a few sizes that serve a part, spread over their shares, and the next that serves all.
+    """Return a few sizes that serve a part, spread over their shares, and one that serves all.
 
-    Empty where no size serves a part only.
+    Thinnest first. Empty where no size serves a part only.
     """
     part = [one for one in usable.sizes if 0.0 < one.fraction < 1.0]
     whole = [one for one in usable.sizes if one.fraction == 1.0][:1]
     if not part:
         return ()
-    wanted = np.linspace(part[0].fraction, part[-1].fraction, min(_MOST - len(whole), len(part)))
+    shares = [one.fraction for one in part]
+    wanted = np.linspace(min(shares), max(shares), min(_MOST - len(whole), len(part)))
     nearest = [min(part, key=lambda one: abs(one.fraction - share)) for share in wanted]
-    return (*sorted(dict.fromkeys(nearest), key=lambda one: one.size.diameter_m), *whole)
+    return tuple(one for one in usable.sizes if one in nearest or one in whole)
 
 
 def _utilisation(maps: WorkspaceMaps, one: UsableSize, position_m: FloatArray) -> FloatArray:
@@ -137,21 +138,21 @@ def colours(layers: Layers) -> list[tuple[float, ...]]:
     return [tuple(table(share)[:3]) for share in np.linspace(0.1, 0.95, len(layers.sizes))]
 
 
-def _legend(figure: Figure, layers: Layers) -> None:
+def _legend(figure: Figure, layers: Layers, usable: Usable) -> None:
     from matplotlib.patches import Patch
 
     entries = [
         Patch(facecolor=colour, label=f"{one.size.id}, {_share(one.fraction)}")
         for one, colour in zip(layers.sizes, colours(layers), strict=True)
     ]
-    if layers.sizes[-1].fraction < 1.0:
+    if all(one.fraction < 1.0 for one in layers.sizes):
         entries.append(Patch(facecolor=palette.WARNING_PALE, label="none of these"))
     figure.legend(
         handles=entries[::-1],
         loc="center right",
         frameon=False,
         handlelength=1.0,
-        title="served from\nthis size on",
+        title="served from\nthis size on" if usable.is_nested else "thinnest size\nthat serves",
         title_fontsize=palette.FONT_POINTS - 0.5,
         fontsize=palette.FONT_POINTS - 1.0,
     )

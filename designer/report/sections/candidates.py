@@ -186,20 +186,20 @@ _MEANINGS: dict[Standing, str] = {
 def _columns(
     selection: SelectionResult, shown: Sequence[Candidate], *, full: bool = True
 ) -> list[tuple[Column, _Cell]]:
-    force = fmt.decimals(c.cable.allowable_tension_N / 1e3 for c in shown)
     smallest_N = min((c.verification.max_tension_N for c in shown), default=0.0)
     unit, newtons = ("kN", 1e3) if smallest_N >= 1e3 else ("N", 1.0)
     tension = fmt.decimals([smallest_N / newtons], 4)
+    force = fmt.decimals(c.cable.allowable_tension_N / newtons for c in shown)
     mass = fmt.decimals(c.total_mass_kg for c in shown)
     strength: list[tuple[Column, _Cell]] = [
         (
-            Column("Breaking load", "kN"),
-            lambda c: fmt.fixed(c.size.minimum_breaking_load_N / 1e3, force),
+            Column("Breaking load", unit),
+            lambda c: fmt.fixed(c.size.minimum_breaking_load_N / newtons, force),
         ),
         (Column("Efficiency"), lambda c: fmt.trimmed(c.efficiency, 3)),
         (
-            Column("Allowable", "kN"),
-            lambda c: fmt.fixed(c.cable.allowable_tension_N / 1e3, force),
+            Column("Allowable", unit),
+            lambda c: fmt.fixed(c.cable.allowable_tension_N / newtons, force),
         ),
     ]
     own: dict[Objective, tuple[Column, _Cell]] = {

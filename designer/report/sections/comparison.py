@@ -66,7 +66,7 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
         ("Self-supporting length", (_self_supporting(f) for f in families)),
         ("Diameter", (fmt.millimetres(d) for d in diameters)),
         ("Mass per length", (fmt.kilograms_per_metre(c.linear_density_kg_per_m) for c in cables)),
-        ("Largest tension", (fmt.newtons(t) for t in tensions)),
+        ("Largest tension", fmt.newtons_alike(*tensions)),
     )
     columns = (
         Column("Figure", is_number=False),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from designer.analysis import Analysis
 from designer.catalogue.grade import TRUST_MEANING, Grade, Size
@@ -12,6 +12,11 @@ from designer.report.findings import Findings
 from designer.report.material_class import class_of
 from designer.report.parts import Statement
 from designer.report.sections.hanging import hanging_statements
+from designer.report.sections.scope import (
+    orientation_statement,
+    pose_statement,
+    strength_statement,
+)
 from designer.selection.result import Candidate
 
 _NEAR_BOUNDARY = 0.9
@@ -20,11 +25,20 @@ _NEAR_BOUNDARY = 0.9
 def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     """Return what a reviewer should know before relying on the answer."""
     chosen = analysis.selection.chosen if analysis.selection else None
-    statements = [*_margin(analysis, findings), *_sampling(analysis), *_hanging(analysis, findings)]
-    statements += hanging_statements(analysis)
-    if chosen is not None:
-        statements += [_trust(chosen), _modulus(chosen, findings)]
     ropes = [*_ropes(analysis)]
+    statements = [
+        *pose_statement(analysis),
+        *_margin(analysis, findings),
+        *_sampling(analysis),
+        *orientation_statement(analysis.study),
+        *_hanging(analysis, findings),
+        *hanging_statements(analysis),
+        *strength_statement(analysis.study.selection, ropes),
+    ]
+    if analysis.has_groups:
+        statements += _trust_of_groups(ropes)
+    elif chosen is not None:
+        statements += [_trust(chosen.grade), _modulus(chosen, findings)]
     for grade in {grade.id: grade for grade, _ in ropes}.values():
         statements += _limits(grade)
     for grade, size in ropes:
@@ -33,16 +47,18 @@ def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
 
 
 def _ropes(analysis: Analysis) -> Iterator[tuple[Grade, Size]]:
-    """Yield the chosen rope and those of groups of cables, each grade and size once."""
+    """Yield the ropes of the groups, else the chosen one, each grade and size once."""
     chosen = analysis.selection.chosen if analysis.selection else None
     found = analysis.groups.chosen if analysis.groups else None
-    ropes = [] if chosen is None else [(chosen.grade, chosen.size)]
-    ropes += [] if found is None else [(one.grade, one.size) for one in found.products]
+    if found is not None:
+        ropes = [(one.grade, one.size) for one in found.products]
+    else:
+        ropes = [] if chosen is None else [(chosen.grade, chosen.size)]
     yield from {(grade.id, size.id): (grade, size) for grade, size in ropes}.values()
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
-    rope = findings.chosen_limit_ratio
+    rope = None if analysis.has_groups else findings.chosen_limit_ratio
     workspace, pose = analysis.workspace, analysis.pose
     place, whose = "worst", "the configured family"
     if rope is not None:
@@ -74,10 +90,12 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
         return
     best = f"the worst of {fmt.count(workspace.census.samples)} samples"
+    sampled, searched = fmt.newtons_alike(
+        workspace.sampled.max_tension_N, workspace.sagging.max_tension_N
+    )
     text = (
-        f"In the configured family {best} meets {fmt.newtons(workspace.sampled.max_tension_N)}. "
-        f"A search between them found {fmt.newtons(workspace.sagging.max_tension_N)}. Searched "
-        "values count, here and for the ropes."
+        f"In the configured family {best} meets {sampled}. A search between them found {searched}. "
+        "Searched values count, here and for the ropes."
     )
     yield Statement("Sampled and searched maximum", text)
 
@@ -88,6 +106,8 @@ def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         return
     has_choice = analysis.selection is not None and analysis.selection.chosen is not None
     whose = "the chosen rope" if has_choice else "the configured family"
+    if analysis.has_groups:
+        whose = "the ropes of the groups"
     text = f"With {whose} a cable hangs below the platform in {fmt.percent(share)} of the samples. "
     if workspace.hangs_below == "include":
         yield Statement("Cables below the platform", f"{text}These poses count.")
@@ -96,10 +116,22 @@ def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield Statement("Poses left out", text, "doubt")
 
 
-def _trust(chosen: Candidate) -> Statement:
-    letter = chosen.grade.trust
+def _trust(grade: Grade, title: str = "Figures of the rope") -> Statement:
+    letter = grade.trust
     text = f"Trust {letter}: {TRUST_MEANING[letter]}. Ask the maker for a certificate."
-    return Statement("Figures of the rope", text, "" if letter == "A" else "doubt")
+    return Statement(title, text, "" if letter == "A" else "doubt")
+
+
+def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]:
+    grades = {grade.id: grade for grade, _ in ropes}
+    for grade in grades.values():
+        yield _trust(grade, f"Figures of {grade.id}")
+    known = [
+        f"{grade.id}: {grade.elasticity.basis}, known to ±\u00a0"
+        f"{fmt.trimmed(100 * grade.elasticity.uncertainty)}\u00a0%"
+        for grade in grades.values()
+    ]
+    yield Statement("Modulus", f"{'; '.join(known)}.")
 
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:

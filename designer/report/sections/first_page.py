@@ -13,12 +13,16 @@ from designer.report.findings import Findings
 from designer.report.material_class import class_of
 from designer.report.parts import Fact, Picture, Statement
 from designer.report.sections.confidence import confidence
-from designer.report.sections.groups import groups_statement
+from designer.report.sections.groups import groups_hold, groups_statement
 from designer.report.sections.negative import actions, objections, reasons
 from designer.report.sections.sag_cost import SagCost, sag_cost
 from designer.report.sections.selection import product_name
+from designer.selection.groups_result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
+from designer.study import CableGroup
+
+_MOST_SIZES = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +68,6 @@ class FirstPage:
         What ignoring sag would have cost; None where there is nothing to compare.
     groups : Statement or None
         What ropes for groups of cables save; None if the study has no groups.
-    group_ropes : tuple of Fact
-        The rope of each group; empty if none was found, or all get the chosen one.
     confidence : tuple of Statement
         How sure the answer is.
     picture : Picture or None
@@ -78,7 +80,6 @@ class FirstPage:
     actions: tuple[str, ...]
     sag: SagCost | None
     groups: Statement | None
-    group_ropes: tuple[Fact, ...]
     confidence: tuple[Statement, ...]
     picture: Picture | None
 
@@ -92,7 +93,6 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
         actions=actions(analysis, findings),
         sag=sag_cost(analysis, findings),
         groups=groups_statement(analysis.groups) if analysis.groups else None,
-        group_ropes=tuple(_group_ropes(analysis)),
         confidence=confidence(analysis, findings),
         picture=picture,
     )
@@ -100,14 +100,17 @@ def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) 
 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
+    found = analysis.groups if analysis.has_groups else None
     against = [*_open_points(analysis), *objections(analysis)]
     if analysis.has_cable:
         text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
-    elif chosen is not None:
+    elif found is not None:
+        text = groups_hold(found)
+    elif chosen is not None and analysis.has_products:
         text = _holds(chosen)
     else:
         return Statement("No", _negative(analysis), "bad")
-    text += _of_metal(analysis.selection, chosen)
+    text += "" if found is not None else _of_metal(analysis.selection, chosen)
     if against:
         return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
     return Statement("Yes", text, "good")
@@ -137,6 +140,8 @@ def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> st
 
 def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
     workspace, pose = analysis.workspace, analysis.pose
+    if analysis.groups is not None:
+        return groups_hold(analysis.groups)
     if chosen is not None:
         return f"{_holds(chosen)} {_load(chosen)}"
     if workspace is not None and workspace.sagging is not None:
@@ -192,6 +197,8 @@ def _negative(analysis: Analysis) -> str:
                 "family nor a rope of the allowed grades holds every pose."
             )
         return "The workspace cannot be served: no cable of the configured family is enough."
+    if analysis.groups is not None:
+        return "No ropes that the study allows were found that hold every pose of the workspace."
     if selection is not None:
         need = ""
         if workspace is not None and workspace.sagging is not None:
@@ -204,6 +211,8 @@ def _negative(analysis: Analysis) -> str:
 
 def _card(analysis: Analysis) -> Card | None:
     chosen = analysis.selection.chosen if analysis.selection else None
+    if analysis.groups is not None and analysis.groups.chosen is not None:
+        return _groups_card(analysis, analysis.groups, analysis.groups.chosen)
     if chosen is not None:
         return _rope_card(analysis, chosen)
     workspace, pose = analysis.workspace, analysis.pose
@@ -243,6 +252,9 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     size, found = chosen.size, chosen.verification
     required = fmt.trimmed(analysis.study.selection.safety_factor)
     actual = chosen.efficiency * size.minimum_breaking_load_N / found.max_tension_N
+    breaking, allowable, largest = fmt.newtons_alike(
+        size.minimum_breaking_load_N, chosen.cable.allowable_tension_N, found.max_tension_N
+    )
     return Card(
         heading="Chosen rope",
         size=size.id,
@@ -250,9 +262,9 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
         product=product_name(chosen.grade),
         facts=(
             Fact("Grade", chosen.grade.id),
-            Fact("Minimum breaking load", fmt.newtons(size.minimum_breaking_load_N)),
-            Fact("Allowable tension", *_allowable(chosen, required)),
-            Fact("Largest tension", fmt.newtons(found.max_tension_N)),
+            Fact("Minimum breaking load", breaking),
+            Fact("Allowable tension", allowable, _from_breaking(chosen.efficiency, required)),
+            Fact("Largest tension", largest),
             Fact("At the position", fmt.position(found.worst_position_m)),
             Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
             Fact("Utilisation", fmt.utilisation(found.utilisation)),
@@ -272,16 +284,38 @@ def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:
     return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
 
 
-def _group_ropes(analysis: Analysis) -> Iterator[Fact]:
-    choice = analysis.groups
-    if choice is None or choice.chosen is None or len({*choice.chosen.products}) == 1:
-        return
-    for group, product in zip(choice.groups, choice.chosen.products, strict=True):
-        yield Fact(group.name, product.label)
+def _groups_card(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Card:
+    assert analysis.study.selection is not None
+    required = fmt.trimmed(analysis.study.selection.safety_factor)
+    sizes = [*dict.fromkeys(product.size.id for product in chosen.products)]
+    distinct = fmt.plural(len({*chosen.products}), "product")
+    groups = zip(choice.groups, chosen.products, chosen.verification.utilisation, strict=True)
+    return Card(
+        heading="Ropes for groups of cables",
+        size=fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
+        metric="",
+        product=f"{distinct} for {fmt.plural(len(choice.groups), 'group')}",
+        facts=(
+            *(
+                Fact(group.name, product.label, _of_group(group, chosen, float(used)))
+                for group, product, used in groups
+            ),
+            Fact("Safety factor required", required, "on the breaking load"),
+            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+        ),
+    )
 
 
-def _allowable(chosen: Candidate, required: str) -> tuple[str, str]:
-    """Return the allowable tension, and how it follows from the breaking load."""
-    share = "" if chosen.efficiency == 1.0 else f" times {fmt.trimmed(chosen.efficiency, 3)}"
-    allowable = fmt.newtons(chosen.cable.allowable_tension_N)
-    return allowable, f"breaking load{share} over {required}"
+def _of_group(group: CableGroup, chosen: Assigned, used: float) -> str:
+    """Return which cables a group has, how much of what is allowed it uses, and its lengths."""
+    noun = "cable" if len(group.cables) == 1 else "cables"
+    longest = chosen.verification.longest_m[[cable - 1 for cable in group.cables]]
+    cables = fmt.listing(str(cable) for cable in group.cables)
+    at_most = _lengths(longest, math.ceil)
+    return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"
+
+
+def _from_breaking(efficiency: float, required: str) -> str:
+    """Return how the allowable tension follows from the breaking load."""
+    share = ", no loss," if efficiency == 1.0 else f" times {fmt.trimmed(efficiency, 3)}"
+    return f"breaking load{share} over {required}"

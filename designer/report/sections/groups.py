@@ -76,6 +76,25 @@ def groups_statement(choice: GroupChoice) -> Statement:
     return Statement("Products were found for the groups", text, "good")
 
 
+def groups_hold(choice: GroupChoice) -> str:
+    """Return which products hold together, and how much they are used; empty if none do."""
+    if choice.chosen is None:
+        return ""
+    found = choice.chosen
+    each = [
+        f"{product.label} for {group.name}"
+        for group, product in zip(choice.groups, found.products, strict=True)
+    ]
+    if len({*found.products}) == 1:
+        each = [f"Ropes of {found.products[0].label} for all groups"]
+    most = float(found.verification.utilisation.max())
+    tight = " There is hardly any reserve beyond it." if most > 0.97 else ""
+    return (
+        f"{fmt.listing(each)} hold every pose of the workspace together. The most used of them "
+        f"reaches {fmt.utilisation(most)} of what the safety factor allows.{tight}"
+    )
+
+
 def _facts(choice: GroupChoice) -> tuple[Fact, ...]:
     limit = fmt.plural(choice.most_distinct, "product")
     facts = [Fact("Different products", f"at most {limit}")]

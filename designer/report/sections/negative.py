@@ -9,6 +9,7 @@ from designer.report import format as fmt
 from designer.report.findings import Findings, Unserved
 from designer.report.parts import Statement
 from designer.report.sections.clearance import clearance_statement
+from designer.report.sections.groups import groups_statement
 from designer.report.sections.stiffness import stiffness_statement
 from designer.verdict import Verdict
 from designer.workspace.result import WorkspaceMap
@@ -103,7 +104,11 @@ def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
 
 def _selection_reason(analysis: Analysis) -> Iterator[Statement]:
     selection = analysis.selection
-    if selection is None or selection.chosen is not None or not selection.reason:
+    if selection is None or analysis.has_products:
+        return
+    if analysis.groups is not None:
+        yield groups_statement(analysis.groups)
+    if not selection.reason:
         return
     text = f"{selection.reason[0].upper()}{selection.reason[1:]}."
     yield Statement("The ropes", text, "bad")
@@ -129,7 +134,7 @@ def actions(analysis: Analysis, findings: Findings) -> tuple[str, ...]:
 
 def _other_grades(analysis: Analysis) -> Iterator[str]:
     selection = analysis.selection
-    if selection is None or selection.chosen is not None:
+    if selection is None or analysis.has_products:
         return
     fitting = [o.best for o in selection.alternatives if o.best is not None]
     if not fitting:

@@ -9,6 +9,7 @@ import numpy as np
 from designer.analysis import Analysis, PoseAnalysis
 from designer.report import format as fmt
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.sections.scope import pose_statement
 from designer.sizing.loop import LoopSizing
 from designer.verdict import Verdict
 
@@ -24,6 +25,8 @@ class PoseSection:
     ----------
     verdict : Statement
         Whether it can be held.
+    outside : Statement or None
+        Where it is none of the workspace; None if it is one of it.
     facts : tuple of Fact
         Position, margins and residuals.
     methods : Table or None
@@ -37,6 +40,7 @@ class PoseSection:
     """
 
     verdict: Statement
+    outside: Statement | None
     facts: tuple[Fact, ...]
     methods: Table | None
     cables: Table | None
@@ -56,6 +60,7 @@ def pose_section(
     solved = verdict is Verdict.SOLVED
     return PoseSection(
         verdict=_statement(pose, verdict),
+        outside=next(pose_statement(analysis), None),
         facts=_facts(pose),
         methods=_methods(pose),
         cables=_cables(pose) if solved else None,
@@ -123,10 +128,10 @@ def _methods(pose: PoseAnalysis) -> Table | None:
         )
     if loop.iterates:
         last = loop.iterates[-1]
-        turns = fmt.plural(len(loop.iterates) - 1, "turn")
-        outcome = f"settled after {turns}" if loop.has_converged else f"not settled after {turns}"
         found = (fmt.millimetres(last.diameter_m), fmt.newtons(last.max_tension_N))
-        rows.append(Row(("Loop of section IV-B", *found, outcome)))
+        if loop.has_diverged:
+            found = (fmt.MISSING, fmt.MISSING)
+        rows.append(Row(("Loop of section IV-B", *found, loop.outcome)))
     if sizing.statics.is_solved:
         found = (
             fmt.millimetres(float(sizing.diameter_m)),
@@ -191,10 +196,10 @@ def turns_table(loop: LoopSizing) -> Table:
     numbered = list(enumerate(loop.iterates))
     if len(numbered) > _MOST_TURNS:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
-    last = loop.iterates[-1]
-    unit, scale = _force_unit(last.max_tension_N)
-    force_places = fmt.decimals([last.max_tension_N / scale], 5)
-    places = fmt.decimals([1e3 * last.diameter_m], 4)
+    typical = loop.iterates[0 if loop.has_diverged else -1]
+    unit, scale = _force_unit(typical.max_tension_N)
+    force_places = fmt.decimals([typical.max_tension_N / scale], 5)
+    places = fmt.decimals([1e3 * typical.diameter_m], 4)
     rows: list[Row] = []
     for turn, iterate in numbered:
         if rows and turn > int(rows[-1].cells[0]) + 1:
@@ -202,4 +207,7 @@ def turns_table(loop: LoopSizing) -> Table:
         tension = fmt.fixed(iterate.max_tension_N / scale, force_places)
         rows.append(Row((str(turn), tension, fmt.fixed(1e3 * iterate.diameter_m, places))))
     columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
-    return Table.of("Turns of the loop; turn 0 is the massless start.", columns, *rows)
+    caption = "Turns of the loop; turn 0 is the massless start."
+    if loop.has_diverged:
+        caption += " It diverges: each turn asks for more than the one before, without end."
+    return Table.of(caption, columns, *rows)

@@ -52,8 +52,7 @@ def sag_cost(analysis: Analysis, findings: Findings) -> SagCost | None:
         Row(
             (
                 "Tension",
-                fmt.newtons(massless_tension_N),
-                fmt.newtons(tension_N),
+                *fmt.newtons_alike(massless_tension_N, tension_N),
                 fmt.factor(tension_N / massless_tension_N),
             )
         ),

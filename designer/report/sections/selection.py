@@ -23,7 +23,7 @@ from designer.report.sections.candidates import (
 from designer.report.sections.comparison import Comparison, compare
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import SelectionResult
-from designer.selection.usable import Usable, UsableSize
+from designer.selection.usable import UsableSize
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,14 +227,16 @@ def _usable(selection: SelectionResult, pictures: Pictures) -> UsablePart | None
     ]
     if has_volume:
         columns.append(Column("Volume", "m³"))
-    shown = next(
-        (k for k, one in enumerate(usable.sizes, start=1) if _serves_on(one, usable)), None
-    )
-    thicker = " All thicker ones serve all of it." if shown not in (None, len(usable.sizes)) else ""
+    first = usable.first_for_good
+    shown = len(usable.sizes) if first is None else first + 1
     caption = (
         f"How much of the workspace each size of {usable.grade.id} serves with its own figures, "
-        f"by the samples.{thicker}"
+        "by the samples."
     )
+    if not usable.is_nested:
+        caption += " The sizes are not nested: some serve less than a thinner one."
+    if shown < len(usable.sizes):
+        caption += " All thicker ones serve all of it."
     return UsablePart(
         table=Table.of(caption, tuple(columns), *map(_usable_row, usable.sizes[:shown])),
         chart=pictures.usable_chart,
@@ -242,18 +244,17 @@ def _usable(selection: SelectionResult, pictures: Pictures) -> UsablePart | None
     )
 
 
-def _serves_on(one: UsableSize, usable: Usable) -> bool:
-    """Tell whether a size and all thicker ones serve everything."""
-    thicker = usable.sizes[usable.sizes.index(one) :]
-    return all(size.fraction == 1.0 for size in thicker)
-
-
 def _usable_row(one: UsableSize) -> Row:
-    some = 0.0 < one.fraction < 1.0
-    share = fmt.percent(one.fraction)
-    if some and round(one.fraction, 3) == 1.0:
-        share = f"over\u00a0{fmt.percent(0.999)}"
-    cells = [one.size.id, fmt.fixed(1e3 * one.size.diameter_m, 1), share]
+    cells = [one.size.id, fmt.fixed(1e3 * one.size.diameter_m, 1), _part(one.fraction)]
     if one.volume_m3 is not None:
         cells.append(fmt.number(one.volume_m3))
-    return Row(tuple(cells), "" if one.fraction > 0.0 else "muted")
+    note = ""
+    if one.lost_fraction > 0.0:
+        note = f"Does not serve {_part(one.lost_fraction)} of it that a thinner size serves."
+    return Row(tuple(cells), "" if one.fraction > 0.0 else "muted", note)
+
+
+def _part(fraction: float) -> str:
+    """Return a share; never ``100 %`` for what is not all."""
+    nearly_all = fraction < 1.0 and round(fraction, 3) == 1.0
+    return f"over\u00a0{fmt.percent(0.999)}" if nearly_all else fmt.percent(fraction)

@@ -13,13 +13,11 @@ from designer.report import format as fmt
 from designer.report.findings import Findings, OtherPolicy
 from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
 from designer.report.pictures import Pictures
+from designer.report.sections.scope import orientation_fact
 from designer.robot import Robot
-from designer.space import Orientations
-from designer.study import HangsBelow, Workspace
+from designer.study import HangsBelow, Study, Workspace
 from designer.verdict import Verdict
 from designer.workspace.result import Census, Extreme, WorkspaceMap
-
-_MOST_LISTED = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +63,7 @@ def workspace_section(
         return None
     return WorkspaceSection(
         verdict=_statement(found),
-        facts=_facts(study.workspace, found),
+        facts=_facts(study, found),
         extremes=_extremes(study.workspace.region, found),
         census=_census(found.census),
         hanging=_hanging(
@@ -113,13 +111,11 @@ def _statement(found: WorkspaceMap) -> Statement:
     return Statement("The workspace is not served", text, "bad")
 
 
-def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
+def _facts(study: Study, found: WorkspaceMap) -> tuple[Fact, ...]:
+    workspace = study.workspace
+    assert workspace is not None
     region = workspace.region
-    facts = [Fact("Region", describe_region(region))]
-    orientations = workspace.orientations
-    if not orientations.is_level:
-        words = describe_orientations(orientations)
-        facts.append(Fact("Orientation", words, _how_tried(orientations)))
+    facts = [Fact("Region", describe_region(region)), *orientation_fact(study)]
     if not isinstance(region, PointList):
         facts.extend(_size(region))
         spread = workspace.sampling.replace("_", " ")
@@ -136,13 +132,6 @@ def _facts(workspace: Workspace, found: WorkspaceMap) -> tuple[Fact, ...]:
     return tuple(facts)
 
 
-def _how_tried(orientations: Orientations) -> str:
-    if orientations.range_rad is None:
-        return "rotation vectors; a position counts in its worst orientation"
-    tried = f"{orientations.count} tried at each position, the worst searched between them"
-    return f"rotation vectors; {tried}"
-
-
 def _size(region: Prism | Rectangle) -> tuple[Fact, ...]:
     if isinstance(region, Rectangle):
         return (Fact("Area", fmt.square_metres(float(np.prod(region.size_m)))),)
@@ -150,17 +139,6 @@ def _size(region: Prism | Rectangle) -> tuple[Fact, ...]:
         Fact("Base area", fmt.square_metres(region.area_m2)),
         Fact("Volume", fmt.cubic_metres(region.volume_m3)),
     )
-
-
-def describe_orientations(orientations: Orientations) -> str:
-    """Return in words how the platform is turned at every position."""
-    turns = np.degrees(orientations.turns_rad)
-    if orientations.range_rad is None:
-        listed = "; ".join(fmt.degrees(turn) for turn in turns[:_MOST_LISTED])
-        more = f"; {len(turns) - _MOST_LISTED} more" if len(turns) > _MOST_LISTED else ""
-        return f"turned by {listed}{more}" if len(turns) == 1 else f"each of {listed}{more}"
-    low, high = np.degrees(orientations.range_rad)
-    return f"all between {fmt.degrees(low)} and {fmt.degrees(high)}"
 
 
 def _extremes(region: Region, found: WorkspaceMap) -> Table:
