@@ -69,6 +69,7 @@ def _material(name: str | None, catalogue: Catalogue) -> str | None:
 
 
 def _diameter_m(text: str | None) -> float | None:
+    from designer.config.bounds import BOUNDS
     from designer.units import LENGTH, QuantityError, read_quantity
 
     if text is None:
@@ -77,8 +78,12 @@ def _diameter_m(text: str | None) -> float | None:
         diameter_m = read_quantity(text, LENGTH)
     except QuantityError as error:
         raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
-    if diameter_m <= 0.0:
-        raise InputError([Fault("--diameter", None, "", f"{text!r} is no diameter", "more than 0")])
+    bound = BOUNDS["rope diameter"]
+    if not bound.least <= diameter_m <= bound.most:
+        problem = f"{text!r} is {diameter_m:g} m, which no rope has"
+        is_bare = text.strip().replace(".", "", 1).isdigit()
+        expected = f"'{text.strip()}mm'" if is_bare else "a diameter such as '12mm'"
+        raise InputError([Fault("--diameter", None, "", problem, expected)])
     return diameter_m
 
 

@@ -11,6 +11,7 @@ from designer.cable import Material
 from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
+from designer.machine import TEMPERATE, Surroundings
 from designer.region import Region
 from designer.robot import Poses, Robot
 from designer.space import Orientations, Space
@@ -94,6 +95,14 @@ class Selection:
     sheave_diameter_m: float | None = None
     groups: tuple[CableGroup, ...] = ()
     max_distinct_products: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GradeFamily:
+    """The grade whose continuous family the optimum is computed in, and the safety factor in it."""
+
+    grade: str
+    safety_factor: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +198,8 @@ class Measurements:
         Standard deviation of a measured length [m]; None where not given.
     tension_noise_N : float or None
         Standard deviation of a measured tension [N]; None where not given.
+    diameter_m : float or None
+        Diameter of the cable, which only effects of plugins may ask for [m].
     """
 
     file: Path
@@ -199,6 +210,7 @@ class Measurements:
     unknown: tuple[str, ...] = ()
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
+    diameter_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +236,8 @@ class DeclaredEffect:
 class Study:
     """A robot, its load, where it works, and how its cable is to be chosen.
 
-    ``known_effects`` are those that ``effects`` may declare and a diagnosis may find.
+    ``known_effects`` are those that ``effects`` may declare and a diagnosis may find; ``family``
+    is the grade that ``material`` stands for, None where the study gives its figures.
     """
 
     name: str
@@ -238,6 +251,8 @@ class Study:
     measurements: Measurements | None = None
     effects: tuple[DeclaredEffect, ...] = ()
     known_effects: KnownEffects = SHIPPED
+    surroundings: Surroundings = TEMPERATE
+    family: GradeFamily | None = None
 
 
 def require_enough_cables(study: Study) -> None:
