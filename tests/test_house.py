@@ -8,9 +8,10 @@ from pathlib import Path
 import designer
 
 ROOMS = [
-    "__init__", "formats", "errors", "arrays", "nearest", "units", "resources", "effect_names",
-    "progress", "verdict", "output", "process", "physics", "cable", "robot", "region", "space",
-    "machine", "measured_data", "kernel", "statics", "sizing", "plugins", "effects", "study", "declared",
+    "__init__", "errors", "arrays", "nearest", "units", "resources", "effect_names", "progress",
+    "verdict", "output", "process", "physics", "cable", "robot", "region", "space", "machine",
+    "measured_data", "kernel", "statics", "sizing", "plugins", "effects", "study", "declared",
+    "formats",
     "measured", "config", "catalogue", "workspace", "interference", "selection", "diagnosis",
     "qualities", "analysis", "selection_json", "groups_json", "result_json", "diagnosis_files",
     "report", "terminal", "cli_options", "cli_catalog", "cli", "__main__",

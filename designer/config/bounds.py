@@ -90,3 +90,21 @@ BOUNDS: Mapping[str, Bound] = {
     "time": Bound(TIME, -1e10, 1e10, "three centuries"),
 }
 """By the name of what is bounded."""
+
+_PARAMETERS: Mapping[str, tuple[float, str]] = {
+    "m": (1e4, "no cable is longer than some kilometres"),
+    "rad": (2.0 * math.pi, "a turn is 2 pi"),
+    "kg": (1e8, "from a grain to a ship"),
+    "N": (1e9, "the strongest cable of a bridge bears less"),
+    "Pa": (1.5e12, "diamond has 1.2e12"),
+    "s": (1e10, "three centuries"),
+    "1/K": (1e-2, "the softest plastics have 2e-4 /K"),
+    "N*m^2": (1e12, "a beam 3 m thick"),
+    "": (1e6, "as good as without end"),
+}
+
+
+def parameter_bound(dimension: Dimension) -> Bound:
+    """Return how far a parameter of an effect may lie from zero, by its unit."""
+    most, reason = _PARAMETERS.get(dimension.unit, (1e12, "as good as without end"))
+    return Bound(dimension, -most, most, reason)
