@@ -146,16 +146,24 @@ def catalog_new_plugin(
             parser=path_of, metavar="PATH", help="New folder to write, NAME if left out."
         ),
     ] = None,
+    effect: Annotated[
+        bool, typer.Option("--effect", help="One that brings a physical effect, not grades.")
+    ] = False,
 ) -> None:
-    """Write a plugin project with one commented grade file, ready to install.
+    """Write a plugin project with one commented grade file or effect, ready to install.
 
     Example:  designer catalog new-plugin acme-ropes
     """
     from designer.plugins.new_plugin import module_name, write_plugin
 
     folder = path or Path(name)
-    write_plugin(name, folder)
+    write_plugin(name, folder, effect=effect)
+    own = folder / module_name(name)
     typer.echo(f"{folder} written. Next:")
     typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
-    typer.echo("  designer catalog list")
-    typer.echo(f"then put your own figures into {folder / module_name(name) / 'grades'}")
+    if effect:
+        typer.echo(f"  pip install pytest && pytest {shlex.quote(str(folder))}")
+        typer.echo(f"then write your own law in {own / 'effect.py'}")
+    else:
+        typer.echo("  designer catalog list")
+        typer.echo(f"then put your own figures into {own / 'grades'}")

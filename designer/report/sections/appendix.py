@@ -141,7 +141,7 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
         losses=_losses(selection),
         effects=", ".join(dict.fromkeys(effect.id for effect in study.effects)),
         section=_section(analysis.section_m),
-        surroundings=f"{fmt.number(study.surroundings.temperature_C, 3)}\u00a0°C",
+        surroundings=f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C",
         platform=_platform(robot),
         loads=_loads(robot),
     )
