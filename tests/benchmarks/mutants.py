@@ -21,6 +21,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import FrameType
 
@@ -29,7 +30,7 @@ from designer.catalogue.family import families
 from designer.catalogue.files import read_grade
 from designer.catalogue.registry import Catalogue, load_catalogue
 from designer.config import read_study
-from designer.errors import DesignerError, InputError
+from designer.errors import DesignerError
 from designer.plugins.find import find_plugins
 from designer.progress import Silent
 from designer.resources import data_folder, example_file, example_names
@@ -38,9 +39,7 @@ from designer.result_json import text_of as json_text
 from designer.study import Study
 
 SLOWEST_S = 20
-"""For reading; an analysis may take four times as long, since it may compile."""
-SLOW_S = 2.0
-"""Processor time from which the slowest to read is shown."""
+"""Processor time for reading; an analysis may take four times as long."""
 NUMBERS = (
     *(
         "0",
@@ -161,65 +160,70 @@ def solve(study: Study, catalogue: Catalogue, folder: Path) -> None:
 
 def main(configs: int = 2000, grades: int = 2000, analyses: int = 40, seed: int = 0) -> int:
     """Try so many mutants; return how many did what none should."""
-    chance, tally = random.Random(seed), Counter[str]()
+    chance = random.Random(seed)
     plugins = find_plugins(with_plugins=False)
     full = load_catalogue(plugins=plugins)
     catalogue = replace(full, grades=tuple(g for g in full.grades if "7x19" in g.id)[:2])
-    texts = [example_file(name).read_text(encoding="utf-8") for name in example_names()]
-    tables = [p.read_text(encoding="utf-8") for p in sorted(data_folder("catalog").glob("*.yaml"))]
-    slowest, slow_text = 0.0, ""
-    if analyses:  # what is compiled now is not cut off later
-        with tempfile.TemporaryDirectory() as name:
-            for example in example_names():
-                solve(read_study(example_file(example)), catalogue, Path(name))
+    material_of = families(plugins)
+    studies = [example_file(name) for name in example_names()]
     with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "mutant.yaml"
-        for kind, count, sources in (("config", configs, texts), ("grade", grades, tables)):
-            for _ in range(count):
-                text = spoilt(chance.choice(sources), chance)
-                path.write_text(text, encoding="utf-8", errors="surrogatepass")
-                began = time.process_time()
-                try:
-                    with no_longer_than(SLOWEST_S):
-                        read = (
-                            read_grade(path)
-                            if kind == "grade"
-                            else read_study(path, material_of=families(plugins))
-                        )
-                    outcome = "read"
-                except InputError:
-                    outcome, read = "refused", None
-                except BaseException as error:  # whatever it is, it should not have been
-                    if isinstance(error, KeyboardInterrupt):
-                        raise
-                    outcome, read = "FAILED", None
-                    _tell(path, text, error)
-                took_s = time.process_time() - began
-                if took_s > slowest:
-                    slowest, slow_text = took_s, text
-                tally[f"{kind} {outcome}"] += 1
-                if isinstance(read, Study) and tally["analysed"] < analyses:
-                    tally["analysed"] += 1
-                    try:
-                        with no_longer_than(4 * SLOWEST_S):
-                            solve(read, catalogue, Path(name))
-                    except DesignerError:
-                        tally["analysis refused"] += 1
-                    except BaseException as error:
-                        if isinstance(error, KeyboardInterrupt):
-                            raise
-                        tally["analysis FAILED"] += 1
-                        _tell(path, text, error)
-    for what, count in sorted(tally.items()):
+        trial = Trial(Path(name))
+        for study in studies[: 8 * bool(analyses)]:  # what is compiled now is not cut off later
+            solve(read_study(study), catalogue, trial.folder)
+        for _ in range(configs):
+            text = spoilt(_text(chance.choice(studies)), chance)
+            study = trial.reads("config", text, lambda p: read_study(p, material_of=material_of))
+            if isinstance(study, Study) and trial.tally["analysis done"] < analyses:
+                trial.does("analysis", text, partial(solve, study, catalogue, trial.folder))
+        tables = sorted(data_folder("catalog").glob("*.yaml"))
+        for _ in range(grades):
+            trial.reads("grade", spoilt(_text(chance.choice(tables)), chance), read_grade)
+    for what, count in sorted(trial.tally.items()):
         print(f"{count:6} {what}")
-    print(f"slowest to read: {slowest:.2f} s")
-    if slowest > SLOW_S:
-        _tell(Path("slow.yaml"), slow_text, TimeoutError(f"{slowest:.1f} s"))
-    return sum(count for what, count in tally.items() if "FAILED" in what)
+    print(f"slowest to read: {trial.slowest_s:.2f} s")
+    return sum(count for what, count in trial.tally.items() if "FAILED" in what)
 
 
-def _tell(path: Path, text: str, error: BaseException) -> None:
-    kept = Path(tempfile.mkdtemp(prefix="mutant-")) / path.name
+class Trial:
+    """Counts what becomes of mutants, and keeps those that do what none should."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.tally: Counter[str] = Counter()
+        self.slowest_s = 0.0
+
+    def reads(self, kind: str, text: str, read: Callable[[Path], object]) -> object:
+        """Return what is read from a text; None where it is refused."""
+        path = self.folder / "mutant.yaml"
+        path.write_text(text, encoding="utf-8", errors="surrogatepass")
+        began = time.process_time()
+        found = self.does(kind, text, partial(read, path), SLOWEST_S)
+        self.slowest_s = max(self.slowest_s, time.process_time() - began)
+        return found
+
+    def does(
+        self, kind: str, text: str, action: Callable[[], object], most_s: int = 4 * SLOWEST_S
+    ) -> object:
+        """Return what an action gives, and count how it ended."""
+        found, outcome = None, "done"
+        try:
+            with no_longer_than(most_s):
+                found = action()
+        except DesignerError:
+            outcome = "refused"
+        except Exception as error:  # whatever it is, it should not have been
+            outcome = "FAILED"
+            _tell(text, error)
+        self.tally[f"{kind} {outcome}"] += 1
+        return found
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _tell(text: str, error: BaseException) -> None:
+    kept = Path(tempfile.mkdtemp(prefix="mutant-")) / "mutant.yaml"
     kept.write_text(text, encoding="utf-8", errors="surrogatepass")
     last = "".join(traceback.format_exception(error)[-3:])
     print(f"{kept}: {type(error).__name__}: {error}\n{last}", flush=True)
