@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -29,6 +29,7 @@ from designer.study import Study
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.samples import sample_count
+from designer.workspace.section import section_of_pose, section_of_workspace
 from designer.workspace.sweep import map_workspace
 
 
@@ -132,6 +133,9 @@ class Analysis:
         If the selection has groups of cables.
     qualities : Qualities or None
         Stiffness and clearances, if the study has a workspace and a cable holds in all of it.
+    section_m : float or None
+        Diameter whose mass, stiffness and strength stand for the configured family; None where the
+        declared effects leave it a family, see `designer.workspace.section` [m].
     """
 
     study: Study
@@ -143,11 +147,12 @@ class Analysis:
     selection: SelectionResult | None
     groups: GroupChoice | None = None
     qualities: Qualities | None = None
+    section_m: float | None = None
 
     @property
     def built(self) -> AsBuilt:
         """Robot and cables with the declared effects, as everything here was solved."""
-        return as_built_by(self.study)
+        return as_built_by(self.study, self.section_m)
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -199,7 +204,8 @@ def analyse_pose(study: Study) -> PoseAnalysis | None:
     if study.pose is None:
         return None
     built = as_built_by(study)
-    robot, material = built.robot, built.material(study.material)
+    section_m = section_of_pose(built, study.pose, study.material)
+    robot, material = built.robot, built.material(study.material, section_m)
     sizing = size_poses(robot, study.pose, material)
     rest = None
     if sizing.statics.is_solved:
@@ -231,6 +237,9 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
     provenance = Provenance.now(study)
     pose = analyse_pose(study)
     built = as_built_by(study)
+    if study.workspace is not None:
+        section_m = section_of_workspace(built, study.workspace, study.material)
+        built = replace(built, section_m=section_m)
     workspace = sweep_file = chosen = groups = None
     if study.workspace is not None:
         sweep_file = folder / "workspace.nc"
@@ -265,7 +274,16 @@ def analyse(study: Study, catalogue: Catalogue, folder: Path, reporter: Reporter
     if study.workspace is not None and workspace is not None:
         qualities = qualities_of(study.workspace, workspace, chosen, groups, built, study.material)
     return Analysis(
-        study, catalogue, provenance, pose, workspace, sweep_file, chosen, groups, qualities
+        study,
+        catalogue,
+        provenance,
+        pose,
+        workspace,
+        sweep_file,
+        chosen,
+        groups,
+        qualities,
+        built.section_m,
     )
 
 

@@ -166,8 +166,11 @@ def size(
     from designer.study import require_enough_cables
     from designer.terminal import announce_compiling, print_pose
 
-    study = _study(config, find_plugins(with_plugins=not no_plugins))
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
     require_enough_cables(study)
+    if study.selection is not None and study.selection.grades is not None:
+        _catalogue(study, plugins)  # misspelt grades are told here as by `report`
     announce_compiling()
     from designer.analysis import analyse_pose
 
@@ -271,13 +274,14 @@ def init(
 
 
 def _study(config: Path, plugins: Plugins) -> Study:
+    from designer.catalogue.family import families
     from designer.config import read_study
     from designer.effects.load import load_effects
     from designer.terminal import print_left_out
 
     effects = load_effects(plugins)
     print_left_out(effects.problems)
-    return read_study(config, effects)
+    return read_study(config, effects, families(plugins))
 
 
 def _catalogue(study: Study, plugins: Plugins) -> Catalogue:

@@ -70,6 +70,7 @@ def _material(name: str | None, catalogue: Catalogue) -> str | None:
 
 
 def _diameter_m(text: str | None) -> float | None:
+    from designer.config.bounds import BOUNDS
     from designer.units import LENGTH, QuantityError, read_quantity
 
     if text is None:
@@ -78,8 +79,12 @@ def _diameter_m(text: str | None) -> float | None:
         diameter_m = read_quantity(text, LENGTH)
     except QuantityError as error:
         raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
-    if diameter_m <= 0.0:
-        raise InputError([Fault("--diameter", None, "", f"{text!r} is no diameter", "more than 0")])
+    bound = BOUNDS["rope diameter"]
+    if not bound.least <= diameter_m <= bound.most:
+        problem = f"{text!r} is {diameter_m:g} m, which no rope has"
+        is_bare = text.strip().replace(".", "", 1).isdigit()
+        expected = f"'{text.strip()}mm'" if is_bare else "a diameter such as '12mm'"
+        raise InputError([Fault("--diameter", None, "", problem, expected)])
     return diameter_m
 
 
@@ -143,16 +148,24 @@ def catalog_new_plugin(
             parser=path_of, metavar="PATH", help="New folder to write, NAME if left out."
         ),
     ] = None,
+    effect: Annotated[
+        bool, typer.Option("--effect", help="One that brings a physical effect, not grades.")
+    ] = False,
 ) -> None:
-    """Write a plugin project with one commented grade file, ready to install.
+    """Write a plugin project with one commented grade file or effect, ready to install.
 
     Example:  designer catalog new-plugin acme-ropes
     """
     from designer.plugins.new_plugin import module_name, write_plugin
 
     folder = path or Path(name)
-    write_plugin(name, folder)
+    write_plugin(name, folder, effect=effect)
+    own = folder / module_name(name)
     typer.echo(f"{folder} written. Next:")
     typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
-    typer.echo("  designer catalog list")
-    typer.echo(f"then put your own figures into {folder / module_name(name) / 'grades'}")
+    if effect:
+        typer.echo(f"  pip install pytest && pytest {shlex.quote(str(folder))}")
+        typer.echo(f"then write your own law in {own / 'effect.py'}")
+    else:
+        typer.echo("  designer catalog list")
+        typer.echo(f"then put your own figures into {own / 'grades'}")

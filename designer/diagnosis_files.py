@@ -21,6 +21,8 @@ from designer.diagnosis.result import (
     Proposal,
     Withdrawn,
 )
+from designer.formats import DIAGNOSIS_FORMAT
+from designer.selection_json import finite
 from designer.study import DeclaredEffect
 
 Json = dict[str, Any]
@@ -29,6 +31,7 @@ Json = dict[str, Any]
 def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     """Return everything that ``diagnosis.json`` holds; a missing number is None."""
     return {
+        "format": DIAGNOSIS_FORMAT,
         "name": diagnosis.study.name,
         "rows": _rows(diagnosis),
         "effects": [_finding(finding) for finding in diagnosis.findings],
@@ -61,7 +64,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
 
 def diagnosis_text(diagnosis: Diagnosis) -> str:
     """Return `diagnosis_dict` as JSON text."""
-    return json.dumps(diagnosis_dict(diagnosis), indent=1, allow_nan=False) + "\n"
+    return json.dumps(finite(diagnosis_dict(diagnosis)), indent=1, allow_nan=False) + "\n"
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:

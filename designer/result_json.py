@@ -13,11 +13,13 @@ import numpy as np
 from designer import __version__
 from designer.analysis import Analysis, PoseAnalysis
 from designer.arrays import FloatArray
+from designer.errors import Fault, InputError
+from designer.formats import RESULT_FORMAT, why_unreadable
 from designer.groups_json import groups_dict
 from designer.interference.survey import Interference
 from designer.output import write_whole
 from designer.qualities import Qualities
-from designer.selection_json import selection_dict
+from designer.selection_json import finite, selection_dict
 from designer.space import turn_of
 from designer.statics.rest import RestingPlaces
 from designer.study import Study
@@ -33,6 +35,7 @@ def result_dict(analysis: Analysis) -> Json:
     """Return everything that ``result.json`` holds; a part without results is None."""
     study = analysis.study
     return {
+        "format": RESULT_FORMAT,
         "name": study.name,
         "positive": analysis.is_positive,
         "answer": _answer(analysis),
@@ -43,6 +46,7 @@ def result_dict(analysis: Analysis) -> Json:
             else {
                 **_workspace(analysis.workspace),
                 "orientations": _orientations(study),
+                "section_m": analysis.section_m,
                 **_qualities(analysis.qualities),
             }
         ),
@@ -64,21 +68,46 @@ def result_dict(analysis: Analysis) -> Json:
 
 def size_dict(study: Study, pose: PoseAnalysis) -> Json:
     """Return what ``designer size --json`` prints: the pose alone, under the same names."""
-    return {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
+    pose_alone = {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
+    return {"format": RESULT_FORMAT, **pose_alone}
 
 
 def size_text(study: Study, pose: PoseAnalysis) -> str:
     """Return `size_dict` as JSON text."""
-    return _text(size_dict(study, pose))
+    return text_of(size_dict(study, pose))
+
+
+def read_result(path: Path) -> Json:
+    """Return what a ``result.json`` holds, of any version of the program up to this one.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is no result, or is of a newer format; it names the version needed.
+    """
+    try:
+        values = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError([Fault(str(path), None, "", f"cannot be read: {error}")]) from None
+    if not isinstance(values, dict) or "provenance" not in values:
+        expected = "a result.json that `designer report` wrote"
+        raise InputError([Fault(str(path), None, "", "is no result", expected)])
+    origin = values["provenance"]
+    written_by = str(origin.get("version", "")) if isinstance(origin, dict) else ""
+    why = why_unreadable(values.get("format"), RESULT_FORMAT, written_by)
+    if why is not None:
+        raise InputError([Fault(str(path), None, "format", *why)])
+    return {"format": 1, **values}
 
 
 def write_result(analysis: Analysis, path: Path) -> None:
     """Write ``result.json``, whole or not at all."""
-    write_whole(path, f"{_text(result_dict(analysis))}\n".encode())
+    write_whole(path, f"{text_of(result_dict(analysis))}\n".encode())
 
 
-def _text(values: Mapping[str, Any]) -> str:
-    return json.dumps(values, indent=2, ensure_ascii=False, allow_nan=False)
+def text_of(values: Mapping[str, Any]) -> str:
+    """Return results as JSON text."""
+    return json.dumps(finite(values), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def _origin(study: Study) -> Json:

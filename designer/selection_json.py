@@ -110,6 +110,15 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     }
 
 
+def finite(values: Any) -> Any:
+    """Return the same with None for each number that is not finite, which JSON cannot hold."""
+    if isinstance(values, dict):
+        return {key: finite(value) for key, value in values.items()}
+    if isinstance(values, list | tuple):
+        return [finite(value) for value in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
+
+
 def write_candidates(selection: SelectionResult, path: Path) -> None:
     """Write every candidate as a row of a CSV table, whole or not at all.
 

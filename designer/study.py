@@ -12,6 +12,7 @@ from designer.cable import Material
 from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
+from designer.machine import TEMPERATE, Surroundings
 from designer.region import Region
 from designer.robot import Poses, Robot
 from designer.space import Orientations, Space
@@ -112,6 +113,14 @@ class Selection:
 
 
 @dataclass(frozen=True, slots=True)
+class GradeFamily:
+    """The grade whose continuous family the optimum is computed in, and the safety factor in it."""
+
+    grade: str
+    safety_factor: float
+
+
+@dataclass(frozen=True, slots=True)
 class Entry:
     """One value of the config, as written and as understood.
 
@@ -204,6 +213,8 @@ class Measurements:
         Standard deviation of a measured length [m]; None where not given.
     tension_noise_N : float or None
         Standard deviation of a measured tension [N]; None where not given.
+    diameter_m : float or None
+        Diameter of the cable, which only effects of plugins may ask for [m].
     """
 
     file: Path
@@ -214,6 +225,7 @@ class Measurements:
     unknown: tuple[str, ...] = ()
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
+    diameter_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,7 +251,8 @@ class DeclaredEffect:
 class Study:
     """A robot, its load, where it works, and how its cable is to be chosen.
 
-    ``known_effects`` are those that ``effects`` may declare and a diagnosis may find.
+    ``known_effects`` are those that ``effects`` may declare and a diagnosis may find; ``family``
+    is the grade that ``material`` stands for, None where the study gives its figures.
     """
 
     name: str
@@ -253,6 +266,8 @@ class Study:
     measurements: Measurements | None = None
     effects: tuple[DeclaredEffect, ...] = ()
     known_effects: KnownEffects = SHIPPED
+    surroundings: Surroundings = TEMPERATE
+    family: GradeFamily | None = None
 
     @property
     def pose_outside(self) -> str:

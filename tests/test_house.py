@@ -11,6 +11,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "nearest", "units", "resources", "effect_names", "progress",
     "verdict", "process", "output", "physics", "cable", "robot", "region", "space", "machine",
     "measured_data", "kernel", "statics", "sizing", "plugins", "effects", "study", "declared",
+    "formats",
     "measured", "config", "catalogue", "workspace", "interference", "selection", "diagnosis",
     "qualities", "analysis", "selection_json", "groups_json", "result_json", "diagnosis_files",
     "report", "terminal", "terminal_catalog", "cli_options", "cli_catalog", "cli", "__main__",

@@ -23,28 +23,28 @@ from designer.catalogue.grade import (
 )
 from designer.catalogue.proportions import proportion_flaws
 from designer.catalogue.stiffness import Basis
+from designer.config.bounds import BOUNDS, Bound
 
 _ID = re.compile(r"[a-z0-9][a-z0-9._-]{0,79}")
 _LONGEST_TEXT = 1000
-_DIAMETER_M = (1e-4, 0.5)
 _MODULUS_PA = (1e8, 2.5e11)  # a wet nylon rope; a single steel wire has 2.1e11
 _EA_OVER_MBL = (0.5, 1000.0)
 _CURRENCY = re.compile(r"[A-Z]{3}")
 _LARGEST_AREA_FACTOR = math.pi / 4.0
 _TEXTS = ("manufacturer", "product", "construction", "core", "finish")
 _FIGURES = {
-    "diameter": "diameter_m",
-    "minimum_breaking_load": "minimum_breaking_load_N",
-    "linear_mass": "linear_density_kg_per_m",
-    "metallic_area": "metallic_area_m2",
-    "price_per_m": "price_per_m",
+    "diameter": ("diameter_m", BOUNDS["rope diameter"]),
+    "minimum_breaking_load": ("minimum_breaking_load_N", BOUNDS["breaking load"]),
+    "linear_mass": ("linear_density_kg_per_m", BOUNDS["mass per length"]),
+    "metallic_area": ("metallic_area_m2", BOUNDS["metallic area"]),
+    "price_per_m": ("price_per_m", BOUNDS["price"]),
 }
 
 
 def find_flaws(grade: Grade) -> list[Flaw]:
     """Return everything that is wrong with a grade, in the order of its fields."""
     flaws = [flaw for check in _CHECKS for flaw in check(grade)]
-    return flaws or list(proportion_flaws(grade))
+    return flaws or [*_areas(grade)] or [*proportion_flaws(grade)]
 
 
 def _identity(grade: Grade) -> Iterator[Flaw]:
@@ -165,13 +165,22 @@ def _figures(grade: Grade) -> Iterator[Flaw]:
     if not grade.sizes:
         yield Flaw(("sizes",), "there is no size", "at least one")
     for index, size in enumerate(grade.sizes):
-        for name, attribute in _FIGURES.items():
+        for name, (attribute, bound) in _FIGURES.items():
             value = getattr(size, attribute)
-            if value is not None and not (math.isfinite(value) and value > 0.0):
+            if value is None:
+                continue
+            if not (math.isfinite(value) and value > 0.0):
                 yield Flaw(("sizes", index, name), f"is {value:g}", "a positive number")
-        if size.diameter_m > 0.0 and not within(size.diameter_m, _DIAMETER_M):
-            problem = f"{size.diameter_m:g} m is no rope's"
-            yield Flaw(("sizes", index, "diameter"), problem, "0.1 mm to 500 mm; check the unit")
+            elif not within(value, (bound.least, bound.most)):
+                problem = f"{value:g} {bound.dimension.unit}".rstrip() + " is no rope's"
+                yield Flaw(("sizes", index, name), problem, _range(name, bound))
+
+
+def _range(name: str, bound: Bound) -> str:
+    if name == "diameter":
+        return f"{1e3 * bound.least:g} mm to {1e3 * bound.most:g} mm; check the unit"
+    unit = f" {bound.dimension.unit}".rstrip()
+    return f"{bound.least:g} to {bound.most:g}{unit}; check the unit"
 
 
 def _order(grade: Grade) -> Iterator[Flaw]:
@@ -210,5 +219,4 @@ _CHECKS = (
     _prices,
     _figures,
     _order,
-    _areas,
 )

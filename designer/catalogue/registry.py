@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -17,6 +18,9 @@ from designer.plugins.find import Offer, Plugins, ask, find_plugins
 from designer.plugins.guard import one_line
 
 MOST_PROBLEMS_OF_A_SOURCE = 20
+_MOST_NAMED = 12
+_OUR_PLUGINS = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}
+"""How the ids of the example plugins begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +54,14 @@ class Catalogue:
         What was loaded.
     problems : tuple of str
         What was left out and why, one line each.
+    with_plugins : bool
+        Whether plugins of others were looked for.
     """
 
     grades: tuple[Grade, ...]
     sources: tuple[CatalogueSource, ...]
     problems: tuple[str, ...]
+    with_plugins: bool = True
 
     def grade(self, grade_id: str) -> Grade:
         """Return the grade with this id.
@@ -71,10 +78,37 @@ class Catalogue:
 
     def explain_unknown(self, grade_id: str) -> tuple[str, str]:
         """Return what is wrong with an id that no grade has, and what was expected."""
-        nearest = difflib.get_close_matches(grade_id, [grade.id for grade in self.grades], n=3)
-        names = " or ".join(repr(name) for name in nearest)
-        expected = names or "an id that `designer catalog list` shows"
-        return f"there is no grade {one_line(grade_id)!r}", expected
+        shown = one_line(grade_id)
+        plugin = next((p for start, p in _OUR_PLUGINS.items() if grade_id.startswith(start)), None)
+        if plugin is not None:
+            why = "is not installed" if self.with_plugins else "--no-plugins leaves out"
+            problem = f"the grade {shown!r} is of the plugin {plugin}, which {why}"
+            return problem, f"`pip install plugins/{plugin}` in a checkout, or another grade"
+        expected = self._alike(grade_id) or "an id that `designer catalog list` shows"
+        hint = "" if self.with_plugins else "; --no-plugins leaves out those of plugins"
+        return f"there is no grade {shown!r}", expected + hint
+
+    def _alike(self, text: str) -> str:
+        """Return the ids whose construction or name has this in it, else those nearly so called."""
+        part = _letters(text)
+        alike = [g for g in self.grades if part and _has(part, g.construction, g.id)]
+        names = [g.id for g in sorted(alike, key=lambda g: g.is_nominal)]
+        if not names:
+            nearest = difflib.get_close_matches(text, [grade.id for grade in self.grades], n=3)
+            return " or ".join(repr(name) for name in nearest)
+        more = len(names) - _MOST_NAMED
+        rest = f" or one of {more} more that `designer catalog list` shows" if more > 0 else ""
+        return "such as " + ", ".join(names[:_MOST_NAMED]) + rest
+
+
+def _letters(text: str) -> str:
+    return "".join(text.casefold().replace("×", "x").split())
+
+
+def _has(part: str, *names: str) -> bool:
+    """Tell whether one of the names has this in it; ``9x7`` is not in ``19x7``."""
+    pattern = re.compile(rf"(?<![a-z0-9]){re.escape(part)}")
+    return any(pattern.search(_letters(name)) for name in names)
 
 
 def load_catalogue(
@@ -110,7 +144,12 @@ def load_catalogue(
     if plugins.with_others and user_folder.is_dir():
         shelf.add_offer(_offer_of(user_folder))
     shelf.add_paths(paths)
-    return Catalogue(tuple(shelf.grades.values()), tuple(shelf.sources), tuple(shelf.problems))
+    return Catalogue(
+        tuple(shelf.grades.values()),
+        tuple(shelf.sources),
+        tuple(shelf.problems),
+        plugins.with_others,
+    )
 
 
 def user_catalogue_folder() -> Path:

@@ -12,16 +12,22 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from designer.catalogue import grade as values
 from designer.catalogue.stiffness import Basis
-from designer.config.fields import ListOf, Quantity, Text, refusal
+from designer.config.fields import (
+    FormatOf,
+    ListOf,
+    Quantity,
+    Temperature,
+    Text,
+    bounded,
+    refusal,
+)
 from designer.config.section import Section
+from designer.formats import GRADE_FORMAT
 from designer.units import (
     AREA,
     FORCE,
     LENGTH,
     LINEAR_DENSITY,
-    NUMBER,
-    PER_TEMPERATURE,
-    STRESS,
     Dimension,
     QuantityError,
     describe,
@@ -58,12 +64,17 @@ def _unit_of(dimension: Dimension) -> BeforeValidator:
 
 Line = Annotated[Text, AfterValidator(_on_one_line)]
 Lines = Annotated[tuple[Line, ...], BeforeValidator(ListOf(0, 100, "a list of texts"))]
-Number = Annotated[float, Quantity(NUMBER)]
-Positive = Annotated[float, Quantity(NUMBER, above=0.0)]
-LoadFraction = Annotated[float, Quantity(NUMBER, above=0.0, at_most=1.0)]
+Uncertainty = Annotated[float, bounded("uncertainty")]
+Ratio = Annotated[float, bounded("sheave ratio")]
+LoadFraction = Annotated[float, bounded("load fraction")]
+OverBreakingLoad = Annotated[float, bounded("stiffness over breaking load")]
 LoadPoint = Annotated[
-    tuple[LoadFraction, Positive],
+    tuple[LoadFraction, OverBreakingLoad],
     BeforeValidator(ListOf(2, 2, "[load fraction, EA over breaking load]")),
+]
+
+TemperatureRange = Annotated[
+    tuple[Temperature, Temperature], BeforeValidator(ListOf(2, 2, "[lowest, highest]"))
 ]
 
 
@@ -79,19 +90,17 @@ class SourceSection(Section):
 class ModulusSection(Section):
     """Effective modulus of elasticity."""
 
-    value: Annotated[float, Quantity(STRESS, above=0.0)] = Field(
-        description="a modulus such as '62.7 GPa'"
-    )
+    value: Annotated[float, bounded("modulus")] = Field(description="a modulus such as '62.7 GPa'")
     reference_area: values.ReferenceArea = Field(description="'nominal' or 'metallic'")
     basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
-    uncertainty: Number = Field(description="a fraction such as 0.15")
+    uncertainty: Uncertainty = Field(description="a fraction such as 0.15")
 
 
 class StiffnessSection(Section):
     """Axial stiffness over breaking load."""
 
-    ea_over_breaking_load: Positive | None = None
+    ea_over_breaking_load: OverBreakingLoad | None = None
     at_load_fraction: LoadFraction | None = None
     by_load_fraction: (
         Annotated[
@@ -102,7 +111,7 @@ class StiffnessSection(Section):
     ) = None
     basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
-    uncertainty: Number = Field(description="a fraction such as 0.3")
+    uncertainty: Uncertainty = Field(description="a fraction such as 0.3")
 
     @model_validator(mode="after")
     def _is_one_figure_or_a_table(self) -> Self:
@@ -118,7 +127,7 @@ class StiffnessSection(Section):
 class ThermalExpansionSection(Section):
     """Axial thermal expansion."""
 
-    value: Annotated[float, Quantity(PER_TEMPERATURE)] = Field(
+    value: Annotated[float, bounded("expansion")] = Field(
         description="a coefficient such as '12.5e-6 /K'"
     )
     basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
@@ -128,7 +137,7 @@ class ThermalExpansionSection(Section):
 class AreaFactorSection(Section):
     """Metallic area over d²."""
 
-    value: Number = Field(description="a number such as 0.449")
+    value: Annotated[float, bounded("area factor")] = Field(description="a number such as 0.449")
     basis: Basis = Field(description="'printed', 'computed' or 'borrowed'")
     source: Line = Field(description="where the figure comes from")
 
@@ -136,8 +145,8 @@ class AreaFactorSection(Section):
 class SheaveRatioSection(Section):
     """Sheave over rope diameter, D/d."""
 
-    suggested: Number = Field(description="a number such as 35")
-    minimum: Number = Field(description="a number such as 23")
+    suggested: Ratio = Field(description="a number such as 35")
+    minimum: Ratio = Field(description="a number such as 23")
     source: Line = Field(description="where the figures come from")
 
 
@@ -145,7 +154,10 @@ class LimitsSection(Section):
     """What the rope bears beside load."""
 
     temperature_C: (
-        Annotated[tuple[Number, Number], BeforeValidator(ListOf(2, 2, "[lowest, highest]"))] | None
+        Annotated[
+            tuple[Temperature, Temperature], BeforeValidator(ListOf(2, 2, "[lowest, highest]"))
+        ]
+        | None
     ) = None
     creep: Line | None = None
     source: Line = Field(description="where the limits come from")
@@ -169,7 +181,7 @@ class UnitsSection(Section):
 
 
 class SizeSection(Section):
-    """One row of the table of sizes."""
+    """One row of the table of sizes; `designer.catalogue.checks` looks at what a rope can be."""
 
     id: Line = Field(description="the size as its source names it, such as '6 mm'")
     diameter: Annotated[float, Quantity(LENGTH, above=0.0)] = Field(
@@ -182,7 +194,7 @@ class SizeSection(Section):
         description="a mass per length such as '0.137 kg/m'"
     )
     metallic_area: Annotated[float, Quantity(AREA, above=0.0)] | None = None
-    price_per_m: Positive | None = None
+    price_per_m: Annotated[float, bounded("price")] | None = None
     doubt: Line | None = None
 
 
@@ -213,6 +225,7 @@ class GradeSection(Section):
     sizes: Annotated[
         tuple[SizeSection, ...], BeforeValidator(ListOf(1, MOST_SIZES, f"1 to {MOST_SIZES} sizes"))
     ] = Field(description="a list of sizes")
+    format: Annotated[int, FormatOf(GRADE_FORMAT)] = 1
 
     @model_validator(mode="before")
     @classmethod

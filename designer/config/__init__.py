@@ -6,11 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from designer.config.grade_family import MaterialOf
     from designer.effects.known import KnownEffects
     from designer.study import Study
 
 
-def read_study(path: Path, known_effects: KnownEffects | None = None) -> Study:
+def read_study(
+    path: Path,
+    known_effects: KnownEffects | None = None,
+    material_of: MaterialOf | None = None,
+) -> Study:
     """Return the study that the config file describes.
 
     Parameters
@@ -19,6 +24,9 @@ def read_study(path: Path, known_effects: KnownEffects | None = None) -> Study:
         A YAML file.
     known_effects : KnownEffects or None
         Which effects it may declare; None for ours alone, without those of plugins.
+    material_of : callable or None
+        Returns the continuous family of a grade that ``cable`` may name, see
+        `designer.catalogue.family`; None for a study that gives the figures of its cable.
 
     Raises
     ------
@@ -28,4 +36,6 @@ def read_study(path: Path, known_effects: KnownEffects | None = None) -> Study:
     """
     from designer.config.reader import study_from  # geometry, which grade files do not need
 
-    return study_from(path) if known_effects is None else study_from(path, known_effects)
+    if known_effects is None:
+        return study_from(path, material_of=material_of)
+    return study_from(path, known_effects, material_of)

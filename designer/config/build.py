@@ -12,7 +12,6 @@ from designer.config.effects import read_effects
 from designer.config.orientation import rotation_vector_rad
 from designer.config.schema import (
     BoxSection,
-    CableSection,
     MeasurementsSection,
     PointsSection,
     PoseSection,
@@ -24,21 +23,36 @@ from designer.config.schema import (
     WorkspaceSection,
 )
 from designer.effects.known import KnownEffects
+from designer.machine import Surroundings
 from designer.region import PointList, Prism, Rectangle, Region
 from designer.robot import Platform, Poses, Robot
 from designer.space import Orientations
-from designer.study import CableGroup, Measurements, Selection, Source, Study, Workspace
+from designer.study import (
+    CableGroup,
+    GradeFamily,
+    Measurements,
+    Selection,
+    Source,
+    Study,
+    Workspace,
+)
 
 
-def build_study(section: StudySection, source: Source, known: KnownEffects) -> Study:
-    """Return the study that the config describes."""
+def build_study(
+    section: StudySection,
+    source: Source,
+    known: KnownEffects,
+    material: Material,
+    family: GradeFamily | None,
+) -> Study:
+    """Return the study that the config describes, with a material that was made for it."""
     folder = source.path.parent
     robot = _robot(section.robot)
     declared = read_effects(section.effects, robot.n_cables, known.names)
     return Study(
         name=section.name or source.path.stem,
         robot=robot,
-        material=_material(section.cable),
+        material=material,
         source=source,
         pose=_pose(section.pose),
         workspace=_workspace(section.workspace, robot),
@@ -47,6 +61,8 @@ def build_study(section: StudySection, source: Source, known: KnownEffects) -> S
         measurements=_measurements(section.measurements, folder),
         effects=tuple(one for _, one in declared.effects),
         known_effects=known,
+        surroundings=Surroundings(section.surroundings.temperature),
+        family=family,
     )
 
 
@@ -63,10 +79,6 @@ def _robot(section: RobotSection) -> Robot:
         gravity_direction=frozen_array(section.gravity),
         is_planar=section.planar,
     )
-
-
-def _material(section: CableSection) -> Material:
-    return Material(section.density, section.youngs_modulus, section.allowable_stress)
 
 
 def _pose(section: PoseSection | None) -> Poses | None:
@@ -133,6 +145,7 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         file=folder / section.file,
         linear_density_kg_per_m=section.cable.linear_mass,
         axial_stiffness_N=section.cable.axial_stiffness,
+        diameter_m=section.cable.diameter,
         columns=tuple(log_column(*item) for item in section.columns.items()),
         settled=section.settled,
         unknown=section.unknown,

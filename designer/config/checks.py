@@ -24,6 +24,7 @@ from designer.config.orientation import Quaternion
 from designer.config.parts import Parts
 from designer.config.plane_checks import PLANE_CHECKS, is_planar, seen_from_above
 from designer.config.schema import Anchors, Attachments, Box, Corners, PrismBase, RectangleBase
+from designer.config.size_checks import SIZE_CHECKS
 from designer.effect_names import EffectName
 from designer.errors import Fault
 from designer.region import Prism, Rectangle
@@ -199,6 +200,7 @@ CHECKS = (
     *GROUP_CHECKS,
     *LOAD_CHECKS,
     *MEASURED_CHECKS,
+    *SIZE_CHECKS,
 )
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from designer.config.fields import Quantity, Text, mapping, refusal
+from designer.config.fields import Text, bounded, mapping, refusal
 from designer.config.section import Section
 from designer.measured.names import (
     COVARIATE,
@@ -38,7 +38,7 @@ class ColumnSection(Section):
 
     to: Annotated[str, BeforeValidator(_target)] = Field(description=_TARGET)
     unit: Text | None = None
-    scale: Annotated[float, Quantity(NUMBER)] | None = None
+    scale: Annotated[float, bounded("scale of a column")] | None = None
     offset: Any = None
 
     @model_validator(mode="before")

@@ -169,11 +169,13 @@ class _Composer:
         self._open: list[_Open] = []
         self._anchors: dict[str, Node] = {}
         self._root: Node | None = None
+        self._lines: list[str] = []
 
     def compose(self, text: str) -> Node | None:
         """Return the outermost value; None for an empty document."""
         import yaml
 
+        self._lines = text.splitlines()
         documents = 0
         try:
             for event in _events(text):
@@ -278,7 +280,13 @@ class _Composer:
         mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
         reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
         line = None if mark is None else mark.line + 1
+        if line is not None and self._is_indented_by_tab(line):
+            _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
         _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
+
+    def _is_indented_by_tab(self, line: int) -> bool:
+        text = self._lines[line - 1] if line <= len(self._lines) else ""
+        return "\t" in text[: len(text) - len(text.lstrip())]
 
 
 def _events(text: str) -> Iterator[yaml.Event]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from pydantic_core import PydanticCustomError
 
+from designer.config.bounds import parameter_bound
 from designer.config.fields import Quantity, WholeNumber
 from designer.config.node import Data, Key, Node, path_text, printable
 from designer.effect_names import EffectName, ParameterName
@@ -160,7 +161,14 @@ def _value(
         if parameter.neutral is None:
             found.refuse(place, "is missing", parameter.dimension.expected)
         return parameter.neutral or 0.0
-    quantity = Quantity(parameter.dimension, parameter.above, parameter.at_least)
+    bound = parameter_bound(parameter.dimension)
+    quantity = Quantity(
+        parameter.dimension,
+        parameter.above,
+        bound.least if parameter.at_least is None else parameter.at_least,
+        bound.most,
+        bound.reason,
+    )
     try:
         return quantity.read(given[parameter.name])
     except PydanticCustomError as error:

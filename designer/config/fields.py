@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
+from designer.config.bounds import BOUNDS
+from designer.config.node import printable
+from designer.formats import why_unreadable
 from designer.units import (
-    ANGLE,
-    DENSITY,
-    FORCE,
-    FRACTION,
-    LENGTH,
-    LINEAR_DENSITY,
-    MASS,
-    MOMENT,
     NUMBER,
-    STRESS,
     Dimension,
     QuantityError,
     describe,
@@ -47,12 +40,15 @@ class Quantity:
         Limit that the SI value must exceed.
     at_least, at_most : float or None
         Limits that the SI value may reach.
+    reason : str
+        Why not beyond them; empty where that is plain.
     """
 
     dimension: Dimension
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
+    reason: str = ""
 
     def __get_pydantic_core_schema__(
         self, source: object, handler: GetCoreSchemaHandler
@@ -68,18 +64,29 @@ class Quantity:
             raise refusal(error.problem, error.expected) from None
         bound = self._broken_bound(value)
         if bound:
-            unit = f"; a bare number is in {self.dimension.unit}" if self.dimension.unit else ""
-            hint = unit if isinstance(given, int | float) else ""
-            raise refusal(f"{describe(given)} is out of range", f"{bound}{hint}")
+            raise refusal(f"{describe(given)} is out of range", f"{bound}{self._hint(given)}")
         return value
 
+    def _hint(self, given: object) -> str:
+        """Return what a bare number was taken for, and what it may have been meant for."""
+        unit = self.dimension.unit
+        if not unit or isinstance(given, str):
+            return ""
+        meant = f"{given:.10g} mm" if isinstance(given, int | float) and unit == "m" else ""
+        try:
+            fits = meant and not self._broken_bound(read_quantity(meant, self.dimension))
+        except QuantityError:
+            fits = False
+        return f"; a bare number is in {unit}" + (f", did you mean '{meant}'?" if fits else "")
+
     def _broken_bound(self, value: float) -> str:
+        why = f": {self.reason}" if self.reason else ""
         if self.above is not None and value <= self.above:
             return f"more than {format_SI(self.above, self.dimension)}"
         if self.at_least is not None and value < self.at_least:
-            return f"at least {format_SI(self.at_least, self.dimension)}"
+            return f"at least {format_SI(self.at_least, self.dimension)}{why}"
         if self.at_most is not None and value > self.at_most:
-            return f"at most {format_SI(self.at_most, self.dimension)}"
+            return f"at most {format_SI(self.at_most, self.dimension)}{why}"
         return ""
 
 
@@ -111,6 +118,26 @@ class WholeNumber:
 
 
 @dataclass(frozen=True, slots=True)
+class FormatOf:
+    """Annotation of the number of a file's format, up to the newest that is read."""
+
+    newest: int
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the value by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> int:
+        """Return the number, or refuse it."""
+        why = why_unreadable(given, self.newest)
+        if why is not None:
+            raise refusal(*why)
+        return given if isinstance(given, int) else 1
+
+
+@dataclass(frozen=True, slots=True)
 class ListOf:
     """Check of a list's length, before its items are read."""
 
@@ -121,7 +148,7 @@ class ListOf:
     def __call__(self, given: object) -> object:
         """Return the list unchanged, or refuse it."""
         if not isinstance(given, list | tuple):
-            raise refusal(f"{describe(given)} is not a list", self.expected)
+            raise refusal(f"{describe(given)} is not a list", self.expected + in_brackets(given))
         if not self.least <= len(given) <= self.most:
             count = f"{len(given)} value" + "s" * (len(given) != 1)
             raise refusal(f"the list has {count}", self.expected)
@@ -138,8 +165,15 @@ class OnlyWord:
     def __call__(self, given: object) -> object:
         """Return the word, or refuse what is given."""
         if given != self.word:
-            raise refusal(f"{describe(given)} is not known", self.expected)
+            raise refusal(f"{describe(given)} is not known", self.expected + in_brackets(given))
         return given
+
+
+def in_brackets(given: object) -> str:
+    """Return how a text with commas is written as the list that it was meant for; else nothing."""
+    if not isinstance(given, str) or "," not in given or len(given) > LONGEST_TEXT:
+        return ""
+    return f"; a list stands in brackets: [{printable(given)}]"
 
 
 def _text(given: object) -> str:
@@ -190,35 +224,47 @@ def not_empty(given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
+def bounded(name: str) -> Quantity:
+    """Return the annotation of a number of this name in `designer.config.bounds`."""
+    bound = BOUNDS[name]
+    return Quantity(
+        bound.dimension,
+        above=0.0 if bound.least > 0.0 else None,
+        at_least=bound.least,
+        at_most=bound.most,
+        reason=bound.reason,
+    )
+
+
 _INTERVAL = "[lower, upper]"
 _DIRECTION = "a direction such as [0, 0, -1]"
-_FARTHEST_M = 1e7
 _POINT = "three lengths [x, y, z]"
 
 Text = Annotated[str, BeforeValidator(_text)]
 FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 
-Length = Annotated[float, Quantity(LENGTH, at_least=-_FARTHEST_M, at_most=_FARTHEST_M)]
-Distance = Annotated[float, Quantity(LENGTH, at_least=0.0, at_most=_FARTHEST_M)]
-Clearance = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
-LengthNoise = Annotated[float, Quantity(LENGTH, above=0.0, at_least=1e-12, at_most=_FARTHEST_M)]
-TensionNoise = Annotated[float, Quantity(FORCE, above=0.0, at_least=1e-9, at_most=1e20)]
-Mass = Annotated[float, Quantity(MASS, above=0.0, at_least=1e-9, at_most=1e12)]
-Density = Annotated[float, Quantity(DENSITY, above=0.0, at_most=1e6)]
-LinearDensity = Annotated[float, Quantity(LINEAR_DENSITY, above=0.0, at_most=1e6)]
-Force = Annotated[float, Quantity(FORCE, above=0.0, at_most=1e20)]
-Tension = Annotated[float, Quantity(FORCE, at_least=0.0, at_most=1e20)]
-ForcePart = Annotated[float, Quantity(FORCE, at_least=-1e20, at_most=1e20)]
-MomentPart = Annotated[float, Quantity(MOMENT, at_least=-1e20, at_most=1e20)]
-Share = Annotated[float, Quantity(NUMBER, at_least=-1e6, at_most=1e6)]
-HalfTurn = Annotated[float, Quantity(ANGLE, at_least=-math.pi, at_most=math.pi)]
-Modulus = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e5, at_most=1e20)]
-Stress = Annotated[float, Quantity(STRESS, above=0.0, at_least=1e3, at_most=1e20)]
-# A turn at most: a bare 90 that is meant in degrees shall not pass as 90 rad.
-Angle = Annotated[float, Quantity(ANGLE, at_least=-2.0 * math.pi, at_most=2.0 * math.pi)]
-SafetyFactor = Annotated[float, Quantity(NUMBER, at_least=1.0, at_most=1000.0)]
-SheaveDiameter = Annotated[float, Quantity(LENGTH, above=0.0, at_most=_FARTHEST_M)]
-Efficiency = Annotated[float, Quantity(FRACTION, above=0.0, at_most=1.0)]
+Length = Annotated[float, bounded("position")]
+Distance = Annotated[float, bounded("distance")]
+Clearance = Annotated[float, bounded("clearance")]
+LengthNoise = Annotated[float, bounded("length noise")]
+TensionNoise = Annotated[float, bounded("tension noise")]
+Mass = Annotated[float, bounded("mass")]
+Density = Annotated[float, bounded("density")]
+LinearDensity = Annotated[float, bounded("mass per length")]
+AxialStiffness = Annotated[float, bounded("axial stiffness")]
+Tension = Annotated[float, bounded("tension")]
+ForcePart = Annotated[float, bounded("force")]
+MomentPart = Annotated[float, bounded("moment")]
+Share = Annotated[float, bounded("direction")]
+HalfTurn = Annotated[float, bounded("half turn")]
+Modulus = Annotated[float, bounded("modulus")]
+Stress = Annotated[float, bounded("stress")]
+Angle = Annotated[float, bounded("angle")]
+SafetyFactor = Annotated[float, bounded("safety factor")]
+SheaveDiameter = Annotated[float, bounded("sheave")]
+RopeDiameter = Annotated[float, bounded("rope diameter")]
+Efficiency = Annotated[float, bounded("efficiency")]
+Temperature = Annotated[float, bounded("temperature")]
 
 Interval = Annotated[
     tuple[Length, Length], BeforeValidator(ListOf(2, 2, _INTERVAL)), AfterValidator(_rising)

@@ -11,9 +11,9 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from scipy.spatial.transform import Rotation as SpatialRotation
 
 from designer.arrays import FloatArray
-from designer.config.fields import ListOf, Quantity, Rotation, Turn, refusal
+from designer.config.fields import ListOf, Rotation, Turn, bounded, refusal
 from designer.config.section import Section
-from designer.units import NUMBER, describe
+from designer.units import describe
 
 FORMS = ("rotation_vector", "quaternion", "euler")
 _LARGEST_NORM_ERROR = 1e-3
@@ -48,7 +48,7 @@ def only_one_of(given: object, names: tuple[str, ...], owner: str) -> object:
     return given
 
 
-_Number = Annotated[float, Quantity(NUMBER)]
+_Number = Annotated[float, bounded("part of a quaternion")]
 Quaternion = Annotated[
     tuple[_Number, _Number, _Number, _Number],
     BeforeValidator(ListOf(4, 4, "four numbers [w, x, y, z]")),

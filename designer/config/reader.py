@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -13,6 +14,7 @@ from designer.config.document import Document, read_document
 from designer.config.effects import effect_entries
 from designer.config.entries import all_entries
 from designer.config.faults import MOST_FAULTS, schema_faults
+from designer.config.grade_family import MaterialOf, family_entries, material_and_family
 from designer.config.node import path_text
 from designer.config.schema import StudySection
 from designer.effects.known import KnownEffects
@@ -21,13 +23,18 @@ from designer.errors import Fault, InputError
 from designer.study import Entry, Source, Study
 
 
-def study_from(path: Path, known: KnownEffects = SHIPPED) -> Study:
+def study_from(
+    path: Path, known: KnownEffects = SHIPPED, material_of: MaterialOf | None = None
+) -> Study:
     """Return the study that the config file describes, see `designer.config.read_study`."""
     document = read_document(path)
     section = _checked(document, known)
     if section.name is None:
         section = section.model_copy(update={"name": path.stem})
-    return build_study(section, _source(path, document, section, known), known)
+    material, family = material_and_family(section, document, material_of)
+    source = _source(path, document, section, known)
+    source = replace(source, entries=tuple(family_entries([*source.entries], material, family)))
+    return build_study(section, source, known, material, family)
 
 
 def _checked(document: Document, known: KnownEffects) -> StudySection:

@@ -19,16 +19,18 @@ from pydantic import (
     model_validator,
 )
 
+from designer.config.bounds import MOST_SAMPLES
 from designer.config.columns import Columns
 from designer.config.fields import (
+    AxialStiffness,
     Clearance,
     Corner,
     Density,
     Direction,
     Distance,
     Efficiency,
-    Force,
     Forces,
+    FormatOf,
     FreeMapping,
     Interval,
     Length,
@@ -40,15 +42,18 @@ from designer.config.fields import (
     Moments,
     OnlyWord,
     Point,
+    RopeDiameter,
     Rotation,
     SafetyFactor,
     SheaveDiameter,
     Stress,
+    Temperature,
     Tension,
     TensionNoise,
     Text,
     WholeNumber,
     different,
+    in_brackets,
     mapping,
     not_empty,
     refusal,
@@ -62,6 +67,7 @@ from designer.config.orientation import (
     only_one_of,
 )
 from designer.config.section import Section
+from designer.formats import CONFIG_FORMAT
 from designer.study import HangsBelow, Objective, Sampling
 from designer.units import describe
 
@@ -157,6 +163,25 @@ class CableSection(Section):
     allowable_stress: Stress = Field(description="a stress such as '180 MPa'")
 
 
+class GradeCableSection(Section):
+    """The continuous family of a rope grade."""
+
+    grade: Text = Field(description="a grade id from `designer catalog list`")
+    safety_factor: SafetyFactor | None = None
+
+
+def _cable_tag(given: object) -> str:
+    names_grade = isinstance(given, dict | GradeCableSection) and "grade" in dict(given)
+    return "grade of a cable" if names_grade else "figures of a cable"
+
+
+ConfiguredCable = Annotated[
+    Annotated[CableSection, Tag("figures of a cable")]
+    | Annotated[GradeCableSection, Tag("grade of a cable")],
+    Discriminator(_cable_tag),
+]
+
+
 class PoseSection(Section):
     """One pose of the platform."""
 
@@ -168,6 +193,8 @@ class PoseSection(Section):
     @model_validator(mode="before")
     @classmethod
     def _from_list(cls, given: object) -> object:
+        if in_brackets(given):
+            raise refusal(f"{describe(given)} is not a list", "[x, y, z]" + in_brackets(given))
         return {"position": given} if isinstance(given, list) else only_one_form(given)
 
 
@@ -243,7 +270,7 @@ class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
     region: Region = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
-    samples: Annotated[int, WholeNumber(1, 10**8)] = 20_000
+    samples: Annotated[int, WholeNumber(1, MOST_SAMPLES)] = 20_000
     sampling: Sampling = "low_discrepancy"
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
     hangs_below: HangsBelow = "include"
@@ -275,7 +302,8 @@ class MeasuredCableSection(Section):
     """The cable that is on the machine."""
 
     linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
-    axial_stiffness: Force = Field(description="a force such as '3.3 MN'")
+    axial_stiffness: AxialStiffness = Field(description="a force such as '3.3 MN'")
+    diameter: RopeDiameter | None = None
 
 
 class NoiseSection(Section):
@@ -296,13 +324,19 @@ class MeasurementsSection(Section):
     noise: NoiseSection = NoiseSection()
 
 
+class SurroundingsSection(Section):
+    """What the laws of effects are given in a design."""
+
+    temperature: Temperature = 20.0
+
+
 class StudySection(Section):
     """The whole file."""
 
     name: Text | None = None
     robot: RobotSection = Field(description="a mapping with anchors and platform")
-    cable: CableSection = Field(
-        description="a mapping with density, youngs_modulus and allowable_stress"
+    cable: ConfiguredCable = Field(
+        description="{density: …, youngs_modulus: …, allowable_stress: …} or {grade: ID}"
     )
     pose: PoseSection | None = None
     workspace: WorkspaceSection | None = None
@@ -310,3 +344,5 @@ class StudySection(Section):
     catalogues: Names = ()
     measurements: MeasurementsSection | None = None
     effects: FreeMapping = Field(default_factory=dict)  # checked by designer.config.effects
+    surroundings: SurroundingsSection = SurroundingsSection()
+    format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1

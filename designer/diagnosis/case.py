@@ -21,15 +21,16 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     study, measurements, measured
         As read.
     """
-    # The diagnosis asks no strength of the cable, and its diameter never enters.
+    # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
     cable = Cable(
-        diameter_m=float("nan"),
+        diameter_m=measurements.diameter_m or float("nan"),
         linear_density_kg_per_m=measurements.linear_density_kg_per_m,
         axial_stiffness_N=measurements.axial_stiffness_N,
         allowable_tension_N=float("inf"),
     )
-    declared = declared_settings(study)
-    machine = as_built(Machine(study.robot, cable), declared)
+    bare = Machine(study.robot, cable, surroundings=study.surroundings)
+    declared = declared_settings(study, bare)
+    machine = as_built(bare, declared)
     known = {setting.effect.key for setting in declared}
     effects = [e for e in study.known_effects.of(machine) if e.key not in known]
     given = tuple(e for e in effects if _is_given(e, measurements))

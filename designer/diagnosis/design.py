@@ -10,6 +10,7 @@ from designer.declared import as_built_by
 from designer.diagnosis.result import Choice, Diagnosis
 from designer.selection.select import select
 from designer.study import DeclaredEffect, Study
+from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
 
 _NONE = float("nan")
@@ -40,6 +41,7 @@ def choice(study: Study, grades: Sequence[Grade]) -> Choice:
     assert study.workspace is not None
     assert study.selection is not None
     built = as_built_by(study)
+    built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
     worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
     chosen = select(built.robot, study.workspace, study.selection, grades, built=built).chosen
     return Choice(

@@ -2,53 +2,134 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
 
 from designer.cable import Cable, Material
 from designer.effects.effect import Setting, as_built
+from designer.errors import EffectError
 from designer.machine import Machine
 from designer.robot import Robot
 
-_UNIT = Cable(1.0, 1.0, 1.0, 1.0)
+_PROBES_M = (1e-3, 7e-3, 0.05, 0.35)
+"""Diameters at which a family is looked at, to tell whether an effect leaves it one."""
+_SAME = 1e-9
+_ANY_FAMILY = Material(6000.0, 1e11, 2e8)
+
+
+def _unchanged(cable: Cable) -> Cable:
+    return cable
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsBuilt:
-    """The robot as built, and by how much its cables differ from their data sheet.
+    """The robot as built, and what its cables are there.
 
     Parameters
     ----------
     robot : Robot
         With moved exit points, pulleys, tilt, mass.
-    linear_density_scale, axial_stiffness_scale : float
-        Mass per length and EA over the declared ones, whatever the product.
+    change : callable
+        From a cable of the data sheet to that cable on this machine.
+    section_m : float or None
+        Diameter whose figures stand for a whole family where the effects do not leave it one, see
+        `material` [m].
     """
 
     robot: Robot
-    linear_density_scale: float = 1.0
-    axial_stiffness_scale: float = 1.0
+    change: Callable[[Cable], Cable] = _unchanged
+    section_m: float | None = None
 
     def cable(self, cable: Cable) -> Cable:
         """Return a cable as it is on this machine."""
-        return replace(
-            cable,
-            linear_density_kg_per_m=cable.linear_density_kg_per_m * self.linear_density_scale,
-            axial_stiffness_N=cable.axial_stiffness_N * self.axial_stiffness_scale,
+        return self.change(cable)
+
+    def is_family(self, material: Material) -> bool:
+        """Tell whether the members of a family are one on this machine as well.
+
+        They are where every effect scales; not where one adds, such as a film of ice, which is
+        little on a thick cable and much on a thin one.
+        """
+        first, *others = (_figures(self._at(material, d)) for d in _PROBES_M)
+        return all(np.allclose(other, first, rtol=_SAME, atol=0.0) for other in others)
+
+    def material(self, material: Material, diameter_m: float | None = None) -> Material:
+        """Return a family of cables as it is on this machine.
+
+        Where the effects do not leave it a family, the one whose member of ``diameter_m``, or else
+        of ``section_m``, is right; the others are not, see `designer.workspace.section`.
+
+        Raises
+        ------
+        ValueError
+            If it is no family here, and no diameter is known.
+        """
+        if self.is_family(material):
+            return self._at(material, _PROBES_M[1])
+        section_m = diameter_m or self.section_m
+        if section_m is None:
+            raise ValueError("the effects leave no family, and no section is given")
+        return self._at(material, section_m)
+
+    def _at(self, material: Material, diameter_m: float) -> Material:
+        if self.change is _unchanged:
+            return material
+        cable = self.change(material.cable(diameter_m))
+        area_m2 = math.pi * diameter_m**2 / 4.0
+        return Material(
+            density_kg_per_m3=cable.linear_density_kg_per_m / area_m2,
+            youngs_modulus_Pa=cable.axial_stiffness_N / area_m2,
+            allowable_stress_Pa=cable.allowable_tension_N / area_m2,
         )
 
-    def material(self, material: Material) -> Material:
-        """Return a family of cables as it is on this machine."""
-        return replace(
-            material,
-            density_kg_per_m3=material.density_kg_per_m3 * self.linear_density_scale,
-            youngs_modulus_Pa=material.youngs_modulus_Pa * self.axial_stiffness_scale,
+
+SettingsOf = Callable[[Machine], Sequence[Setting]]
+"""The declared effects, as they are made for a machine."""
+
+
+def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
+    """Return the robot and its cables with the effects that act on the machine.
+
+    Each cable meets the effects with its own figures, in the machine's declared surroundings.
+
+    Raises
+    ------
+    EffectError
+        If the robot itself depends on which cable it has: then no cable can be designed for it.
+    """
+
+    def built(cable: Cable) -> Machine:
+        changed = replace(machine, cable=cable)
+        return as_built(changed, settings_of(changed))
+
+    thin, thick = (built(_ANY_FAMILY.cable(d)).robot for d in (_PROBES_M[0], _PROBES_M[-1]))
+    if not _is_same(thin, thick):
+        names = sorted({s.effect.id for s in settings_of(machine) if s.effect.on_machine})
+        raise EffectError(
+            names[-1],
+            f"effects {', '.join(names)}: one of them makes the robot depend on its cable, which "
+            "cannot be chosen then (expected effects that change robot or cable, not one by the "
+            "other)",
         )
+    has_none = not any(s.effect.on_machine for s in settings_of(machine))
+    return AsBuilt(thin, _unchanged if has_none else lambda cable: built(cable).cable)
 
 
-def built_with(robot: Robot, settings: Sequence[Setting]) -> AsBuilt:
-    """Return the robot and its cables with the effects that act on the machine."""
-    machine = as_built(Machine(robot, _UNIT), settings)
-    return AsBuilt(
-        machine.robot, machine.cable.linear_density_kg_per_m, machine.cable.axial_stiffness_N
+def _figures(material: Material) -> tuple[float, ...]:
+    return tuple(getattr(material, field.name) for field in fields(material))
+
+
+def _is_same(one: Robot, other: Robot) -> bool:
+    return all(
+        np.array_equal(mine, theirs)
+        for mine, theirs in zip(_all_of(one), _all_of(other), strict=True)
     )
+
+
+def _all_of(robot: Robot) -> list[Any]:
+    own = [getattr(robot, field.name) for field in fields(robot) if field.name != "platform"]
+    return own + [getattr(robot.platform, field.name) for field in fields(robot.platform)]

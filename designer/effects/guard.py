@@ -54,6 +54,9 @@ def _guarded_effect(effect: Effect, fail: Callable[[object], EffectError]) -> Ef
         changed = _attempt(lambda: on_machine(machine, values), fail)
         if not isinstance(changed, Machine):
             raise fail(f"it returned {type(changed).__name__}, not a Machine")
+        problem = _impossible(changed)
+        if problem:
+            raise fail(problem)
         return changed
 
     def change_readings(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -76,6 +79,21 @@ def _attempt(action: Callable[[], Value], fail: Callable[[object], EffectError])
         return action()
     except (Exception, SystemExit) as error:  # a stranger's code may raise anything
         raise fail(f"{type(error).__name__}: {one_line(error)}") from error
+
+
+def _impossible(machine: Machine) -> str:
+    """Return what no machine can have; a cable without strength or diameter is only measured."""
+    figures = {
+        "the platform's mass": machine.robot.platform.mass_kg,
+        "the cable's mass per length": machine.cable.linear_density_kg_per_m,
+        "the cable's stiffness": machine.cable.axial_stiffness_N,
+        "the cable's allowable tension": machine.cable.allowable_tension_N,
+    }
+    for name, value in figures.items():
+        if not value > 0.0:
+            asks = " (does it ask for measurements.cable.diameter?)" if np.isnan(value) else ""
+            return f"it makes {name} {value:g}{asks}"
+    return ""
 
 
 def _misfit(changed: object, before: Readings) -> str:

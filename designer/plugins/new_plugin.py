@@ -21,8 +21,8 @@ def module_name(name: str) -> str:
     return name.replace("-", "_")
 
 
-def write_plugin(name: str, folder: Path) -> None:
-    """Write an installable plugin with one grade file, a test and a README.
+def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
+    """Write an installable plugin with one grade file or one effect, a test and a README.
 
     Parameters
     ----------
@@ -30,6 +30,8 @@ def write_plugin(name: str, folder: Path) -> None:
         Of the distribution, the plugin and, with ``_`` for ``-``, the module.
     folder : Path
         Does not exist yet.
+    effect : bool
+        Whether it brings an effect instead of a grade.
 
     Raises
     ------
@@ -42,7 +44,7 @@ def write_plugin(name: str, folder: Path) -> None:
     if folder.exists() or folder.is_symlink():
         raise OutputError(f"{folder}: exists already (expected a new folder)")
     with output_folder(folder) as building:
-        for path, text in _files(name).items():
+        for path, text in _files(name, effect).items():
             target = building / path
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
@@ -67,11 +69,11 @@ def _problem(name: str) -> str:
     return ""
 
 
-def _files(name: str) -> dict[str, str]:
+def _files(name: str, effect: bool) -> dict[str, str]:
     """Return the text of each file of the project by its path."""
     import jinja2
 
-    template = data_folder("plugins") / "template"
+    template = data_folder("plugins") / ("template-effect" if effect else "template")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template),
         undefined=jinja2.StrictUndefined,

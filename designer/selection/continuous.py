@@ -16,6 +16,7 @@ from designer.sizing.newton import size_poses
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import Worst
+from designer.workspace.section import thinnest
 
 _MOST_TURNS = 20
 _STILL = 1e-7
@@ -31,27 +32,47 @@ def continuous_optimum(
 
     With a sheave the strength of the family depends on the diameter, so the thinnest member is a
     fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
-    the worst pose alone. NaN where no member holds, or none that the sheave allows.
+    the worst pose alone. With an effect that adds to a cable all figures depend on the diameter,
+    and its member is sought as in `designer.workspace.section`. NaN where no member holds, or none
+    that the sheave allows.
     """
     unbent = replace(allowance, sheave_diameter_m=None)
 
     def family_at(diameter_m: float) -> Material:
         is_allowed = not math.isnan(allowance.efficiency(grade, diameter_m))
-        return built.material((allowance if is_allowed else unbent).family(grade, diameter_m))
+        family = (allowance if is_allowed else unbent).family(grade, diameter_m)
+        return built.material(family, diameter_m)
 
+    def worst_with(family: Material) -> Worst:
+        demand = diameter_demand(built.robot, family, workspace.hangs_below)
+        return worst_of(workspace, demand)
+
+    if built.is_family(unbent.family(grade, grade.thickest.diameter_m)):
+        family, diameter = _member(grade, allowance, built, family_at, worst_with)
+    else:
+        diameter = thinnest(built.robot, family_at, worst_with)
+        family = family_at(diameter if math.isfinite(diameter) else grade.thickest.diameter_m)
+    is_allowed = not math.isnan(allowance.efficiency(grade, diameter))
+    return family, diameter if is_allowed else math.nan
+
+
+def _member(
+    grade: Grade,
+    allowance: Allowance,
+    built: AsBuilt,
+    family_at: _Family,
+    worst_with: Callable[[Material], Worst],
+) -> tuple[Material, float]:
     diameter = grade.sizes[0].diameter_m
     for _ in range(_MOST_TURNS):
         family = family_at(diameter)
-        demand = diameter_demand(built.robot, family, workspace.hangs_below)
-        worst = worst_of(workspace, demand)
+        worst = worst_with(family)
         if not math.isfinite(worst.demand):
             return family, math.nan
         if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):
-            diameter = worst.demand
-            break
+            return family, worst.demand
         diameter = _settled(built, worst, family_at)
-    is_allowed = not math.isnan(allowance.efficiency(grade, diameter))
-    return family, diameter if is_allowed else math.nan
+    return family, diameter
 
 
 def _settled(built: AsBuilt, worst: Worst, family_at: _Family) -> float:

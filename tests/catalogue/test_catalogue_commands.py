@@ -52,7 +52,7 @@ def test_a_list_that_comes_out_empty_is_a_negative_answer():
     ("option", "value", "words"),
     [
         ("--diameter", "3 kg", "has the unit kilogram"),
-        ("--diameter", "-3 mm", "is no diameter"),
+        ("--diameter", "-3 mm", "no rope has"),
         ("--material", "wood", "no grade is of 'wood'"),
     ],
 )

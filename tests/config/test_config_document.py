@@ -97,7 +97,7 @@ def test_empty_file(tmp_path: Path, content: str) -> None:
         ("- 1\n- 2\n", 1, "the file does not hold a mapping"),
         ("just words\n", 1, "the file does not hold a mapping"),
         ("a: 1\nb: [1, 2\nc: 3\n", 3, "this is not valid YAML: "),
-        ("a: 1\nb:\n\t- 1\n", 3, "this is not valid YAML: "),
+        ("a: 1\nb:\n\t- 1\n", 3, "a tab indents this line"),
         ("a: 1\nb: c: d\n", 2, "this is not valid YAML: "),
         ("a: 1\n---\nb: 2\n", 2, "a second document starts here"),
         ("a: 1\nb: &x [*x]\n", 2, "the alias *x contains itself"),

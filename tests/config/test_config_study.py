@@ -176,6 +176,8 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("catalogues", "default", "none"),
         Entry("measurements", "default", "none"),
         Entry("effects", "default", "none"),
+        Entry("surroundings.temperature", "default", "20 degC"),
+        Entry("format", "default", "1"),
     )
 
 

@@ -10,10 +10,14 @@ import pytest
 from wheels import install
 
 from designer.analysis import analyse
+from designer.cable import Cable
 from designer.catalogue.registry import CatalogueSource, load_catalogue
 from designer.cli import main
 from designer.config import read_study
+from designer.declared import as_built_by
+from designer.effects.load import load_effects
 from designer.errors import InputError, OutputError
+from designer.plugins.find import find_plugins
 from designer.plugins.new_plugin import write_plugin
 from designer.progress import Silent
 from designer.resources import data_folder
@@ -51,9 +55,10 @@ def test_a_new_plugin_is_installed_used_and_removed(site, tmp_path) -> None:
     assert "acme-ropes" not in {source.name for source in load_catalogue().sources}
 
 
-def test_its_own_tests_pass(site, tmp_path) -> None:
+@pytest.mark.parametrize(("effect", "passed"), [(False, "2 passed"), (True, "4 passed")])
+def test_its_own_tests_pass(site, tmp_path, effect, passed) -> None:
     project = tmp_path / "acme-ropes"
-    write_plugin("acme-ropes", project)
+    write_plugin("acme-ropes", project, effect=effect)
     install(project, site)
     root = data_folder("catalog").parent  # in a checkout, where designer may not be installed
     code = f"import sys; sys.path[:0] = [{str(site)!r}, {str(root)!r}]; import pytest; "
@@ -62,7 +67,19 @@ def test_its_own_tests_pass(site, tmp_path) -> None:
         [sys.executable, "-c", code], cwd=project, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stdout
-    assert "2 passed" in done.stdout
+    assert passed in done.stdout
+
+
+def test_a_study_may_declare_the_effect_of_a_new_plugin(site, tmp_path) -> None:
+    project = tmp_path / "acme-frost"
+    write_plugin("acme-frost", project, effect=True)
+    install(project, site)
+    config = tmp_path / "study.yaml"
+    ice = "effects: {acme_frost_ice: {thickness_m: 2 mm}}\nsurroundings: {temperature: -5 degC}\n"
+    config.write_text(STUDY.split("workspace:", maxsplit=1)[0] + ice, encoding="utf-8")
+    built = as_built_by(read_study(config, load_effects(find_plugins())))
+    rope = Cable(0.01, 0.38, 4.7e6, 1.4e4)
+    assert built.cable(rope).linear_density_kg_per_m == pytest.approx(0.4479, abs=1e-4)
 
 
 def test_the_command_says_what_comes_next(tmp_path, monkeypatch, capsys) -> None:

@@ -375,7 +375,14 @@ def test_study_with_effects_and_safety_factor(fast_robot) -> None:
     """The single product of the selection is where the search starts, as built."""
     robot, workspace = three(fast_robot)
     grade = rope(EIGHT[3])
-    built = AsBuilt(robot, linear_density_scale=1.1, axial_stiffness_scale=0.9)
+    built = AsBuilt(
+        robot,
+        lambda cable: replace(
+            cable,
+            linear_density_kg_per_m=1.1 * cable.linear_density_kg_per_m,
+            axial_stiffness_N=0.9 * cable.axial_stiffness_N,
+        ),
+    )
     selection = Selection(None, 5.0, groups=tuple(groups_of(robot)), max_distinct_products=2)
     single = select(robot, workspace, selection, [grade], built=built).chosen
     assert single is not None

@@ -172,7 +172,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     ValueError
         If the analysis has no workspace.
     """
-    study, found = as_built(analysis.study), analysis.workspace
+    study, found = as_built(analysis.study, analysis.section_m), analysis.workspace
     if found is None or analysis.sweep_file is None:
         raise ValueError("the analysis has no workspace")
     region = _workspace(study).region
@@ -198,9 +198,12 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     )
 
 
-def as_built(study: Study) -> Study:
-    """Return the study with the robot and the cables that its declared effects make of them."""
-    built = as_built_by(study)
+def as_built(study: Study, section_m: float | None = None) -> Study:
+    """Return the study with the robot and the cables that its declared effects make of them.
+
+    ``section_m`` is that of the analysis.
+    """
+    built = as_built_by(study, section_m)
     return replace(study, robot=built.robot, material=built.material(study.material), effects=())
 
 

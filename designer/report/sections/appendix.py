@@ -56,6 +56,10 @@ class AssumptionsSection:
         Which losses of strength are counted.
     effects : str
         Ids of the declared effects, which all results include; empty without any.
+    section : str
+        What stands for the configured family where the effects do not leave it one; else empty.
+    surroundings : str
+        What the laws of effects are given.
     """
 
     gravity: str
@@ -65,6 +69,8 @@ class AssumptionsSection:
     exits: str
     losses: str
     effects: str
+    section: str
+    surroundings: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +140,20 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
         exits=_exits(robot.pulley_radius_m),
         losses=_losses(selection),
         effects=", ".join(dict.fromkeys(effect.id for effect in study.effects)),
+        section=_section(analysis.section_m),
+        surroundings=f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C",
         platform=_platform(robot),
         loads=_loads(robot),
+    )
+
+
+def _section(section_m: float | None) -> str:
+    if section_m is None:
+        return ""
+    return (
+        "They do not act alike on all sections. The configured family is computed with what they "
+        f"make of its member of {fmt.millimetres(section_m)}, which is right for the worst pose; "
+        "poses that need less are mapped a little too thin."
     )
 
 

@@ -11,6 +11,7 @@ from designer.cable import Material
 from designer.report import format as fmt
 from designer.report.parts import Column, Fact, Row, Table
 from designer.selection.result import Candidate, GradeOutcome
+from designer.study import GradeFamily
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +91,18 @@ def _self_supporting(material: Material) -> str:
 def _material_of(candidate: Candidate) -> Material:
     area_m2 = candidate.size.nominal_area_m2
     return Material(
-        density_kg_per_m3=candidate.size.density_kg_per_m3,
+        density_kg_per_m3=candidate.cable.linear_density_kg_per_m / area_m2,
         youngs_modulus_Pa=candidate.cable.axial_stiffness_N / area_m2,
         allowable_stress_Pa=candidate.cable.allowable_tension_N / area_m2,
+    )
+
+
+def _whose(family: GradeFamily | None) -> str:
+    if family is None:
+        return "The configured family is an assumption about a cable."
+    return (
+        f"The configured family is that of the grade {family.grade}, as if it were sold in every "
+        f"diameter, at a safety factor of {fmt.trimmed(family.safety_factor)}."
     )
 
 
@@ -104,8 +114,8 @@ def _reasons(analysis: Analysis, real: Material, best: Candidate) -> tuple[str, 
     density = real.density_kg_per_m3 / ideal.density_kg_per_m3
     stiffness = real.youngs_modulus_Pa / ideal.youngs_modulus_Pa
     return (
-        "The configured family is an assumption about a cable. The figures of the chosen grade "
-        "come from its table. They ask for different diameters.",
+        f"{_whose(analysis.study.family)} The figures of the chosen grade come from its table. "
+        "They ask for different diameters.",
         f"On the same circle the rope carries {fmt.factor(stress)} times the allowable stress, "
         f"weighs {fmt.factor(density)} times as much and is {fmt.factor(stiffness)} times as "
         f"stiff. Sag depends on strength over weight, where the rope has "

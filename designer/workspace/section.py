@@ -1,0 +1,120 @@
+"""The section that serves where the effects on a cable are not the same for all sections.
+
+Sizing takes cables of one family: mass, stiffness and strength all grow with the section. An
+effect that adds to a cable leaves no family. It is applied to one section then, and that section
+sought which needs itself: the thinnest d with
+
+    need(pose, figures of d) <= d.
+
+Poses that need less are sized with the figures of that section, too, which are too light for
+them; the worst pose, and that its cable serves all others, is right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from designer.cable import Material
+from designer.effects.design import AsBuilt
+from designer.errors import DesignerError
+from designer.robot import Poses, Robot
+from designer.sizing.newton import size_poses
+from designer.study import Workspace
+from designer.workspace.refine import Worst
+from designer.workspace.sweep import map_workspace
+
+FamilyAt = Callable[[float], Material]
+"""From a diameter [m] to the family whose member of that diameter is right."""
+_DIAMETERS_M = np.geomspace(1e-4, 1.0, 81)
+"""Where to look for the first section that serves itself; the next one is 12 % thicker."""
+_STILL = 1e-9
+_MOST_TURNS = 20
+
+
+def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
+    """Return the thinnest diameter that serves one pose with its own figures [m].
+
+    NaN where none does that a cable can have.
+    """
+
+    def serves(diameter_m: float) -> bool:
+        return float(size_poses(robot, pose, family_at(diameter_m)).diameter_m) <= diameter_m
+
+    at = next((k for k, d in enumerate(_DIAMETERS_M.tolist()) if serves(d)), None)
+    if at is None:
+        return math.nan
+    thin, thick = float(_DIAMETERS_M[max(at - 1, 0)]), float(_DIAMETERS_M[at])
+    while thick / thin > 1.0 + _STILL:
+        middle = math.sqrt(thin * thick)
+        thin, thick = (thin, middle) if serves(middle) else (middle, thick)
+    return thick
+
+
+def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], Worst]) -> float:
+    """Return the thinnest diameter that serves all poses with its own figures [m].
+
+    The worst pose at one section tells the next section, until no pose asks for more. NaN where
+    a pose cannot be served.
+
+    Parameters
+    ----------
+    robot : Robot
+        As built.
+    family_at : callable
+        See `FamilyAt`.
+    worst_of : callable
+        Returns the pose that needs the thickest member of a family, and that diameter [m], inf
+        where no member serves it.
+
+    Raises
+    ------
+    DesignerError
+        If that does not come to an end.
+    """
+    section, tried = 0.0, float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
+    for _ in range(_MOST_TURNS):
+        worst = worst_of(family_at(tried))
+        if not np.isfinite(worst.place).all():  # every pose is left out
+            return math.nan
+        if worst.demand <= section * (1.0 + _STILL):
+            return section
+        needed = section_at(robot, Poses.at(worst.place), family_at)
+        if math.isnan(needed) or needed <= section:
+            return math.nan  # not even with what serves it alone
+        section = tried = needed
+    raise DesignerError(
+        "the declared effects differ so much between sections that none was found which serves "
+        "the workspace with its own figures"
+    )
+
+
+def section_of_pose(built: AsBuilt, pose: Poses, material: Material) -> float | None:
+    """Return the section for one pose [m]; None where the effects leave the family one.
+
+    Where no section serves, the thickest that was tried.
+    """
+    if built.is_family(material):
+        return None
+    return _or_thickest(section_at(built.robot, pose, lambda d: built.material(material, d)))
+
+
+def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Material) -> float | None:
+    """Return the section for a whole workspace [m], as for one pose."""
+    if built.is_family(material):
+        return None
+
+    def worst_of(family: Material) -> Worst:
+        found = map_workspace(built.robot, workspace, family)
+        if found.sagging is not None:
+            return Worst(found.sagging.place, found.sagging.diameter_m)
+        pose = found.infeasible_pose
+        return Worst(np.full(6, np.nan) if pose is None else pose.place, math.inf)
+
+    return _or_thickest(thinnest(built.robot, lambda d: built.material(material, d), worst_of))
+
+
+def _or_thickest(diameter_m: float) -> float:
+    return float(_DIAMETERS_M[-1]) if math.isnan(diameter_m) else diameter_m

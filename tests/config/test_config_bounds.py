@@ -1,0 +1,206 @@
+"""Numbers that no machine has are refused, with the reason, and never kept thinking about."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+from benchmarks.mutants import NUMBERS, no_longer_than, spoilt
+from pydantic import BaseModel
+
+from designer.catalogue.family import families
+from designer.catalogue.files import read_grade
+from designer.catalogue.schema import GradeSection
+from designer.config import read_study
+from designer.config.bounds import BOUNDS
+from designer.config.fields import Quantity
+from designer.config.schema import StudySection
+from designer.errors import Fault, InputError
+from designer.plugins.find import find_plugins
+from designer.resources import data_folder, example_file, example_names
+from designer.selection_json import finite
+from designer.study import GradeFamily, Study
+
+StudyOf = Callable[[str], Study]
+FaultsOf = Callable[[str], list[Fault]]
+
+
+def quantities(kind: Any, seen: set[Any]) -> Iterator[Quantity]:
+    """Yield the annotation of every number in a schema."""
+    if isinstance(kind, Quantity):
+        yield kind
+    elif isinstance(kind, type) and issubclass(kind, BaseModel):
+        if kind not in seen:
+            seen.add(kind)
+            for info in kind.model_fields.values():
+                yield from quantities(info.annotation, seen)
+                for part in info.metadata:
+                    yield from quantities(part, seen)
+    else:
+        for part in get_args(kind):
+            yield from quantities(part, seen)
+
+
+@pytest.mark.parametrize("schema", [StudySection, GradeSection])
+def test_every_number_has_two_ends_and_a_reason(schema: type[BaseModel]) -> None:
+    found = list(quantities(schema, set()))
+    assert len(found) > 5
+    # the figures of a size are looked at by designer.catalogue.checks, by the same table
+    sizes = [one for one in found if one == Quantity(one.dimension, above=0.0)]
+    assert len(sizes) == (4 if schema is GradeSection else 0)
+    for one in found:
+        if one not in sizes:
+            assert one.at_least is not None and one.at_most is not None
+            assert one.reason
+    for bound in BOUNDS.values():
+        assert -math.inf < bound.least < bound.most < math.inf
+
+
+MISTAKES = [
+    ("safety_factor: 4", "safety_factor: 4\n  sheave_diameter: 250", "did you mean '250 mm'?"),
+    ("safety_factor: 4", "safety_factor: 4\n  sheave_diameter: 250", "mine hoists have up to 9 m"),
+    ("safety_factor: 4", "safety_factor: 1e6", "at most 100: lifts of persons have 12"),
+    ("180 kg", "1e300 kg", "at most 1e8 kg"),
+    ("pose: [15, 9, 4]", "pose: 15, 9, 4", "a list stands in brackets: [15, 9, 4]"),
+    ("anchors: [", "gravity: 0, 0, -1\n  anchors: [", "in brackets: [0, 0, -1]"),
+    ("safety_factor: 4", "grades: a, b", "in brackets: [a, b]"),
+    ("pose: [15, 9, 4]", "pose: [15000000, 9, 4]", "at most 1e7 m: as far as survey"),
+    ("pose: [15, 9, 4]", "pose: [150000, 9, 4]", "pose: lies 1.5e+05 m from the exit points"),
+    ("z: [1, 8]", "z: [1, 800000]", "workspace.region.z: lies 8e+05 m from"),
+    ("12]]", "12], [1e6, 1e6, 12]]", "the exit points are 1e+06 m apart"),
+    ("pose: [15, 9, 4]", "surroundings: {temperature: 5000}", "a bare number is in degC"),
+    (
+        "pose: [15, 9, 4]",
+        f"effects: {{pulley_radius: {{radius_m: {'1' * 300}}}}}",
+        "effects.pulley_radius.radius_m: 1.111111111e+299 is out of range",
+    ),
+]
+FLAT = """\
+robot:
+  anchors: [[0, 0, 12], [30, 0, 12], [15, 26, 12]]
+  platform: {mass: 180 kg}
+cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}
+pose: [15, 9, 4]
+workspace: {region: {prism: anchors, inset: 3 m, z: [1, 8]}}
+selection:
+  safety_factor: 4
+"""
+
+
+@pytest.mark.parametrize(("old", "new", "words"), MISTAKES)
+def test_what_no_machine_has_is_refused_with_the_reason(
+    faults_of: FaultsOf, old: str, new: str, words: str
+) -> None:
+    assert old in FLAT
+    told = [str(fault) for fault in faults_of(FLAT.replace(old, new))]
+    assert any(words in line for line in told), told
+
+
+def test_coordinates_of_a_survey_are_taken(study_of: StudyOf) -> None:
+    shift = "[[5000000, 5300000, 12], [5000030, 5300000, 12], [5000015, 5300026, 12]]"
+    text = FLAT.replace("[[0, 0, 12], [30, 0, 12], [15, 26, 12]]", shift)
+    study = study_of(text.replace("[15, 9, 4]", "[5000015, 5300009, 4]"))
+    assert study.robot.exit_points_m[1, 0] == 5000030.0
+
+
+def test_a_tab_is_told_with_its_line(faults_of: FaultsOf) -> None:
+    (fault,) = faults_of("robot:\n\tanchors: [[0, 0, 1]]\n")
+    assert str(fault).endswith(":2: a tab indents this line (expected blanks, which YAML asks for)")
+
+
+@pytest.mark.parametrize("number", [n for n in NUMBERS if len(n) > 16])
+def test_long_numbers_are_settled_at_once(tmp_path: Path, number: str) -> None:
+    path = tmp_path / "mutant.yaml"
+    for place in ("180 kg", "30,", "198 MPa", "3 m", "4\n"):
+        path.write_text(FLAT.replace(place, place.replace(place.split()[0], number)))
+        with no_longer_than(10):
+            try:
+                study = read_study(path)
+            except InputError:
+                continue
+        assert math.isfinite(study.robot.platform.mass_kg)
+
+
+def test_mutants_are_read_or_refused(tmp_path: Path) -> None:
+    chance, path, refused = random.Random(7), tmp_path / "mutant.yaml", 0
+    material_of = families(find_plugins(with_plugins=False))
+    studies = [example_file(name).read_text(encoding="utf-8") for name in example_names()]
+    tables = [p.read_text(encoding="utf-8") for p in sorted(data_folder("catalog").glob("*.yaml"))]
+    for sources, read in (
+        (studies, lambda p: read_study(p, None, material_of)),
+        (tables, read_grade),
+    ):
+        for _ in range(40):
+            path.write_text(spoilt(chance.choice(sources), chance), encoding="utf-8")
+            with no_longer_than(10):
+                try:
+                    read(path)
+                except InputError:
+                    refused += 1
+    assert 20 < refused < 80
+
+
+def test_what_json_cannot_hold_is_nothing() -> None:
+    values = {"a": [1.0, math.inf, {"b": math.nan}], "c": (2, "x", None, True)}
+    expected = {"a": [1.0, None, {"b": None}], "c": [2, "x", None, True]}
+    assert json.loads(json.dumps(finite(values), allow_nan=False)) == expected
+
+
+GRADE_CABLE = FLAT.replace(
+    "{density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}",
+    "{grade: unirope-7x19-galvanised, safety_factor: 5}",
+)
+
+
+def graded(folder: Path, text: str) -> Study:
+    path = folder / "crane.yaml"
+    path.write_text(text, encoding="utf-8")
+    return read_study(path, material_of=families(find_plugins(with_plugins=False)))
+
+
+def test_a_grade_may_be_the_configured_family(tmp_path: Path) -> None:
+    study = graded(tmp_path, GRADE_CABLE)
+    own = read_grade(data_folder("catalog") / "unirope-7x19-galvanised.yaml")
+    assert study.material == own.family(5.0)
+    assert study.family == GradeFamily("unirope-7x19-galvanised", 5.0)
+    (entry,) = (e for e in study.source.entries if e.field == "cable.grade")
+    assert "on the nominal circle" in entry.value_SI
+    assert entry.given == "unirope-7x19-galvanised"
+
+
+def test_its_safety_factor_is_that_of_the_selection_if_left_out(tmp_path: Path) -> None:
+    study = graded(tmp_path, GRADE_CABLE.replace(", safety_factor: 5", ""))
+    assert study.family is not None
+    assert study.family.safety_factor == 4.0
+    (entry,) = (e for e in study.source.entries if e.field == "cable.safety_factor")
+    assert (entry.given, entry.value_SI) == ("default", "4")
+
+
+@pytest.mark.parametrize(
+    ("grade", "words"),
+    [
+        ("6x36", "unirope-6x36-fc-1960, unirope-6x36-iwrc-1960"),
+        ("unirope-7x19-galvanized", "'unirope-7x19-galvanised'"),
+        ("astm-a475-7-wire-ehs", "of the plugin guy-strand, which --no-plugins leaves out"),
+        ("unirope-7x19-galvanised, density: 5290", "unknown field 'density'"),
+        ("unirope-7x19-galvanised, safety_factor: 0.5", "at least 1"),
+    ],
+)
+def test_a_grade_that_cannot_be_is_told_with_its_line(
+    tmp_path: Path, grade: str, words: str
+) -> None:
+    text = re.sub(r"grade: .*", f"grade: {grade}}}", GRADE_CABLE)
+    with pytest.raises(InputError, match=r"crane\.yaml:4: cable\.") as caught:
+        graded(tmp_path, text)
+    assert words in str(caught.value)
+
+
+def test_without_a_catalogue_a_grade_is_refused(faults_of: FaultsOf) -> None:
+    (fault,) = faults_of(GRADE_CABLE)
+    assert "no catalogue was given" in str(fault)

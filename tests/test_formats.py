@@ -1,0 +1,87 @@
+"""Files of older and newer formats."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from designer import __version__
+from designer.catalogue.files import read_grade
+from designer.config import read_study
+from designer.errors import InputError
+from designer.formats import RESULT_FORMAT
+from designer.resources import data_folder, example_file
+from designer.result_json import read_result
+
+
+def study_text(first_line: str) -> str:
+    return f"{first_line}\n{example_file('yard').read_text(encoding='utf-8')}"
+
+
+def grade_text(first_line: str) -> str:
+    path = data_folder("catalog") / "unirope-7x19-galvanised.yaml"
+    return f"{first_line}\n{path.read_text(encoding='utf-8')}"
+
+
+@pytest.mark.parametrize(("text", "read"), [(study_text, read_study), (grade_text, read_grade)])
+def test_configs_and_grades_of_this_format_and_without_are_read(tmp_path, text, read) -> None:
+    path = tmp_path / "file.yaml"
+    for line in ("", "format: 1", "format:"):
+        path.write_text(text(line), encoding="utf-8")
+        assert read(path)
+
+
+@pytest.mark.parametrize(("text", "read"), [(study_text, read_study), (grade_text, read_grade)])
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (
+            "7",
+            f"1: format: format 7 is newer than this cdpr-designer {__version__} reads",
+        ),
+        ("7", f"this file needs cdpr-designer newer than {__version__}"),
+        ("0", "is no format (expected a whole number, 1 to 1)"),
+        ("1.5", "is no format"),
+        ("true", "is no format"),
+        ("new", "is no format"),
+        ("9" * 300, "is no format"),
+    ],
+)
+def test_other_formats_say_what_to_do(tmp_path, text, read, number, words) -> None:
+    path = tmp_path / "file.yaml"
+    path.write_text(text(f"format: {number}"), encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read(path)
+    assert words in str(caught.value)
+
+
+def result(folder: Path, **changes: object) -> Path:
+    path = folder / "result.json"
+    values = {"format": RESULT_FORMAT, "name": "x", "provenance": {"version": "0.1.0"}}
+    path.write_text(json.dumps({**values, **changes}), encoding="utf-8")
+    return path
+
+
+def test_results_of_this_format_and_without_are_read(tmp_path) -> None:
+    assert read_result(result(tmp_path))["name"] == "x"
+    old = {"name": "x", "provenance": {}}
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps(old), encoding="utf-8")
+    assert read_result(path) == {"format": 1, **old}
+
+
+def test_a_newer_result_names_the_version_that_it_needs(tmp_path) -> None:
+    path = result(tmp_path, format=99, provenance={"version": "4.2.0"})
+    with pytest.raises(InputError, match=r"needs cdpr-designer 4\.2\.0 or newer"):
+        read_result(path)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", "{", '{"format": 1}', "\x00", "[" * 10_000])
+def test_what_is_no_result_is_one_line(tmp_path, text) -> None:
+    path = tmp_path / "result.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"result.json: (is no result|cannot be read)") as caught:
+        read_result(path)
+    assert "\n" not in str(caught.value)
