@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.branches import find_value, rise, upward_share
+from designer.kernel.branches import rise, upward_share
 from designer.kernel.compiling import kernel
 from designer.kernel.layout import LOAD_FACTOR, WEIGHT
 from designer.kernel.redundant import massless
@@ -48,16 +48,13 @@ from designer.kernel.redundant_layout import (
     D,
     P,
     Pose,
-    Scratch,
 )  # fmt: skip
 from designer.kernel.redundant_lp import new_programme
 from designer.kernel.redundant_pose import (
-    bend,
     new_pose,
     place,
     settled_length,
     smallest_pull,
-    write_wrenches,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 from designer.verdict import Verdict
@@ -69,6 +66,7 @@ _START_OF_STRAIGHT = 0.8
 _KEEPS = (0.5, 0.9)
 _BETTER = 1e-7
 _SURELY = 1e-9
+_NOTHING = 1e-300
 _ABOVE_LEAST = 1.1
 _SHORTER = 0.7
 _HALVINGS = 40
@@ -124,9 +122,7 @@ def search_range(
         if out_verdict[at] == _SOLVED:
             best = to_scaled / out_poses[at, WEIGHT] if sizing else -out_poses[at, LOAD_FACTOR]
         state = np.uint64(88172645463325252)
-        is_proved = (
-            sizing and best == -np.inf and straight_c > 0.0 and _straight_bounds(pose, scratch)
-        )
+        is_proved = sizing and best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
         for attempt in range(n + 3 + _RANDOM_STARTS):
             if is_proved and best == -np.inf:
                 out_verdict[at] = _NO_FINITE_CABLE
@@ -202,26 +198,32 @@ def _random(state: np.uint64) -> tuple[np.uint64, float]:
 
 
 @kernel
-def _straight_bounds(pose: Pose, scratch: Scratch) -> bool:
-    """Tell whether pulls in the proportions of straight cables give a wrench that proves it.
+def _point_bounds(pose: Pose) -> bool:
+    """Tell whether a point mass on as many cables as it has degrees of freedom has no c above zero.
 
-    They do wherever such pulls are all that balance sideways: a point mass on as many cables as it
-    has degrees of freedom.
+    Without a horizontal load its pulls are p = s λ, with λ as straight cables have it. Strength
+    leaves each p a range; if these have no s in common, nothing is left. The lift grows with s, so
+    if it is below zero at the largest s, it is so for all.
     """
-    c = pose.cables
-    n, share = c.shape[1], np.inf
+    c, rows, load = pose.cables, pose.rows, pose.load
+    n = c.shape[1]
+    if rows.size != n or rows[n - 1] != 2 or load[0] != 0.0 or load[1] != 0.0:
+        return False
+    least, most = 0.0, np.inf
     for i in range(n):
-        _, high = _range(pose, i)
-        pull = c[STRAIGHT, i] / (c[SHARE, i] * c[CHORD, i])
-        if pull > 0.0:
-            share = min(share, high / pull)
+        low, high = _range(pose, i)
+        share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
+        least = max(least, low / share)
+        most = min(most, high / share)
+    if least > most * (1.0 + _SURELY):
+        return True
+    lift_of_all, size = 0.0, 0.0
     for i in range(n):
-        pull = share * c[STRAIGHT, i] / (c[SHARE, i] * c[CHORD, i])
-        c[P, i] = max(pull, PULL_FLOOR)
-    bend(pose)
-    write_wrenches(pose)
-    known = find_value(pose, 0.0, 1.0, scratch.square, scratch.value, scratch.rest)
-    return known and _bounds(pose, scratch.value)
+        share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
+        up = c[SHARE, i] * rise(pose, i, most * share)
+        lift_of_all += up
+        size += abs(up)
+    return bool(lift_of_all < -_SURELY * size)
 
 
 @kernel
@@ -320,6 +322,15 @@ def _range(pose: Pose, i: int) -> tuple[float, float]:
             high = p
         else:
             borne = p
+    slack = borne
     while low > PULL_FLOOR and _top(pose, i, low) <= strength:
+        slack = low
         low *= _SHORTER
-    return max(low, PULL_FLOOR), high
+    low = max(low, PULL_FLOOR)
+    for _ in range(_HALVINGS):
+        p = 0.5 * (slack + low)
+        if _top(pose, i, p) > strength:
+            low = p
+        else:
+            slack = p
+    return low, high
