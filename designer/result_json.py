@@ -20,6 +20,7 @@ from designer.interference.survey import Interference
 from designer.output import write_whole
 from designer.qualities import Qualities
 from designer.selection_json import finite, selection_dict
+from designer.sizing.newton import Sizing
 from designer.space import turn_of
 from designer.statics.rest import RestingPlaces
 from designer.study import Study
@@ -150,6 +151,7 @@ def _pose(study: Study, pose: PoseAnalysis) -> Json:
             "closure_residual_m": _number(statics.closure_residual_m().max()),
             "equilibrium_residual_N": _number(abs(statics.equilibrium_residual_N()).max()),
             "status": Verdict(int(statics.verdict)).label,
+            "thinnest": _how_surely(sizing),
         },
         "massless": {
             "diameter_m": _number(sizing.massless_diameter_m),
@@ -166,6 +168,13 @@ def _pose(study: Study, pose: PoseAnalysis) -> Json:
         "optimum": {"diameter_m": diameter},
         "rest": _rest(pose.rest),
     }
+
+
+def _how_surely(sizing: Sizing) -> str | None:
+    """Return whether it is proved that no thinner cable holds the pose, or it is the best found."""
+    if not sizing.statics.is_solved:
+        return None
+    return "proved" if sizing.is_thinnest else "found"
 
 
 def _rest(rest: RestingPlaces | None) -> Json | None:

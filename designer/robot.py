@@ -146,6 +146,15 @@ class Robot:
         return self.n_cables > self.degrees_of_freedom
 
     @property
+    def has_one_branch(self) -> bool:
+        """Whether a pose has one equilibrium only: a point mass on as few cables as hold it.
+
+        All pulls are then one number times the barycentric weights of the position, and the lift
+        grows with that number.
+        """
+        return self.is_point_mass and self.is_square and self.pulley_radius_m == 0.0
+
+    @property
     def is_upright(self) -> bool:
         """Whether the base frame surely is the upright frame, so that nothing has to be turned."""
         down = self.gravity_direction

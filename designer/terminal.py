@@ -296,7 +296,7 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
         else:
             table.add_row(row[0], _figure(1e3 * row[1], 5), _figure(row[2], 2))
     table.add_row(
-        "[bold]optimum[/]",
+        f"[bold]{'thinnest' if sizing.is_thinnest else 'thinnest found'}[/]",
         f"[bold]{_figure(1e3 * float(sizing.diameter_m), 5)}[/]",
         f"[bold]{_figure(float(statics.largest_tension_N), 2)}[/]",
     )

@@ -17,6 +17,7 @@ class Verdict(IntEnum):
     NO_FINITE_CABLE = 2
     NOT_CONVERGED = 3
     RANK_DEFICIENT = 4
+    NOT_FOUND = 5
 
     @property
     def label(self) -> str:
@@ -31,14 +32,20 @@ class Verdict(IntEnum):
 
 _SENTENCES = {
     Verdict.SOLVED: "The cables hold the platform; both residuals are within tolerance.",
-    Verdict.OUTSIDE_HULL: "No positive cable tensions can hold the platform here.",
+    Verdict.OUTSIDE_HULL: (
+        "No cables can hold the platform here, straight or sagging: proved by a wrench that does "
+        "work on the load and on none of them."
+    ),
     Verdict.NO_FINITE_CABLE: (
         "No section is thick enough: the cable's own weight alone exceeds the allowable stress."
     ),
     Verdict.RANK_DEFICIENT: (
-        "The cables' directions leave a force or moment that no tensions can take up."
+        "The straight cables' directions leave a force or moment that no tensions can take up."
     ),
     Verdict.NOT_CONVERGED: "The solver found no solution and no proof that there is none.",
+    Verdict.NOT_FOUND: (
+        "Straight cables cannot hold the platform here; sagging ones might, but none were found."
+    ),
 }
 
 

@@ -31,7 +31,7 @@ workspace:
 selection: {{grades: [gost-6x19s-iwrc-1960, unirope-7x19-galvanised], safety_factor: 2}}
 """
 POSE_KEYS = {
-    "sagging": {"diameter_m", "max_tension_N", "lengths_m", "tensions_N", "status"},
+    "sagging": {"diameter_m", "max_tension_N", "lengths_m", "tensions_N", "status", "thinnest"},
     "massless": {"diameter_m", "max_tension_N"},
     "loop": {"iterates"},
     "optimum": {"diameter_m"},

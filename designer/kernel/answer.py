@@ -51,10 +51,7 @@ _ON_BOUNDARY = 1e-12
 _SINGULAR = 1e12
 # Numba knows plain integers, not members of an enumeration.
 _SOLVED = int(Verdict.SOLVED)
-_OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
-_NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 _NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
-_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
 
 
 @kernel
@@ -134,41 +131,23 @@ def judge(
     residual: float,
     c: float,
     overload: float,
-    lowest: float,
-    highest: float,
-    load: float,
     sizing: bool,
 ) -> int:
-    """Return the verdict of a pose.
+    """Return whether a pose is solved; why not is for others to prove.
 
     When sizing, the state is the balance at the stress limit. It is a finite cable only if c is
-    above zero (zero is the infinite section) and no slack cable breaks the limit: pulling harder
-    would lift that cable but overload the taut one, so no section remains. Where straight cables
-    need no tension in one of them, that one would have to hang without end.
+    above zero (zero is the infinite section) and no slack cable breaks the limit.
 
     Parameters
     ----------
     residual, c, overload : float
         Of the state; an infinite overload marks a cable too slack to be evaluated.
-    lowest, highest : float
-        Tensions of straight cables; a negative one means that the pose is outside the hull.
-    load : float
-        Force and moment over reach that they hold; where they are far above it, cables so directed
-        cannot take up every wrench.
     sizing : bool
         Whether the section was sought or given.
     """
     closed = residual <= TOLERANCE
     finite = (c > 0.0 and overload <= _AT_LIMIT) if sizing else overload < np.inf
-    if closed and finite:
-        return _SOLVED
-    if not highest <= _SINGULAR * load:
-        return _RANK_DEFICIENT
-    if not lowest >= -_ON_BOUNDARY * highest:
-        return _OUTSIDE_HULL
-    if sizing and (closed or lowest <= _ON_BOUNDARY * highest):
-        return _NO_FINITE_CABLE
-    return _NOT_CONVERGED
+    return _SOLVED if closed and finite else _NOT_CONVERGED
 
 
 @kernel
@@ -189,9 +168,6 @@ def store(
             poses[RESIDUAL, j],
             poses[C, j],
             poses[OVERLOAD, j],
-            poses[LOWEST, j],
-            poses[HIGHEST, j],
-            poses[PULL, j],
             sizing,
         )
         blank = 1.0 if verdict == _SOLVED else np.nan
@@ -202,6 +178,8 @@ def store(
             out_cables[at, i, FORCE_Z] = -cables[i, V, j] * w
         closed = poses[RESIDUAL, j] <= TOLERANCE
         held = poses[LOWEST, j] >= -_ON_BOUNDARY * poses[HIGHEST, j]
+        # Where they are far above the load, straight cables leave some wrench without tension.
+        held = held and poses[HIGHEST, j] <= _SINGULAR * poses[PULL, j]
         out_verdict[at] = verdict
         out_poses[at, WEIGHT] = w
         out_poses[at, CLOSURE_ERROR] = poses[CLOSURE, j] * blank

@@ -8,12 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray, VerdictArray, require_shape
+from designer.arrays import BoolArray, FloatArray, VerdictArray, require_shape
 from designer.kernel import layout
+from designer.kernel.branches import PROVED, rate_range
 from designer.kernel.calling import plain, pool
+from designer.kernel.cone import refuse_range
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
+from designer.kernel.redundant_search import search_range
 from designer.kernel.square import solve_range
 from designer.robot import Poses, Robot
+from designer.verdict import Verdict
 
 _SHARE = 32 * layout.LANES
 
@@ -38,6 +42,9 @@ class Solution:
         Largest tension over strength; NaN only where no state was found.
     massless_tension_N : array (n_poses,)
         Largest tension of straight, weightless cables [N]; NaN outside their hull.
+    potential : array (n_poses,)
+        Bound of what other branches could gain, relative, as `designer.kernel.branches` has it;
+        up to `branches.PROVED` where the branch found is proved to be the best of all.
     """
 
     verdict: VerdictArray
@@ -49,6 +56,12 @@ class Solution:
     equilibrium_residual_N: FloatArray
     load_factor: FloatArray
     massless_tension_N: FloatArray
+    potential: FloatArray
+
+    @property
+    def is_best(self) -> BoolArray:
+        """Whether a pose (n_poses,) is solved, and its branch proved to be the best of all."""
+        return np.asarray((self.verdict == Verdict.SOLVED) & (self.potential <= PROVED))
 
 
 def solve_batch(
@@ -60,6 +73,8 @@ def solve_batch(
     strength_m: FloatArray,
     inverse_weight_m_per_N: float | None,
     force_N: FloatArray | None = None,
+    *,
+    is_thorough: bool = False,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
@@ -78,6 +93,8 @@ def solve_batch(
         strength allows.
     force_N : array (n_poses, 3), optional
         Force on the platform beside its weight, in that frame [N].
+    is_thorough : bool
+        Whether to look for other branches as well, which takes a thousand times as long.
 
     Raises
     ------
@@ -114,11 +131,19 @@ def solve_batch(
         out_poses,
         out_verdict,
     )
+    least_N = robot.tension_min_N if robot.is_redundant else 0.0
+    of_redundant = (*arguments[:-3], least_N, *arguments[-3:])
     if robot.is_redundant:
-        arguments = (*arguments[:-3], robot.tension_min_N, *arguments[-3:])
-        _share_out(solve_redundant_range, count, arguments)
+        _share_out(solve_redundant_range, count, of_redundant)
     else:
         _share_out(solve_range, count, arguments)
+    potential = np.zeros(count)
+    if inverse_weight_m_per_N != 0.0:  # at infinite section nothing is chosen
+        if is_thorough:
+            _share_out(search_range, count, of_redundant)
+        if not robot.has_one_branch:
+            sizing = inverse_weight_m_per_N is None
+            _share_out(rate_range, count, (*arguments[:10], sizing, *of_redundant[11:], potential))
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out_cables[..., [layout.FORCE_X, layout.FORCE_Z]] *= relative_weights[:, None]
     return Solution(
@@ -131,6 +156,7 @@ def solve_batch(
         equilibrium_residual_N=out_poses[:, layout.BALANCE_ERROR],
         load_factor=out_poses[:, layout.LOAD_FACTOR],
         massless_tension_N=out_poses[:, layout.MASSLESS_TENSION],
+        potential=potential,
     )
 
 
@@ -193,6 +219,49 @@ def _require_one_batch(
         )
     if force_N is not None and force_N.shape not in ((1, 3), (count, 3)):
         raise ValueError(f"forces {force_N.shape} do not fit {count} poses")
+
+
+def refuse_batch(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None = None
+) -> tuple[VerdictArray, FloatArray, FloatArray]:
+    """Return what is proved of poses (n_poses,) that no cables were found for; see `cone`.
+
+    Parameters
+    ----------
+    robot, poses, exit_points_m, force_N
+        As for `solve_batch`.
+
+    Returns
+    -------
+    verdict : array (n_poses,)
+        Outside the hull or rank deficient if that is proved; not found if straight cables are
+        proved not to hold the pose; else not converged.
+    wrench : array (n_poses, degrees of freedom)
+        Of a pose outside the hull, what separates the load from all that cables can do: of unit
+        length, moments over the reach of the attachments.
+    separation : array (n_poses,)
+        Its product with the load of unit length.
+    """
+    n, count = robot.n_cables, len(poses.position_m)
+    wrench = np.empty((count, robot.degrees_of_freedom))
+    separation = np.empty(count)
+    verdict = np.empty(count, dtype=np.int8)
+    arguments = (
+        plain(exit_points_m.reshape(-1, n, 3)),
+        plain(robot.attachments_m),
+        plain(robot.loads_N(force_N)),
+        plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        plain(poses.position_m),
+        plain(poses.rotation.reshape(-1, 3, 3)),
+        robot.balance_rows,
+        robot.tension_min_N if robot.is_redundant else 0.0,
+        wrench,
+        separation,
+        verdict,
+    )
+    _share_out(refuse_range, count, arguments)
+    return verdict, wrench, separation
 
 
 def _share_out(solve: Callable[..., None], count: int, arguments: tuple[Any, ...]) -> None:

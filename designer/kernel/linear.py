@@ -45,7 +45,10 @@ def _eliminate(
         a, b = upper[k, j], lower[k, j]
         keeps = abs(a) >= abs(b)
         keep[j] = 1.0 if keeps else 0.0
-        factor[j] = b / a if keeps else a / b
+        # Two zeros need no exchange; the row that has this column may come later.
+        pivot = a if keeps else b
+        other = b if keeps else a
+        factor[j] = other / pivot if pivot != 0.0 else 0.0
     for m in range(k, columns):
         for j in range(factor.size):
             a, b = upper[m, j], lower[m, j]

@@ -25,7 +25,6 @@ from designer.kernel.compiling import element, kernel
 from designer.kernel.redundant_answer import (
     NOTHING,
     OPTIMAL_WITHIN,
-    measure,
     store,
     store_deficient,
 )
@@ -72,9 +71,7 @@ _SMALL_STEP = 1e-6
 # Share of its pull that a cable keeps at least in a step of the interior point; then more careful.
 _KEPT_PULLS = (0.5, 0.9)
 _START_OF_STRAIGHT = 0.8
-_BALANCED = 1e-10
 _SOLVED = int(Verdict.SOLVED)
-_NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 _NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
 _OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
 _RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
@@ -302,18 +299,5 @@ def solve_pose(
         s, gap = improve(pose, ask, start, keep, scratch)
         c = (ask.c_0 + s * ask.c_s) / to_scaled
         verdict = store(out_cables, out_poses, out_verdict, at, pose, c, gap, straight_c, sizing)
-        if verdict != _NOT_CONVERGED:
+        if verdict == _SOLVED:
             return
-        if sizing and is_overloaded_by_own_weight(pose, scratch):
-            out_verdict[at] = _NO_FINITE_CABLE
-            return
-
-
-@kernel
-def is_overloaded_by_own_weight(pose: Pose, scratch: Scratch) -> bool:
-    """Tell whether at infinite section the best internal forces still exceed the strength."""
-    ask = Ask(0.0, 0.0, 0.0, -1.0)
-    s, gap = improve(pose, ask, -1.0, _KEPT_PULLS[0], scratch)
-    closure, error, _ = measure(pose, 0.0)
-    balanced = closure + error <= _BALANCED * pose.scale[FORCE]
-    return balanced and gap <= OPTIMAL_WITHIN and -s >= 1.0

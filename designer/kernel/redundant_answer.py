@@ -49,10 +49,7 @@ _AT_LIMIT = 1.0 + 1e-9
 NOTHING = 1e-9
 """Scaled inverse weight below which straight cables hold nothing."""
 _SOLVED = int(Verdict.SOLVED)
-_OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
-_NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 _NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
-_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
 
 
 @kernel
@@ -104,7 +101,7 @@ def store(
     straight_c: float,
     sizing: bool,
 ) -> int:
-    """Write a pose's answer, NaN for all but solved poses; return its verdict.
+    """Write a pose's answer, NaN unless it is solved; return that, or not converged.
 
     Parameters
     ----------
@@ -124,13 +121,7 @@ def store(
     is_balanced = closure / shortest + error / heaviest <= TOLERANCE
     is_optimal = gap <= OPTIMAL_WITHIN
     holds = (c > 0.0 and overload <= _AT_LIMIT) if sizing else overload < np.inf
-    verdict = _NOT_CONVERGED
-    if is_balanced and is_optimal and holds:
-        verdict = _SOLVED
-    elif not straight_c > NOTHING:
-        verdict = _OUTSIDE_HULL
-    elif sizing and is_balanced and is_optimal:
-        verdict = _NO_FINITE_CABLE
+    verdict = _SOLVED if is_balanced and is_optimal and holds else _NOT_CONVERGED
     blank = 1.0 if verdict == _SOLVED else np.nan
     w = blank / c
     massless = 0.0
@@ -153,7 +144,7 @@ def store(
 def store_deficient(
     out_cables: FloatArray, out_poses: FloatArray, out_verdict: IntArray, at: int
 ) -> None:
-    """Write the answer of a pose in which no internal force can hold some wrench."""
+    """Write the answer of a pose in which straight cables leave some wrench without tension."""
     out_cables[at] = np.nan
     out_poses[at] = np.nan
-    out_verdict[at] = _RANK_DEFICIENT
+    out_verdict[at] = _NOT_CONVERGED

@@ -75,6 +75,13 @@ _FLAT = 1e-9
 
 @kernel
 def improve(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
+    """Start from straight cables and a guess of s; return s and how far it is from optimal."""
+    pull_straight(pose, ask, s)
+    return climb(pose, ask, s, keep, scratch)
+
+
+@kernel
+def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
     """Start from the pulls in `pose` and a guess of s; return s and how far it is from optimal."""
     c = pose.cables
     _begin(pose, ask, s)
@@ -126,8 +133,8 @@ def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
 
 
 @kernel
-def _begin(pose: Pose, ask: Ask, s: float) -> None:
-    """Move every pull well above its smallest, and give all slacks and multipliers a start."""
+def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
+    """Pull as much as straight cables have to, and every cable well above its smallest pull."""
     c = pose.cables
     scaled_c = ask.c_0 + s * ask.c_s
     make_straight(pose, _CARRIED)
@@ -140,6 +147,12 @@ def _begin(pose: Pose, ask: Ask, s: float) -> None:
             y = least + _START_SHARE
         y = max(y, _START_PULL / c[UNIT, i])
         c[P, i] = y * c[UNIT, i]
+
+
+@kernel
+def _begin(pose: Pose, ask: Ask, s: float) -> None:
+    """Give all slacks and multipliers a start."""
+    c = pose.cables
     bend(pose)
     for i in range(c.shape[1]):
         c[HEIGHT, i] = max(_height(pose, ask, s, i), _START_SHARE)

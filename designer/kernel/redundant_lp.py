@@ -23,6 +23,7 @@ _TOLERANCE = 1e-11
 _RANK = 1e-9
 _SMALLEST_PIVOT = 1e-12
 _MOST_PIVOTS = 60
+"""And as many again as there are unknowns."""
 _NOWHERE, _AT_ZERO, AT_TOP = range(3)
 
 
@@ -123,7 +124,7 @@ def rebuild(lp: Programme) -> bool:
 def maximise(lp: Programme) -> int:
     """Solve from an eliminated table; return `OPTIMAL` or why not."""
     _rest(lp)
-    for _ in range(_MOST_PIVOTS):
+    for _ in range(_MOST_PIVOTS + lp.dual.size):
         s_row = _vertex(lp)
         if _has_closed(lp):
             # Beyond the s at which some room closes the bounds cross: rest anew, and come down.

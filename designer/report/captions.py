@@ -55,7 +55,7 @@ def cover(maps: WorkspaceMaps) -> str:
     size = np.ptp(maps.region.bounds_m, axis=0)
     extent = " × ".join(fmt.trimmed(float(edge), 3) for edge in size if edge > 0.0)
     region = f"the region, {extent}\u00a0m" if maps.has_area else "the points"
-    return f"Diameter that the configured cable family needs over {region}.{_span(_shown(maps))}"
+    return f"Needed diameter of the configured cable family over {region}.{_span(_shown(maps))}"
 
 
 def _shown(maps: WorkspaceMaps) -> Iterable[Field]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, statics_of
@@ -30,6 +30,9 @@ class Sizing:
         Worst closure error of the solver's own form of eqs. (7)-(8) [m].
     equilibrium_residual_N : array (...)
         What is left of the platform's balance, moments divided by the platform's reach [N].
+    is_thinnest : array (...)
+        Whether it is proved that no thinner cable of the family holds the pose, whichever way the
+        cables run (`designer.kernel.branches`); where not, it is the thinnest found.
     """
 
     statics: Statics
@@ -38,6 +41,7 @@ class Sizing:
     massless_diameter_m: FloatArray
     closure_residual_m: FloatArray
     equilibrium_residual_N: FloatArray
+    is_thinnest: BoolArray
 
 
 def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
@@ -45,7 +49,8 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
 
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
-    cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`.
+    cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`. Where
+    another branch might be thinner, `designer.kernel.redundant_search` tries more of them.
     """
     task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)
     solution, run = solve_task(robot, poses, task)
@@ -59,4 +64,5 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
         massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),
         closure_residual_m=solution.closure_residual_m.reshape(shape),
         equilibrium_residual_N=solution.equilibrium_residual_N.reshape(shape),
+        is_thinnest=solution.is_best.reshape(shape),
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.physics import pulley
 from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_poses
@@ -23,6 +23,9 @@ _SETTLED_RAD = 1e-9
 _PATIENCE = 8
 """Turns after which a pose that does not come nearer moves by half as much."""
 _LEAST_SHARE = 1.0 / 32.0
+_WORTH_A_SEARCH = 5e-4
+"""Relative, in weight or tension: half of that in diameter."""
+_UNPROVED = 1e-5
 
 Answer = TypeVar("Answer")
 
@@ -105,20 +108,85 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
     task = replace(task, force_N=None if force is None else force.reshape(count, 3))
 
+    solution, run = _solve_over_pulleys(robot, flat, task, is_thorough=False)
+    _judge_unsolved(robot, flat, solution, task)
+    _try_other_branches(robot, flat, solution, run, task)
+    if robot.pulley_radius_m == 0.0:
+        return solution, run
+    # What is proved of other branches goes for cables that leave from where they leave now.
+    np.maximum(solution.potential, _UNPROVED, out=solution.potential)
+    shape = (*poses.shape, robot.n_cables)
+    points = run.exit_points_m.reshape(*shape, 3)
+    return solution, PulleyRun(points, run.wrap_m.reshape(shape))
+
+
+def _solve_over_pulleys(
+    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool
+) -> tuple[Solution, PulleyRun]:
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
-        solution = _solve(robot, flat, task, run)
+        solution = _solve(robot, flat, task, run, is_thorough=is_thorough)
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
         return solution, np.arctan2(downward, solution.force_x_N), 0.0
 
     solution, run, settled = over_pulleys(robot, flat, solve)
-    if robot.pulley_radius_m == 0.0:
-        return solution, run
-    solution = _keep(solution, settled)
-    shape = (*poses.shape, robot.n_cables)
-    points = run.exit_points_m.reshape(*shape, 3)
-    return solution, PulleyRun(points, run.wrap_m.reshape(shape))
+    return (solution if robot.pulley_radius_m == 0.0 else _keep(solution, settled)), run
+
+
+def _try_other_branches(
+    robot: Robot, flat: Poses, solution: Solution, run: PulleyRun, task: Task
+) -> None:
+    """Search again where nothing is found or proved, or where another branch may be better.
+
+    Writes what is better into the solution and the run of the cables.
+    """
+    open_verdicts = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
+    hard = np.isin(solution.verdict, open_verdicts) | (solution.potential > _WORTH_A_SEARCH)
+    at = np.flatnonzero(hard)
+    if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
+        return
+    force = None if task.force_N is None else task.force_N[at]
+    again, its_run = _solve_over_pulleys(
+        robot, part_of(flat, at), replace(task, force_N=force), is_thorough=True
+    )
+    solved = again.verdict == Verdict.SOLVED
+    if task.inverse_weight_m_per_N is None:
+        better = again.weight_N_per_m < solution.weight_N_per_m[at]
+    else:
+        better = again.load_factor < solution.load_factor[at]
+    better = solved & (better | (solution.verdict[at] != Verdict.SOLVED))
+    for field in fields(solution):
+        getattr(solution, field.name)[at[better]] = getattr(again, field.name)[better]
+    if robot.pulley_radius_m > 0.0:
+        run.exit_points_m[at[better]] = its_run.exit_points_m[better]
+        run.wrap_m[at[better]] = its_run.wrap_m[better]
+    else:  # a proof is for points that stay where they are
+        proved = at[again.verdict == Verdict.NO_FINITE_CABLE]
+        solution.verdict[proved] = Verdict.NO_FINITE_CABLE
+
+
+def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -> None:
+    """Replace the verdicts of poses without a solution by what is proved of them."""
+    from designer.kernel.batch import refuse_batch
+
+    left = np.flatnonzero(solution.verdict != Verdict.SOLVED)
+    if len(left) == 0:
+        return
+    some = part_of(flat, left)
+    points = straight_run(robot, some).exit_points_m
+    force = None if task.force_N is None else task.force_N[left] @ robot.upright.T
+    verdict, _, _ = refuse_batch(robot, upright_poses(robot, some), points, force)
+    if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
+        near = cable_geometry(robot, some).horizontal_distance_m < 2.0 * robot.pulley_radius_m
+        verdict[near.any(axis=1)] = Verdict.NOT_CONVERGED
+    solution.verdict[left] = verdict
+
+
+def part_of(poses: Poses, chosen: IntArray) -> Poses:
+    """Return some of poses (n_poses,)."""
+    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[chosen]
+    return Poses(poses.position_m[chosen], rotation)
 
 
 def over_pulleys(
@@ -193,7 +261,7 @@ def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:
     )
 
 
-def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun) -> Solution:
+def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun, *, is_thorough: bool) -> Solution:
     from designer.kernel.batch import solve_batch
 
     each = np.ones(robot.n_cables)
@@ -207,4 +275,5 @@ def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun) -> Solution:
         task.strength_m * each,
         task.inverse_weight_m_per_N,
         force,
+        is_thorough=is_thorough,
     )

@@ -61,7 +61,7 @@ def test_pose_outside_the_hull(analyses: dict[str, Analysis]) -> None:
     page = page_of(analyses["pose_outside"])
     assert page.verdict.title == "In part"
     text = said(page)
-    assert "At (250.00, −60.00, −50.00) m no positive cable tensions" in text
+    assert "At (250.00, −60.00, −50.00) m no cables can hold the platform" in text
     assert "inside their outline" in text
     assert "stronger" not in text
 

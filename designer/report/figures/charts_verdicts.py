@@ -39,7 +39,8 @@ def parts(census: Census) -> tuple[Part, ...]:
             palette.LEFT_OUT if leaves_out else _HELD_BELOW,
         ),
         Part("no finite cable", 0 if leaves_out else finite, palette.WARNING_PALE, "//////"),
-        Part("no positive tensions", status["outside_hull"], palette.WARNING),
+        Part("no cables hold it", status["outside_hull"], palette.WARNING),
+        Part("none found", status["not_found"], palette.WARNING_PALE, "......"),
         Part("rank deficient", status.get("rank_deficient", 0), palette.LEFT_OUT),
         Part("not converged", status["not_converged"], palette.INK),
     )

@@ -18,10 +18,11 @@ from designer.workspace.demand import is_left_out, size_worst
 from designer.workspace.samples import CHUNK
 
 _REASONS = {
-    Verdict.OUTSIDE_HULL: "no positive tensions",
+    Verdict.OUTSIDE_HULL: "no cables hold it",
     Verdict.NO_FINITE_CABLE: "no finite cable",
     Verdict.RANK_DEFICIENT: "rank deficient",
     Verdict.NOT_CONVERGED: "not converged",
+    Verdict.NOT_FOUND: "none found",
 }
 
 

@@ -60,6 +60,8 @@ class AssumptionsSection:
         What stands for the configured family where the effects do not leave it one; else empty.
     surroundings : str
         What the laws of effects are given.
+    thinnest : str
+        How surely a needed diameter is the thinnest.
     """
 
     gravity: str
@@ -71,6 +73,7 @@ class AssumptionsSection:
     effects: str
     section: str
     surroundings: str
+    thinnest: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +147,23 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
         surroundings=f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C",
         platform=_platform(robot),
         loads=_loads(robot),
+        thinnest=_thinnest(robot),
+    )
+
+
+def _thinnest(robot: Robot) -> str:
+    if robot.has_one_branch:
+        return (
+            "A point mass on as many cables as it has degrees of freedom has one equilibrium for "
+            "each cable, so a needed diameter is the thinnest there is."
+        )
+    return (
+        "The cables may run in more than one way: one may hang as a counterweight, or be pulled "
+        "tight. At each pose the way found is tested by its multipliers: where no cable could help "
+        "by a force straight down, it is proved that none is better. Elsewhere, as soon as a cable "
+        "could gain 0.05 % of its weight, other ways are tried: each cable hanging in turn, all "
+        "cables with half their pull, and random pulls. A needed diameter is then the thinnest "
+        "that was found."
     )
 
 

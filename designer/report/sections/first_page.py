@@ -20,6 +20,7 @@ from designer.report.sections.selection import product_name
 from designer.selection.groups_result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
+from designer.sizing.newton import size_poses
 from designer.study import CableGroup
 
 _MOST_SIZES = 2
@@ -222,7 +223,7 @@ def _card(analysis: Analysis) -> Card | None:
             None
             if worst is None
             else Card(
-                "Diameter that the workspace needs",
+                diameter_heading(analysis, "workspace"),
                 fmt.millimetres(worst.diameter_m),
                 "",
                 "of the configured cable family",
@@ -236,7 +237,7 @@ def _card(analysis: Analysis) -> Card | None:
         return None
     statics = pose.sizing.statics
     return Card(
-        "Diameter that the pose needs",
+        diameter_heading(analysis, "pose"),
         fmt.millimetres(float(pose.sizing.diameter_m)),
         "",
         "of the configured cable family",
@@ -245,6 +246,17 @@ def _card(analysis: Analysis) -> Card | None:
             Fact("At the position", fmt.position(statics.poses.position_m)),
         ),
     )
+
+
+def diameter_heading(analysis: Analysis, what: str) -> str:
+    """Return ``Diameter that the pose needs`` only where no thinner cable is proved to hold it."""
+    workspace, pose, study = analysis.workspace, analysis.pose, analysis.study
+    sizing = pose.sizing if pose is not None else None
+    if what == "workspace" and workspace is not None and workspace.sagging is not None:
+        sizing = size_poses(analysis.built.robot, workspace.sagging.pose, study.material)
+    if sizing is not None and sizing.is_thinnest:
+        return f"Diameter that the {what} needs"
+    return f"Thinnest diameter found for the {what}"
 
 
 def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:

@@ -19,15 +19,18 @@ _STRIP = 0.5  # of the inradius: what reaches deeper is no strip along the sides
 _LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 _UNSERVED = {
-    Verdict.OUTSIDE_HULL: "no positive cable tensions can hold the platform",
+    Verdict.OUTSIDE_HULL: "no cables can hold the platform, straight or sagging, which is proved",
     Verdict.NO_FINITE_CABLE: (
         "no cable of the configured family is thick enough, since its own weight alone exceeds "
         "the allowable stress"
     ),
     Verdict.RANK_DEFICIENT: (
-        "the directions of the cables leave a force or moment that no tensions can take up"
+        "the directions of straight cables leave a force or moment that no tensions can take up"
     ),
     Verdict.NOT_CONVERGED: "the solver found no solution and no proof that there is none",
+    Verdict.NOT_FOUND: (
+        "straight cables cannot hold the platform; sagging ones might, but none were found"
+    ),
 }
 
 
@@ -154,7 +157,7 @@ def _move_pose(analysis: Analysis) -> Iterator[str]:
     pose = analysis.pose
     if pose is None or pose.sizing.statics.is_solved:
         return
-    if int(pose.sizing.statics.verdict) == Verdict.OUTSIDE_HULL:
+    if int(pose.sizing.statics.verdict) in (Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND):
         yield "Move the configured pose below the exit points and inside their outline."
     else:
         yield "Move the configured pose away from the edge of the workspace, or lower."

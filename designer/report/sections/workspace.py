@@ -155,7 +155,9 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
         Column("Largest tension"),
     )
     rows = [_extreme(name, extreme, tone == "good") for name, extreme, tone in named]
-    return Table.of("What the configured cable family needs.", columns, *rows)
+    return Table.of(
+        "The thinnest diameter of the configured cable family that was found.", columns, *rows
+    )
 
 
 def _extreme(name: str, extreme: Extreme | None, is_answer: bool) -> Row:

@@ -1,0 +1,319 @@
+r"""Which poses no cables whatever can hold, straight or sagging: the cone of all their wrenches.
+
+Gravity is all that acts on a cable between its ends, so that in its vertical plane it is a convex
+curve: where it holds the platform it never rises more steeply toward the exit point than its chord.
+Whatever its section, its elasticity and its length, its wrench is therefore
+
+    a · (wrench of the straight cable) + b · (wrench of a force straight down at its attachment)
+
+with a ≥ 0 and b ≥ 0; a is the tension where it runs parallel to its chord, hence no less than the
+smallest allowed tension. What the cables can do lies in the cone of these 2 n rays, behind the
+wrench of the smallest tensions. If the load lies outside, the shortest way from the cone to the
+load is a wrench y that separates them (Farkas' lemma): y · ray ≤ 0 for every ray, y · load > 0.
+
+What is proved. The nearest point of the cone is found by non-negative least squares (Lawson and
+Hanson, Solving Least Squares Problems (1974), chapter 23); whoever found y, the two inequalities
+are then evaluated for unit rays and a unit load. In doubles the first hold to rounding, so that
+the statement is: cables that held the pose would pull with more than `_BEYOND` times the load.
+
+A pulley moves the point where a cable leaves it. As long as the attachment is farther from the exit
+point than the pulley is wide, all of the pulley lies below the straight cable's line as seen from
+the platform, and a cable that sags leaves at a point from which its chord rises less: the ray of
+the straight cable over the pulley still bounds it. Nearer ones are left without a claim.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.compiling import kernel
+from designer.kernel.redundant_layout import LEAST, WRENCH, Pose
+from designer.kernel.redundant_pose import lift, make_straight, new_pose, place, write_wrenches
+from designer.verdict import Verdict
+
+_BEYOND = 1e6
+_ROUNDING = 1e-15
+_LEAST_SEPARATION = 1e-8
+_RANK = 1e-9
+_ENTERS = 1e-12
+_MOST_TURNS = 40
+_OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
+_NOT_FOUND = int(Verdict.NOT_FOUND)
+_NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
+_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
+
+
+class Cone(NamedTuple):
+    """Arrays for the search of the nearest point of a cone.
+
+    Parameters
+    ----------
+    rays : array (2 n, m)
+        Unit rays: those of the straight cables, then those of forces straight down.
+    load, rest : array (m,)
+        What is to be reached, and what is left of it: the separating wrench.
+    share, trial : array (2 n,)
+        Of each ray, before and in a turn.
+    used : array (2 n,)
+        The rays in use, in the order in which they came.
+    basis : array (m + 1, m)
+        Orthonormal basis of those rays.
+    triangle : array (m + 1, m + 2)
+        The rays in that basis, and the load in the last column.
+    """
+
+    rays: FloatArray
+    load: FloatArray
+    rest: FloatArray
+    share: FloatArray
+    trial: FloatArray
+    used: IntArray
+    basis: FloatArray
+    triangle: FloatArray
+
+
+@kernel
+def new_cone(m: int, n: int) -> Cone:
+    """Return the arrays for n cables and m balanced components."""
+    return Cone(
+        np.zeros((2 * n, m)),
+        np.zeros(m),
+        np.zeros(m),
+        np.zeros(2 * n),
+        np.zeros(2 * n),
+        np.zeros(2 * n, dtype=np.int64),
+        np.zeros((m + 1, m)),
+        np.zeros((m + 1, m + 2)),
+    )
+
+
+@kernel
+def refuse_range(
+    start: int,
+    stop: int,
+    exit_points: FloatArray,
+    attachments: FloatArray,
+    load: FloatArray,
+    load_point: FloatArray,
+    weight: float,
+    positions: FloatArray,
+    rotations: FloatArray,
+    rows: IntArray,
+    least_tension: float,
+    out_wrench: FloatArray,
+    out_separation: FloatArray,
+    out_verdict: IntArray,
+) -> None:
+    """Say of the poses `start` to `stop`, which nothing has solved, what is proved of them.
+
+    Rank deficient: straight cables leave some wrench without any tension. Outside the hull: the
+    cone does not hold the load; then with the separating wrench, and its product with the load,
+    both of unit length, moments over the reach of the attachments. Not found: the cone of straight
+    cables alone does not hold the load. Not converged: nothing is proved.
+    """
+    n, m = exit_points.shape[1], rows.size
+    one = np.ones(n)
+    pose = new_pose(one, one, one, rows, least_tension)
+    cone = new_cone(m, n)
+    for at in range(start, stop):
+        place(
+            pose,
+            exit_points[at if exit_points.shape[0] > 1 else 0],
+            attachments,
+            rotations[at if rotations.shape[0] > 1 else 0],
+            positions[at],
+            load[at if load.shape[0] > 1 else 0],
+            load_point,
+            weight,
+        )
+        out_verdict[at] = _NOT_CONVERGED
+        out_separation[at] = np.nan
+        out_wrench[at] = np.nan
+        if not _set_rays(pose, cone):
+            continue
+        if not _spans(cone, n):
+            out_verdict[at] = _RANK_DEFICIENT
+        elif _separation(cone, n) > 0.0:
+            out_verdict[at] = _NOT_FOUND
+            separation = _separation(cone, 2 * n)
+            if separation > 0.0:
+                out_verdict[at] = _OUTSIDE_HULL
+                out_separation[at] = separation
+                out_wrench[at] = cone.rest
+
+
+@kernel
+def _set_rays(pose: Pose, cone: Cone) -> bool:
+    """Fill rays and load; False where some cable has no length, hence no direction, or no load."""
+    c, rows, scale = pose.cables, pose.rows, pose.scale
+    m, n = rows.size, c.shape[1]
+    make_straight(pose, 0.0)
+    write_wrenches(pose)
+    size = 0.0
+    for k in range(m):
+        cone.load[k] = pose.load[rows[k]]
+    for i in range(n):
+        straight, down = 0.0, 0.0
+        for k in range(m):
+            ray = c[WRENCH + rows[k], i]
+            cone.rays[i, k] = ray
+            cone.rays[n + i, k] = -lift(pose, rows[k], i)
+            cone.load[k] -= c[LEAST, i] / scale[1] * ray
+            straight += ray * ray
+            down += cone.rays[n + i, k] ** 2
+        if not 0.0 < straight < np.inf:
+            return False
+        for k in range(m):
+            cone.rays[i, k] /= np.sqrt(straight)
+            cone.rays[n + i, k] /= np.sqrt(down) if down > 0.0 else 1.0
+    for k in range(m):
+        size += cone.load[k] ** 2
+    for k in range(m):
+        cone.load[k] /= np.sqrt(size)
+    return 0.0 < size < np.inf
+
+
+@kernel
+def _spans(cone: Cone, n: int) -> bool:
+    """Tell whether straight cables span all wrenches: elimination, the longest remainder first."""
+    m = cone.rest.size
+    basis = cone.basis
+    for k in range(m):
+        best = 0.0
+        for i in range(n):
+            for q in range(m):
+                cone.rest[q] = cone.rays[i, q]
+            size = _clear(cone.rest, basis, k)
+            if size > best:
+                best = size
+                for q in range(m):
+                    basis[k, q] = cone.rest[q] / size
+        if not best > _RANK:
+            return False
+    return True
+
+
+@kernel
+def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
+    """Take its share in the first rows of a basis from a vector, twice; return what is left."""
+    m = vector.size
+    for _ in range(2):
+        for k in range(count):
+            along = 0.0
+            for q in range(m):
+                along += basis[k, q] * vector[q]
+            for q in range(m):
+                vector[q] -= along * basis[k, q]
+    size = 0.0
+    for q in range(m):
+        size += vector[q] * vector[q]
+    return float(np.sqrt(size))
+
+
+@kernel
+def _reach(cone: Cone, n_rays: int) -> bool:
+    """Find the point of the first rays' cone that is nearest to the load; False if that fails."""
+    rays, share, used = cone.rays, cone.share, cone.used
+    share[:] = 0.0
+    count = 0
+    for _ in range(_MOST_TURNS + n_rays):
+        count = _settle(cone, count)
+        if count < 0:
+            return False
+        best, entering = _ENTERS, -1
+        for j in range(n_rays):
+            gain = _along(rays[j], cone.rest)
+            if gain > best and share[j] == 0.0:
+                best, entering = gain, j
+        if entering < 0:
+            return True
+        if count == cone.rest.size:
+            return False
+        used[count] = entering
+        count += 1
+    return False
+
+
+@kernel
+def _settle(cone: Cone, count: int) -> int:
+    """Go toward the nearest point of the rays in use, and drop those that would have to push.
+
+    Returns how many stay, -1 if they depend on each other.
+    """
+    share, trial, used = cone.share, cone.trial, cone.used
+    while _project(cone, count):
+        step, leaves = 1.0, -1
+        for k in range(count):
+            j = used[k]
+            if trial[j] <= 0.0 and share[j] < step * (share[j] - trial[j]):
+                step, leaves = share[j] / (share[j] - trial[j]), k
+        for k in range(count):
+            share[used[k]] += step * (trial[used[k]] - share[used[k]])
+        if leaves < 0:
+            return count
+        share[used[leaves]] = 0.0
+        count -= 1
+        for k in range(leaves, count):
+            used[k] = used[k + 1]
+    return -1
+
+
+@kernel
+def _project(cone: Cone, count: int) -> bool:
+    """Fill the shares that bring the rays in use nearest to the load, and what is left of it.
+
+    False if those rays depend on each other.
+    """
+    basis, triangle, m = cone.basis, cone.triangle, cone.rest.size
+    for k in range(count):
+        for q in range(m):
+            basis[k, q] = cone.rays[cone.used[k], q]
+        size = _clear(basis[k], basis, k)
+        if not size > _RANK:
+            return False
+        for q in range(m):
+            basis[k, q] /= size
+    for k in range(count):
+        for j in range(k, count):
+            triangle[k, j] = _along(basis[k], cone.rays[cone.used[j]])
+        triangle[k, count] = _along(basis[k], cone.load)
+    for k in range(count - 1, -1, -1):
+        total = triangle[k, count]
+        for j in range(k + 1, count):
+            total -= triangle[k, j] * cone.trial[cone.used[j]]
+        cone.trial[cone.used[k]] = total / triangle[k, k]
+    for q in range(m):
+        cone.rest[q] = cone.load[q]
+    _clear(cone.rest, basis, count)
+    return True
+
+
+@kernel
+def _along(a: FloatArray, b: FloatArray) -> float:
+    total = 0.0
+    for q in range(a.size):
+        total += a[q] * b[q]
+    return total
+
+
+@kernel
+def _separation(cone: Cone, n_rays: int) -> float:
+    """Return the product of the wrench that separates the first rays from the load with the load.
+
+    Both of unit length; 0 where the load is not proved to lie outside.
+    """
+    if not _reach(cone, n_rays):
+        return 0.0
+    size = np.sqrt(_along(cone.rest, cone.rest))
+    if not size > 0.0:
+        return 0.0
+    for q in range(cone.rest.size):
+        cone.rest[q] /= size
+    most = _ROUNDING
+    for j in range(n_rays):
+        most = max(most, _along(cone.rest, cone.rays[j]))
+    separation = _along(cone.rest, cone.load)
+    return separation if separation > max(_LEAST_SEPARATION, _BEYOND * most) else 0.0

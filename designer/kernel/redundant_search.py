@@ -1,0 +1,336 @@
+"""Other branches of a pose: the interior point from many starts, for what the quick way left.
+
+Cables that sag are no convex matter: a cable may hang as a counterweight or be pulled tight, and
+each way can be a branch of its own. What is tried: straight cables' pulls; those with one cable
+after the other hanging; all cables with half of their pull or hanging; and pulls drawn at random
+between hanging and the strength, the same in every run. An answer replaces what was there if it is
+better and its residuals say that it holds; the search proves nothing of what it does not find.
+
+What it does prove is that **no finite cable** holds a pose. For any wrench y whose product with
+the load is not negative, and cables as strong as they are,
+
+    0 ≤ c y · load = Σᵢ y · Wᵢ(pᵢ) ≤ Σᵢ max gᵢ,    gᵢ(p) = y · Wᵢ(p) = α p + β v(p),
+
+the maximum taken over every pull that the cable's strength bears, so a sum below zero leaves no c,
+whatever the section and the internal forces. v is concave along the closure: with β ≥ 0 so is g,
+and its maximum is found from tangents; with β < 0 it lies at an end, of which a bound is taken.
+The wrench is where the search ended. It is evaluated in doubles, with a margin.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.branches import rise, upward_share
+from designer.kernel.compiling import kernel
+from designer.kernel.layout import LOAD_FACTOR, WEIGHT
+from designer.kernel.redundant import massless
+from designer.kernel.redundant_answer import OPTIMAL_WITHIN, store
+from designer.kernel.redundant_interior import climb, new_scratch, pull_straight
+from designer.kernel.redundant_layout import (
+    CHORD,
+    EX,
+    EY,
+    FORCE,
+    KAPPA,
+    REACH,
+    RX,
+    RY,
+    RZ,
+    SHARE,
+    SIZE,
+    STRAIGHT,
+    STRENGTH,
+    UNIT,
+    X2,
+    Ask,
+    D,
+    P,
+    Pose,
+)  # fmt: skip
+from designer.kernel.redundant_lp import new_programme
+from designer.kernel.redundant_pose import (
+    new_pose,
+    place,
+    settled_length,
+    smallest_pull,
+)
+from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
+from designer.verdict import Verdict
+
+_RANDOM_STARTS = 6
+_HANGS = 0.5
+_LIGHT = 0.1
+_START_OF_STRAIGHT = 0.8
+_KEEPS = (0.5, 0.9)
+_BETTER = 1e-7
+_SURELY = 1e-9
+_NOTHING = 1e-300
+_ABOVE_LEAST = 1.1
+_SHORTER = 0.7
+_HALVINGS = 40
+_SOLVED = int(Verdict.SOLVED)
+_NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
+
+
+@kernel
+def search_range(
+    start: int,
+    stop: int,
+    exit_points: FloatArray,
+    attachments: FloatArray,
+    load: FloatArray,
+    load_point: FloatArray,
+    weight: float,
+    positions: FloatArray,
+    rotations: FloatArray,
+    kappa: FloatArray,
+    weights: FloatArray,
+    strength: FloatArray,
+    inverse_weight: float,
+    rows: IntArray,
+    least_tension: float,
+    out_cables: FloatArray,
+    out_poses: FloatArray,
+    out_verdict: IntArray,
+) -> None:
+    """Better the answers of the poses from `start` to `stop`; see `solve_redundant_range`."""
+    m, n = rows.size, kappa.size
+    pose = new_pose(kappa, weights, strength, rows, least_tension)
+    lp = new_programme(m, n)
+    scratch = new_scratch(m, n)
+    keep_cables, keep_pose = np.empty((n, 3)), np.empty(out_poses.shape[1])
+    for at in range(start, stop):
+        place(
+            pose,
+            exit_points[at if exit_points.shape[0] > 1 else 0],
+            attachments,
+            rotations[at if rotations.shape[0] > 1 else 0],
+            positions[at],
+            load[at if load.shape[0] > 1 else 0],
+            load_point,
+            weight,
+        )
+        straight_c, spans = massless(pose, lp)
+        if not (spans and straight_c > 0.0):
+            pose.cables[STRAIGHT] = np.nan
+        to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
+        sizing = inverse_weight < 0.0
+        ask = Ask(0.0, 1.0, 1.0, 0.0) if sizing else Ask(inverse_weight * to_scaled, 0.0, 0.0, -1.0)
+        best = -np.inf
+        if out_verdict[at] == _SOLVED:
+            best = to_scaled / out_poses[at, WEIGHT] if sizing else -out_poses[at, LOAD_FACTOR]
+        state = np.uint64(88172645463325252)
+        is_proved = sizing and best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
+        for attempt in range(n + 3 + _RANDOM_STARTS):
+            if is_proved and best == -np.inf:
+                out_verdict[at] = _NO_FINITE_CABLE
+                break
+            s, state = _begin(pose, ask, straight_c, attempt, state)
+            s, gap = climb(pose, ask, s, _KEEPS[0 if attempt != 1 else 1], scratch)
+            if sizing and best == -np.inf and not (s > 0.0 and gap <= OPTIMAL_WITHIN):
+                for k in range(m):
+                    scratch.value[k] = -scratch.dual[k]
+                is_proved = _bounds(pose, scratch.value)
+            if not (gap <= OPTIMAL_WITHIN):
+                continue
+            if not (s > best + _BETTER * abs(s) or best == -np.inf):
+                continue
+            keep_cables[:], keep_pose[:] = out_cables[at], out_poses[at]
+            before = out_verdict[at]
+            c = (ask.c_0 + s * ask.c_s) / to_scaled
+            if (
+                store(out_cables, out_poses, out_verdict, at, pose, c, gap, straight_c, sizing)
+                == _SOLVED
+            ):
+                best = s
+            else:
+                out_cables[at], out_poses[at] = keep_cables, keep_pose
+                out_verdict[at] = before
+
+
+@kernel
+def _begin(
+    pose: Pose, ask: Ask, straight_c: float, attempt: int, state: np.uint64
+) -> tuple[float, np.uint64]:
+    """Set the pulls that an attempt starts from; return the guess of s and the next random state.
+
+    First twice straight cables, then one cable after the other hanging, then all cables with half
+    of their pull, then random ones.
+    """
+    c = pose.cables
+    n = c.shape[1]
+    s = _START_OF_STRAIGHT * straight_c if straight_c > 0.0 else _LIGHT
+    if ask.c_s == 0.0:
+        s = -1.0
+    pull_straight(pose, ask, s)
+    if attempt >= 2 and attempt < n + 2:
+        _slacken(pose, ask, s, attempt - 2, _HANGS)
+    elif attempt == n + 2:
+        for i in range(n):
+            _slacken(pose, ask, s, i, max(0.5 * c[P, i], _HANGS))
+        s *= 0.5 if ask.c_s > 0.0 else 2.0
+    elif attempt > n + 2:
+        for i in range(n):
+            state, share = _random(state)
+            _slacken(pose, ask, s, i, _HANGS * (c[UNIT, i] / _HANGS) ** share)
+        state, share = _random(state)
+        s *= share if ask.c_s > 0.0 else 1.0 + share
+    return s, state
+
+
+@kernel
+def _slacken(pose: Pose, ask: Ask, s: float, i: int, p: float) -> None:
+    """Set a pull, above the smallest that the cable has to keep."""
+    low, low_c = smallest_pull(pose, i, PULL_FLOOR)
+    least = low + low_c * max(ask.c_0 + s * ask.c_s, 0.0)
+    pose.cables[P, i] = max(p, _ABOVE_LEAST * least * pose.cables[UNIT, i])
+
+
+@kernel
+def _random(state: np.uint64) -> tuple[np.uint64, float]:
+    """Return the next state of Marsaglia's xorshift generator and a number from 0 to 1."""
+    state ^= state << np.uint64(13)
+    state ^= state >> np.uint64(7)
+    state ^= state << np.uint64(17)
+    return state, float(state >> np.uint64(11)) * 2.0**-53
+
+
+@kernel
+def _point_bounds(pose: Pose) -> bool:
+    """Tell whether a point mass on as many cables as it has degrees of freedom has no c above zero.
+
+    Without a horizontal load its pulls are p = s λ, with λ as straight cables have it. Strength
+    leaves each p a range; if these have no s in common, nothing is left. The lift grows with s, so
+    if it is below zero at the largest s, it is so for all.
+    """
+    c, rows, load = pose.cables, pose.rows, pose.load
+    n = c.shape[1]
+    if rows.size != n or rows[n - 1] != 2 or load[0] != 0.0 or load[1] != 0.0:
+        return False
+    least, most = 0.0, np.inf
+    for i in range(n):
+        low, high = _range(pose, i)
+        share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
+        least = max(least, low / share)
+        most = min(most, high / share)
+    if least > most * (1.0 + _SURELY):
+        return True
+    lift_of_all, size = 0.0, 0.0
+    for i in range(n):
+        share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
+        up = c[SHARE, i] * rise(pose, i, most * share)
+        lift_of_all += up
+        size += abs(up)
+    return bool(lift_of_all < -_SURELY * size)
+
+
+@kernel
+def _bounds(pose: Pose, value: FloatArray) -> bool:
+    """Tell whether a wrench proves that no c above zero is left."""
+    of_load = 0.0
+    for k in range(value.size):
+        of_load += value[k] * pose.load[pose.rows[k]]
+    if not of_load >= 0.0:
+        return False
+    total, size = 0.0, 0.0
+    for i in range(pose.cables.shape[1]):
+        most = _most(pose, value, i)
+        total += most
+        size += abs(most)
+    return bool(total < -_SURELY * size)
+
+
+@kernel
+def _most(pose: Pose, value: FloatArray, i: int) -> float:
+    """Return an upper bound of g over all pulls that the strength of a cable bears."""
+    beta = upward_share(pose, value, i)
+    alpha = 0.0
+    for k in range(value.size):
+        alpha += value[k] * _level(pose, pose.rows[k], i)
+    low, high = _range(pose, i)
+    if beta < 0.0:
+        at_low = alpha * low + beta * rise(pose, i, low)
+        return max(at_low, alpha * high + beta * rise(pose, i, high))
+    if alpha + beta * _rise_slope(pose, i, high) >= 0.0:
+        return alpha * high + beta * rise(pose, i, high)
+    if alpha + beta * _rise_slope(pose, i, low) <= 0.0:
+        return alpha * low + beta * rise(pose, i, low)
+    for _ in range(_HALVINGS):
+        p = np.sqrt(low * high)
+        if alpha + beta * _rise_slope(pose, i, p) > 0.0:
+            low = p
+        else:
+            high = p
+    slope = alpha + beta * _rise_slope(pose, i, low)
+    return alpha * low + beta * rise(pose, i, low) + slope * (high - low)
+
+
+@kernel
+def _level(pose: Pose, row: int, i: int) -> float:
+    """Return the horizontal part of a component of the scaled wrench per pull."""
+    c, reach = pose.cables, pose.scale[REACH]
+    factor = c[SHARE, i] / pose.scale[FORCE]
+    if row < 2:
+        return float(factor * c[EX + row, i])
+    if row == 2:
+        return 0.0
+    factor /= reach
+    if row == 3:
+        return float(-factor * c[RZ, i] * c[EY, i])
+    if row == 4:
+        return float(factor * c[RZ, i] * c[EX, i])
+    return float(factor * (c[RX, i] * c[EY, i] - c[RY, i] * c[EX, i]))
+
+
+@kernel
+def _rise_slope(pose: Pose, i: int, p: float) -> float:
+    """Return the slope of the upward pull along the closure."""
+    c = pose.cables
+    length = settled_length(p, c[X2, i], c[D, i], c[KAPPA, i])
+    _, F_p, F_l, _, v_p, v_l, _, _, _ = unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])
+    return float(v_p - v_l * F_p / F_l)
+
+
+@kernel
+def _top(pose: Pose, i: int, p: float) -> float:
+    c = pose.cables
+    length = settled_length(p, c[X2, i], c[D, i], c[KAPPA, i])
+    return float(unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])[6])
+
+
+@kernel
+def _range(pose: Pose, i: int) -> tuple[float, float]:
+    """Return pulls between which lie all those that the strength bears.
+
+    Somewhere a cable is parallel to its chord, and there its tension is pull times chord. From that
+    bound downward: the top tension falls, and once the cable is slack it rises.
+    """
+    c = pose.cables
+    strength = c[STRENGTH, i]
+    high = strength / c[CHORD, i]
+    low = high
+    while low > PULL_FLOOR and _top(pose, i, low) > strength:
+        low *= _SHORTER
+    if low <= PULL_FLOOR:
+        return PULL_FLOOR, high
+    borne = low
+    for _ in range(_HALVINGS):
+        p = 0.5 * (borne + high)
+        if _top(pose, i, p) > strength:
+            high = p
+        else:
+            borne = p
+    slack = borne
+    while low > PULL_FLOOR and _top(pose, i, low) <= strength:
+        slack = low
+        low *= _SHORTER
+    low = max(low, PULL_FLOOR)
+    for _ in range(_HALVINGS):
+        p = 0.5 * (slack + low)
+        if _top(pose, i, p) > strength:
+            low = p
+        else:
+            slack = p
+    return low, high

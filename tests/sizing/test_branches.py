@@ -1,0 +1,78 @@
+"""Other branches: a solver of another kind holds nothing called impossible, nor a thinner cable."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from redundant_robots import FOUR, anywhere, cogiro_poses, four_poses, one, steel
+from sample_robots import COGIRO
+from twins.thinnest import thinnest
+
+from designer.robot import Poses
+from designer.sizing.newton import size_poses
+from designer.statics.inverse import solve_sagging
+from designer.verdict import Verdict
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+from impossible import compare, random_case
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_robots_against_another_solver(seed) -> None:
+    rng = np.random.default_rng([1, seed])
+    case = random_case(rng, count=3)
+    outcomes = [outcome for outcome, _ in compare(case, rng, starts=4)]
+    assert len(outcomes) == 3
+    assert not [o for o in outcomes if o == "thicker" or o.startswith("wrongly")]
+
+
+def test_the_other_solver_finds_the_same_cable() -> None:
+    poses = cogiro_poses(3, 11)
+    sizing = size_poses(COGIRO, poses, steel(30.0))
+    rng = np.random.default_rng(0)
+    for k in range(3):
+        place = poses.place[k]
+        other = thinnest(COGIRO, place[:3], place[3:], steel(30.0), rng, starts=2)
+        assert sizing.diameter_m[k] == pytest.approx(other.diameter_m, rel=1e-6)
+
+
+def test_a_point_mass_under_its_cables_is_proved_to_have_the_thinnest() -> None:
+    sizing = size_poses(FOUR, four_poses(50), steel(5.0))
+    assert sizing.is_thinnest[sizing.statics.is_solved].all()
+    assert sizing.statics.is_solved.any()
+
+
+def test_what_is_proved_to_be_thinnest_is_not_bettered(monkeypatch) -> None:
+    """With the search forced on every pose, proved ones stay, and none gets thicker."""
+    from designer.statics import task
+
+    poses = Poses.at(anywhere(300, 3).position_m[:120], anywhere(300, 3).place[:120, 3:])
+    before = size_poses(COGIRO, poses, steel(60.0))
+    monkeypatch.setattr(task, "_WORTH_A_SEARCH", -1.0)
+    after = size_poses(COGIRO, poses, steel(60.0))
+    both = before.statics.is_solved
+    assert after.statics.is_solved[both].all()
+    gain = before.diameter_m[both] / after.diameter_m[both] - 1.0
+    assert gain.min() > -1e-7
+    assert gain.max() < 2.5e-4
+    assert gain[before.is_thinnest[both]].max() < 1e-6
+
+
+def test_no_thinner_cable_is_within_its_strength() -> None:
+    """The fixed-section solver agrees: a cable half a per cent thinner is overloaded."""
+    poses, material = cogiro_poses(30, 5), steel(30.0)
+    sizing = size_poses(COGIRO, poses, material)
+    for k in np.flatnonzero(sizing.statics.is_solved):
+        cable = material.cable(0.995 * float(sizing.diameter_m[k]))
+        statics = solve_sagging(COGIRO, one(poses, k), cable)
+        assert statics.largest_tension_N > cable.allowable_tension_N
+
+
+def test_every_refusal_is_told_apart() -> None:
+    labels = [verdict.label for verdict in Verdict]
+    assert labels[int(Verdict.NOT_FOUND)] == "not_found"
+    assert len({verdict.sentence for verdict in Verdict}) == len(labels)

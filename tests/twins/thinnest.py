@@ -1,0 +1,203 @@
+"""The thinnest cable of a pose by SLSQP from many starts: another formulation, another solver.
+
+A cable is written by the slope angles of its arc (in the hyperbolic sense) at platform and exit,
+a = μ - δ and b = μ + δ. With h = horizontal force over weight per length and κ = weight over EA,
+
+    l = 2 h cosh μ sinh δ                          X = 2 h δ + κ h l
+    D = 2 h sinh μ sinh δ + κ h²/2 sinh 2μ sinh 2δ
+    upward pull h sinh a, tensions h cosh a and h cosh b.
+
+Unknown are log h of every cable and c, the load over the weight per length; SLSQP makes c large.
+Nothing is shared with the compiled solvers but the robot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog, minimize
+
+from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.robot import Poses, Robot
+
+STARTS = 14
+_STEEPEST = 3.0  # of δ: no cable more than about three times as long as its horizontal distance
+_BALANCED = 1e-9
+_NEWTONS = 30
+
+
+@dataclass(frozen=True)
+class Thinnest:
+    """The best of all starts: diameter [m], NaN if no start ended in a cable; lengths [m]."""
+
+    diameter_m: float
+    length_m: np.ndarray
+    residual: float
+
+
+class Problem:
+    """One pose, forces over the strength; see the head of the file."""
+
+    def __init__(self, robot: Robot, position: np.ndarray, turn: np.ndarray, material: Material):
+        pose = Poses.at(position, None if robot.is_point_mass else turn)
+        up = robot.upright
+        chord = (robot.exit_points_m - pose.attachment_points_m(robot)) @ up.T
+        lever = (pose.attachment_points_m(robot) - pose.position_m) @ up.T
+        self.reach = float(np.abs(lever).sum(axis=1).max()) or 1.0
+        self.rows = robot.balance_rows
+        self.X, self.D = np.hypot(chord[:, 0], chord[:, 1]), chord[:, 2]
+        self.L = np.hypot(self.X, self.D)
+        plan = np.column_stack([chord[:, :2] / self.X[:, None], np.zeros(len(chord))])
+        self.level, self.lift = self.wrench(lever, plan), self.wrench(lever, np.array([0, 0, 1.0]))
+        force = robot.pull_N[:3]
+        centre = up @ pose.rotation @ robot.platform.centre_of_mass_m
+        moment = robot.pull_N[3:] + np.cross(centre, [0, 0, robot.weight_N])
+        load = np.concatenate([force, moment / self.reach])[self.rows]
+        self.size = float(np.abs(load).max())
+        self.load = load / self.size
+        self.material = material
+        self.strength = material.strength_length_m
+        self.kappa = material.elastic_compliance_per_m
+        self.least = robot.tension_min_N / self.size if robot.is_redundant else 0.0
+        self.last: tuple[bytes, tuple[np.ndarray, ...]] = (b"", ())
+
+    def wrench(self, lever: np.ndarray, force: np.ndarray) -> np.ndarray:
+        force = np.broadcast_to(force, lever.shape)
+        both = np.hstack([force, np.cross(lever, force) / self.reach])
+        return both[:, self.rows].T
+
+    def cables(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Upward pull, both tensions and length, then the slopes of the first three in log h."""
+        if self.last[0] == u.tobytes():
+            return self.last[1]
+        h = np.exp(u)
+        X, D, k = self.X, self.D, self.kappa
+        delta = np.minimum(X / (2 * h), _STEEPEST)
+        mu = np.arcsinh(D / (2 * h * np.sinh(delta)))
+        for _ in range(_NEWTONS):
+            sm, cm, sd, cd = np.sinh(mu), np.cosh(mu), np.sinh(delta), np.cosh(delta)
+            length, l_mu, l_delta = 2 * h * cm * sd, 2 * h * sm * sd, 2 * h * cm * cd
+            e = k * h * h / 2
+            F = 2 * h * delta + k * h * length - X
+            G = 2 * h * sm * sd + e * np.sinh(2 * mu) * np.sinh(2 * delta) - D
+            F_m, F_d = k * h * l_mu, 2 * h + k * h * l_delta
+            G_m = 2 * h * cm * sd + 2 * e * np.cosh(2 * mu) * np.sinh(2 * delta)
+            G_d = 2 * h * sm * cd + 2 * e * np.sinh(2 * mu) * np.cosh(2 * delta)
+            det = F_m * G_d - F_d * G_m
+            step_m, step_d = (G_d * F - F_d * G) / det, (F_m * G - G_m * F) / det
+            mu, delta = mu - step_m, np.maximum(delta - step_d, 0.1 * delta)
+            if np.all(np.abs(step_d) < 1e-14 * delta) and np.all(np.abs(step_m) < 1e-13):
+                break
+        sm, cm, sd = np.sinh(mu), np.cosh(mu), np.sinh(delta)
+        length = 2 * h * cm * sd
+        F_h = 2 * h * delta + 2 * k * h * length
+        G_h = 2 * h * sm * sd + 2 * e * np.sinh(2 * mu) * np.sinh(2 * delta)
+        m_h, d_h = -(G_d * F_h - F_d * G_h) / det, -(F_m * G_h - G_m * F_h) / det
+        a, b = mu - delta, mu + delta
+        up, low, top = h * np.sinh(a), h * np.cosh(a), h * np.cosh(b)
+        slopes = up + low * (m_h - d_h), low + up * (m_h - d_h), top + h * np.sinh(b) * (m_h + d_h)
+        self.last = (u.tobytes(), (up, low, top, length, *slopes))
+        return self.last[1]
+
+    def balance(self, z: np.ndarray) -> np.ndarray:
+        up = self.cables(z[:-1])[0]
+        return (self.level @ np.exp(z[:-1]) + self.lift @ up) / self.strength - z[-1] * self.load
+
+    def balance_slope(self, z: np.ndarray) -> np.ndarray:
+        slope = self.cables(z[:-1])[4]
+        columns = (self.level * np.exp(z[:-1]) + self.lift * slope) / self.strength
+        return np.column_stack([columns, -self.load])
+
+    def room(self, z: np.ndarray) -> np.ndarray:
+        _, low, top, *_ = self.cables(z[:-1])
+        found = [1 - low / self.strength, 1 - top / self.strength]
+        if self.least > 0:
+            found.append(np.exp(z[:-1]) * self.L / self.X / self.strength - z[-1] * self.least)
+        return np.concatenate(found)
+
+    def room_slope(self, z: np.ndarray) -> np.ndarray:
+        *_, low, top = self.cables(z[:-1])
+        n = len(low)
+        zero = np.zeros((n, 1))
+        found = [np.hstack([np.diag(-low / self.strength), zero])]
+        found.append(np.hstack([np.diag(-top / self.strength), zero]))
+        if self.least > 0:
+            along = np.exp(z[:-1]) * self.L / self.X / self.strength
+            found.append(np.hstack([np.diag(along), zero - self.least]))
+        return np.vstack(found)
+
+    def straight(self) -> tuple[np.ndarray, float]:
+        """Straight cables' tensions over the strength, and c; a small share where none hold."""
+        unit = self.level * (self.X / self.L) + self.lift * (self.D / self.L)
+        n = len(self.X)
+        answer = linprog(
+            -np.eye(n + 1)[-1],
+            A_eq=np.column_stack([unit, -self.load]),
+            b_eq=np.zeros(len(self.load)),
+            bounds=[(0, 1)] * n + [(0, None)],
+        )
+        if answer.x is None or answer.x[-1] < 1e-9:
+            return np.full(n, 0.1), 0.1
+        return answer.x[:-1], float(answer.x[-1])
+
+    def starts(self, count: int, rng: np.random.Generator) -> list[np.ndarray]:
+        share, c = self.straight()
+        n = len(share)
+        slack = 0.5 * self.X
+        taut = np.maximum(share * self.strength * self.X / self.L, slack)
+        found = [
+            np.append(np.log(taut), c),
+            np.append(np.log(np.maximum(0.2 * taut, slack)), 0.2 * c),
+        ]
+        for i in rng.permutation(n)[: (count - 2) * 2 // 3]:
+            h = taut.copy()
+            h[i] = rng.uniform(0.15, 1.0) * self.X[i]
+            found.append(np.append(np.log(h), rng.uniform(0.3, 1.0) * c))
+        high = np.log(np.maximum(self.strength * self.X / self.L, 2 * slack))
+        while len(found) < count:
+            h = rng.uniform(np.log(0.3 * self.X), high)
+            found.append(np.append(h, rng.uniform(0.05, 1.0) * c))
+        return found
+
+    def solve(self, start: np.ndarray) -> tuple[float, np.ndarray, float]:
+        low = np.log(self.X / (2 * _STEEPEST))
+        high = np.log(2 * self.strength * self.X / self.L + self.X)
+        with np.errstate(all="ignore"):
+            answer = minimize(
+                lambda z: -z[-1],
+                np.clip(start, np.append(low, 0), np.append(high, np.inf)),
+                jac=lambda z: -np.eye(z.size)[-1],
+                method="SLSQP",
+                bounds=[*zip(low, high, strict=True), (0.0, None)],
+                constraints=[
+                    {"type": "eq", "fun": self.balance, "jac": self.balance_slope},
+                    {"type": "ineq", "fun": self.room, "jac": self.room_slope},
+                ],
+                options={"ftol": 1e-11, "maxiter": 100},
+            )
+            z = answer.x
+            worst = max(np.abs(self.balance(z)).max(), -self.room(z).min())
+        return float(z[-1]), z, float(worst)
+
+
+def thinnest(
+    robot: Robot,
+    position: np.ndarray,
+    turn: np.ndarray,
+    material: Material,
+    rng: np.random.Generator,
+    starts: int = STARTS,
+) -> Thinnest:
+    """Return the thinnest cable that any of the starts ends in."""
+    problem = Problem(robot, position, turn, material)
+    best, at, residual = 1e-6, None, np.nan
+    for start in problem.starts(starts, rng):
+        c, z, worst = problem.solve(start)
+        if worst < _BALANCED * min(1.0, c) and c > best:
+            best, at, residual = c, z, worst / c
+    if at is None:
+        return Thinnest(float("nan"), np.full(robot.n_cables, np.nan), float("nan"))
+    weight = problem.size / (best * problem.strength)
+    area = weight / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
+    return Thinnest(float(np.sqrt(4 * area / np.pi)), problem.cables(at[:-1])[3], residual)
