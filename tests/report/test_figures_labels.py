@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from typing import Any
 
 import numpy as np
@@ -75,3 +77,15 @@ def test_points_along_lines_are_close_together() -> None:
     points = labels.obstacles(FRONT, [np.array([[-4.0, 0.0, 0.0], [4.0, 0.0, 0.0]])])
     assert np.hypot(*np.diff(points, axis=0).T).max() < 10.0
     assert labels.obstacles(FRONT, []).shape == (0, 2)
+
+
+def test_a_finished_picture_leaves_no_pixels_behind() -> None:
+    with canvas.drawing():
+        figure, axes = overlay.over(EMPTY)
+        pixels = weakref.ref(axes.images[0])
+        gc.disable()
+        try:
+            assert overlay.png(figure).startswith(b"\x89PNG")
+            assert pixels() is None
+        finally:
+            gc.enable()
