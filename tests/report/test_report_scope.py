@@ -72,7 +72,7 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
         return statement.text.replace("\u00a0", " "), statement.tone
 
     nothing, tone = said(Selection())
-    assert nothing.startswith("None assumed: end fittings 100 %, bending 100 %")
+    assert nothing.startswith("No loss assumed: end fittings 100 %, bending 100 %")
     assert tone == "doubt"
     ends, tone = said(Selection(termination_efficiency=0.9))
     assert "End fittings 90.0 %, bending 100 % (none assumed)" in ends

@@ -56,7 +56,7 @@ def _shown(pose: PoseAnalysis) -> tuple[Iterate, ...]:
     turns = pose.loop.iterates
     if bool(pose.sizing.statics.is_solved):
         return turns
-    most_N = _DIVERGES * turns[0].max_tension_N
+    most_N = max((_DIVERGES * t.max_tension_N for t in turns[:1]), default=0.0)
     return tuple(t for k, t in enumerate(turns) if k < _FEWEST or t.max_tension_N < most_N)
 
 
