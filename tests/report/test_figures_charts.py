@@ -17,7 +17,7 @@ from designer.region import Prism
 from designer.report.figures import canvas
 from designer.report.figures.charts_candidates import candidates_chart, rank
 from designer.report.figures.charts_edge import edge_chart
-from designer.report.figures.charts_loop import loop_chart
+from designer.report.figures.charts_loop import _shown, loop_chart
 from designer.report.figures.charts_pareto import pareto_chart
 from designer.report.figures.charts_served import served_chart
 from designer.report.figures.charts_slice import slice_chart, slice_panels
@@ -177,6 +177,13 @@ class TestLoop:
         found = texts(svg)
         assert f"diverges, given up after {len(pose.loop.iterates) - 1} turns" in found
         assert not any("optimum" in text for text in found)
+
+    def test_a_loop_that_runs_away_at_once_is_still_a_curve(self) -> None:
+        pose = analyse_pose(pose_at("served", [250.0, 200.0, -1.0]))
+        assert pose is not None
+        assert len(_shown(pose)) == 3
+        assert pose.loop.iterates[1].max_tension_N > 10.0 * pose.loop.iterates[0].max_tension_N
+        check(loop_chart(pose))
 
     def test_slow_loop_still_shows_the_optimum(self) -> None:
         pose = analyse_pose(pose_at("served", [250.0, 4.85, -40.0]))

@@ -115,7 +115,11 @@ def test_ropes_of_groups_and_their_doubts_are_on_the_first_page(grouped: Analysi
     products = grouped.groups.chosen.products
     assert page.groups is not None
     assert "less than the best single product" in page.groups.text
-    assert [fact.value for fact in page.group_ropes] == [product.label for product in products]
+    assert page.card is not None
+    assert page.card.heading == "Ropes for groups of cables"
+    assert [fact.value for fact in page.card.facts[:2]] == [product.label for product in products]
+    assert all(f"{product.label} for " in page.verdict.text for product in products)
+    assert "cables 1 and 2, " in page.card.facts[0].note
     doubtful = {product.size.id for product in products if product.size.doubt}
     titles = " ".join(statement.title for statement in page.confidence)
     assert all(f"Doubt about {name}" in titles for name in doubtful)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
+from designer import terminal
 from designer.analysis import Analysis
 from designer.groups_json import groups_dict
 from designer.report.figures.charts_groups import groups_plan
+from designer.report.findings import Findings
 from designer.report.pictures import Pictures
+from designer.report.sections.first_page import first_page
 from designer.report.sections.groups import groups_section
 from designer.result_json import result_dict
 
@@ -98,3 +102,31 @@ def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     assert groups_section(analysis, Pictures().groups) is None
     assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
     assert result_dict(analysis)["selection"]["group_choice"] is None
+
+
+def test_groups_are_the_answer(found: Analysis) -> None:
+    """On the first page, in result.json, and where no product for all cables holds."""
+    answer = result_dict(found)["answer"]
+    assert [one["cables"] for one in answer["products"]] == [[1, 2], [3]]
+    assert found.groups is not None and found.groups.chosen is not None
+    assert answer["total_mass_kg"] == pytest.approx(found.groups.chosen.total_mass_kg)
+    assert found.selection is not None
+    alone = replace(found.selection, chosen=None, reason="no single product holds")
+    groups = replace(found.groups, single=None)
+    without = replace(found, selection=alone, groups=groups)
+    assert without.is_positive
+    page = first_page(without, Findings(), None)
+    assert page.verdict.title == "Yes"
+    assert page.reasons == page.actions == ()
+    assert page.card is not None and page.card.heading == "Ropes for groups of cables"
+    rows = [*terminal._summary(without)]
+    labels = [label for label, _ in rows]
+    assert labels.index("cables") < labels.index("one for all")
+
+
+def test_where_no_groups_are_found_the_answer_is_no(none: Analysis) -> None:
+    assert not none.is_positive
+    assert result_dict(none)["answer"] is None
+    page = first_page(none, Findings(), None)
+    assert page.verdict.title == "No"
+    assert "No products were found for the groups" in [reason.title for reason in page.reasons]

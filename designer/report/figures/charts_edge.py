@@ -147,10 +147,11 @@ def _not_held(profile: EdgeProfile) -> list[tuple[float, float]]:
 
 
 def _limit_text(profile: EdgeProfile, end: float) -> str:
-    distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m of the edge"
+    distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m"
     if profile.holds_again:
-        return f"not held everywhere within {distance}"
-    return f"{'no cable holds' if profile.is_proved else 'no cable was found'} within {distance}"
+        return f"first failure, {distance} from the edge"
+    none = "no cable holds" if profile.is_proved else "none found"
+    return f"{none} within {distance} of the edge"
 
 
 def _region_end(axes: Axes, profile: EdgeProfile) -> None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _MOST_MARKERS = 40
 _DIVERGES = 10.0
+_FEWEST = 3
 _KILONEWTON = 1e3
 
 
@@ -51,11 +52,12 @@ def loop_chart(pose: PoseAnalysis) -> str:
 
 
 def _shown(pose: PoseAnalysis) -> tuple[Iterate, ...]:
-    """All turns, or those before a loop without an optimum runs away."""
+    """All turns, or those before a loop without an optimum runs away, the first few in any case."""
     turns = pose.loop.iterates
     if bool(pose.sizing.statics.is_solved):
         return turns
-    return tuple(t for t in turns if t.max_tension_N < _DIVERGES * turns[0].max_tension_N)
+    most_N = max((_DIVERGES * t.max_tension_N for t in turns[:1]), default=0.0)
+    return tuple(t for k, t in enumerate(turns) if k < _FEWEST or t.max_tension_N < most_N)
 
 
 def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:

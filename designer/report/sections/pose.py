@@ -209,5 +209,5 @@ def turns_table(loop: LoopSizing) -> Table:
     columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
     caption = "Turns of the loop; turn 0 is the massless start."
     if loop.has_diverged:
-        caption += " It diverges: each turn asks for more than the one before, without end."
+        caption += " It diverges: each turn asks for more than the one before."
     return Table.of(caption, columns, *rows)

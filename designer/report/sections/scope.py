@@ -62,7 +62,7 @@ def strength_statement(
         return
     share, sheave_m = selection.termination_efficiency, selection.sheave_diameter_m
     if share == 1.0 and sheave_m is None:
-        text = "None assumed: end fittings 100\u00a0%, bending 100\u00a0% of the breaking load."
+        text = "No loss assumed: end fittings 100\u00a0%, bending 100\u00a0% of the breaking load."
         yield Statement("Losses of strength", text, "doubt")
         return
     ends = f"End fittings {fmt.percent(share)}{' (none assumed)' if share == 1.0 else ''}, bending "
