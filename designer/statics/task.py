@@ -25,8 +25,8 @@ _PATIENCE = 8
 _LEAST_SHARE = 1.0 / 32.0
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
-_HELD = (1e-4, 1e-2)
-"""Tensions, over the weight of the platform, that are tried to hold such a cable by."""
+_HELD = 1e-3
+"""Tension, over the weight of the platform, that is tried to hold such a cable by."""
 _FREE = 1.001
 """Heavier, or more loaded, by no more than this; half of it in diameter."""
 
@@ -137,26 +137,25 @@ def _prefer_taut(robot: Robot, flat: Poses, solution: Solution, run: PulleyRun, 
     if not robot.is_redundant or robot.tension_min_N > 0.0 or task.inverse_weight_m_per_N == 0.0:
         return
     chord = cable_geometry(robot, flat, run.exit_points_m).chord_m
-    for share in _HELD:
-        at = np.flatnonzero((solution.length_m > LONG * chord).any(axis=1))
-        if len(at) == 0 or not robot.weight_N > 0.0:
-            return
-        held = replace(robot, tension_min_N=share * robot.weight_N)
-        rotation = flat.rotation if flat.rotation.ndim == 2 else flat.rotation[at]
-        force = None if task.force_N is None else task.force_N[at]
-        some = Poses(flat.position_m[at], rotation)
-        again, its_run = solve_task(held, some, replace(task, force_N=force))
-        if task.inverse_weight_m_per_N is None:
-            is_free = again.weight_N_per_m <= _FREE * solution.weight_N_per_m[at]
-        else:
-            is_free = again.load_factor <= _FREE * solution.load_factor[at]
-        taut = np.all(again.length_m <= LONG * chord[at], axis=1)
-        better = is_free & taut & (again.verdict == Verdict.SOLVED)
-        for field in fields(solution):
-            getattr(solution, field.name)[at[better]] = getattr(again, field.name)[better]
-        if robot.pulley_radius_m != 0.0:
-            run.exit_points_m[at[better]] = its_run.exit_points_m[better]
-            run.wrap_m[at[better]] = its_run.wrap_m[better]
+    at = np.flatnonzero((solution.length_m > LONG * chord).any(axis=1))
+    if len(at) == 0 or not robot.weight_N > 0.0:
+        return
+    held = replace(robot, tension_min_N=_HELD * robot.weight_N)
+    rotation = flat.rotation if flat.rotation.ndim == 2 else flat.rotation[at]
+    force = None if task.force_N is None else task.force_N[at]
+    some = Poses(flat.position_m[at], rotation)
+    again, its_run = solve_task(held, some, replace(task, force_N=force))
+    if task.inverse_weight_m_per_N is None:
+        is_free = again.weight_N_per_m <= _FREE * solution.weight_N_per_m[at]
+    else:
+        is_free = again.load_factor <= _FREE * solution.load_factor[at]
+    taut = np.all(again.length_m <= LONG * chord[at], axis=1)
+    better = is_free & taut & (again.verdict == Verdict.SOLVED)
+    for field in fields(solution):
+        getattr(solution, field.name)[at[better]] = getattr(again, field.name)[better]
+    if robot.pulley_radius_m != 0.0:
+        run.exit_points_m[at[better]] = its_run.exit_points_m[better]
+        run.wrap_m[at[better]] = its_run.wrap_m[better]
 
 
 def over_pulleys(
