@@ -70,6 +70,7 @@ class Robot:
         The load.
     pulley_radius_m : float
         Radius of the swivelling pulleys at the exit points [m]; see `designer.physics.pulley`.
+        A fit takes its slope at zero from both sides, so it may be negative.
     tilt_rad : array (2,)
         The base is turned by the rotation vector (rx, ry, 0) against the vertical, x and y of the
         upright frame [rad].
@@ -98,7 +99,7 @@ class Robot:
         }
         for name, shape in shapes.items():
             object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
-        require_number("pulley_radius_m", self.pulley_radius_m, least=0.0)
+        require_number("pulley_radius_m", self.pulley_radius_m)
         require_number("tension_min_N", self.tension_min_N, least=0.0)
         if not self.gravity_direction.any():
             raise ValueError("gravity_direction must not be zero")

@@ -30,7 +30,7 @@ WRONG = {
     "exit points in a plane": (lambda: Robot(EXITS[:, :2], Platform(1.0)), r"\(n, 3\)"),
     "no exit points": (lambda: Robot(EXITS[:0], Platform(1.0)), r"\(n, 3\)"),
     "an exit point nowhere": (lambda: Robot(EXITS * nan, Platform(1.0)), "finite"),
-    "a pulley": (lambda: replace(ROBOT, pulley_radius_m=-0.1), "pulley_radius_m"),
+    "a pulley": (lambda: replace(ROBOT, pulley_radius_m=nan), "pulley_radius_m"),
     "a tilt": (lambda: replace(ROBOT, tilt_rad=np.zeros(3)), "tilt_rad"),
     "a least tension": (lambda: replace(ROBOT, tension_min_N=nan), "tension_min_N"),
     "no gravity": (lambda: replace(ROBOT, gravity_direction=np.zeros(3)), "gravity"),

@@ -26,6 +26,8 @@ _LEAST_SHARE = 1.0 / 32.0
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
 _UNPROVED = 1e-5
+LONG = 1.5
+"""Length over chord above which a cable counts as far too long."""
 
 Answer = TypeVar("Answer")
 

@@ -12,12 +12,10 @@ from designer.cable import Cable, Cables
 from designer.robot import Poses, Robot
 from designer.statics.hanging import length_over_chord, lowest_m
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.task import LONG
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.samples import places
-
-LONG = 1.5
-"""Length over chord above which a cable counts as long."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,16 +57,22 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
         outcome.continuous_diameter_m,
         best.size.diameter_m,
     )
-    cables = [family.cable(d) for family, d in zip(families, diameters, strict=True)]
-    # A continuous optimum is at its allowable tension; a size stays below it.
-    tensions = (*(c.allowable_tension_N for c in cables[:2]), best.verification.max_tension_N)
+    areas = [math.pi * diameter**2 / 4.0 for diameter in diameters]
+    masses = [f.density_kg_per_m3 * area for f, area in zip(families, areas, strict=True)]
+    # A continuous optimum is at its allowable tension, unless spare cables leave a choice.
+    is_free = analysis.built.robot.is_redundant
+    tensions = (
+        sagging.max_tension_N if sagging else math.nan,
+        math.nan if is_free else outcome.family.allowable_stress_Pa * areas[1],
+        best.verification.max_tension_N,
+    )
     lines: tuple[tuple[str, Iterable[str]], ...] = (
         ("Density", (fmt.kilograms_per_cubic_metre(f.density_kg_per_m3) for f in families)),
         ("Modulus of elasticity", (fmt.pascals(f.youngs_modulus_Pa) for f in families)),
         ("Allowable stress", (fmt.pascals(f.allowable_stress_Pa) for f in families)),
         ("Self-supporting length", (_self_supporting(f) for f in families)),
         ("Diameter", (fmt.millimetres(d) for d in diameters)),
-        ("Mass per length", (fmt.kilograms_per_metre(c.linear_density_kg_per_m) for c in cables)),
+        ("Mass per length", (fmt.kilograms_per_metre(mass) for mass in masses)),
         ("Largest tension", fmt.newtons_alike(*tensions)),
     )
     columns = (
@@ -134,7 +140,7 @@ def _efficiency(best: Candidate) -> str:
 
 def _snap(outcome: GradeOutcome, best: Candidate) -> tuple[Fact, ...]:
     optimum_m, size = outcome.continuous_diameter_m, best.size
-    lightest = outcome.family.cable(optimum_m).linear_density_kg_per_m
+    lightest = outcome.family.density_kg_per_m3 * math.pi * optimum_m**2 / 4.0
     heavier = size.linear_density_kg_per_m
     return (
         Fact(

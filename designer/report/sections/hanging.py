@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from designer.analysis import Analysis
 from designer.report import format as fmt
 from designer.report.parts import Statement
-from designer.workspace.hanging import LONG, Hanging
+from designer.statics.task import LONG
+from designer.workspace.hanging import Hanging
 
 
 def hanging_statements(analysis: Analysis) -> Iterator[Statement]:
