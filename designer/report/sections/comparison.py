@@ -135,7 +135,7 @@ def _efficiency(best: Candidate) -> str:
 def _snap(outcome: GradeOutcome, best: Candidate) -> tuple[Fact, ...]:
     optimum_m, size = outcome.continuous_diameter_m, best.size
     lightest = outcome.family.cable(optimum_m).linear_density_kg_per_m
-    heavier = size.linear_density_kg_per_m
+    heavier = best.cable.linear_density_kg_per_m
     return (
         Fact(
             "Diameter",
