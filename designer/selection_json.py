@@ -91,6 +91,7 @@ def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
         "efficiency": candidate.efficiency,
         "allowable_tension_N": candidate.cable.allowable_tension_N,
         "linear_mass_kg_per_m": size.linear_density_kg_per_m,
+        "as_built_linear_mass_kg_per_m": candidate.cable.linear_density_kg_per_m,
         "axial_stiffness_N": candidate.cable.axial_stiffness_N,
         "total_mass_kg": _number(candidate.total_mass_kg),
         "drum_diameter_m": _number(figures.drum_diameter_m),

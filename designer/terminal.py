@@ -189,7 +189,7 @@ def _summary_of_selection(
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     used = chosen.verification.utilisation
     yield "  utilisation", f"{used:.1%} {_terms(asked, chosen.efficiency)}"
-    mass = f"{chosen.size.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+    mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
 

@@ -63,7 +63,10 @@ def test_an_effect_of_one_cable_may_stand_once_or_in_a_list(valid: str, study_of
 
 def test_every_effect_can_be_declared() -> None:
     for effect in EFFECTS.values():
-        given = {one.name: 1.5 for one in effect.parameters_for(4)}
+        given = {
+            one.name: 1e-3 if one.dimension.unit == "1/K" else 1.5
+            for one in effect.parameters_for(4)
+        }
         if effect.takes_cable:
             given["cable"] = 4
         found = read_effects({effect.id: dict(given)}, 4, EFFECTS)

@@ -28,6 +28,7 @@ from designer.progress import Silent
 from designer.report.sections.appendix import assumptions_section
 from designer.result_json import result_dict
 from designer.robot import Poses
+from designer.selection_json import selection_dict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study
@@ -159,6 +160,9 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
     )
     assert float(found.largest_tension_N) == pytest.approx(chosen.verification.max_tension_N)
     (outcome,) = iced.selection.outcomes
+    row = selection_dict(iced.selection)["chosen"]
+    assert row["linear_mass_kg_per_m"] == chosen.size.linear_density_kg_per_m
+    assert row["as_built_linear_mass_kg_per_m"] == chosen.cable.linear_density_kg_per_m
     thinner = outcome.family.cable(outcome.continuous_diameter_m)
     bare = outcome.grade.family(5.0).cable(outcome.continuous_diameter_m)
     expected = bare.linear_density_kg_per_m + 0.2

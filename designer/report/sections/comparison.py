@@ -141,7 +141,7 @@ def _efficiency(best: Candidate) -> str:
 def _snap(outcome: GradeOutcome, best: Candidate) -> tuple[Fact, ...]:
     optimum_m, size = outcome.continuous_diameter_m, best.size
     lightest = outcome.family.density_kg_per_m3 * math.pi * optimum_m**2 / 4.0
-    heavier = size.linear_density_kg_per_m
+    heavier = best.cable.linear_density_kg_per_m
     return (
         Fact(
             "Diameter",

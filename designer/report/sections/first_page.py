@@ -280,7 +280,7 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
             Fact("At the position", fmt.position(found.worst_position_m)),
             Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
             Fact("Utilisation", fmt.utilisation(found.utilisation)),
-            Fact("Mass", fmt.kilograms_per_metre(size.linear_density_kg_per_m)),
+            Fact("Mass", *_mass(chosen)),
             Fact(
                 "Longest, each cable", _lengths(found.longest_m, math.ceil), "unstrained, no spare"
             ),
@@ -288,6 +288,14 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
             Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
         ),
     )
+
+
+def _mass(chosen: Candidate) -> tuple[str, str]:
+    """Return the mass per length on this machine, and that of the table where it differs."""
+    built, table = chosen.cable.linear_density_kg_per_m, chosen.size.linear_density_kg_per_m
+    is_same = math.isclose(built, table, rel_tol=1e-9)
+    note = "" if is_same else f"with the declared effects; {fmt.kilograms_per_metre(table)} bare"
+    return fmt.kilograms_per_metre(built), note
 
 
 def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:

@@ -134,7 +134,7 @@ def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
                 ", ".join(str(cable) for cable in group.cables),
                 product.label,
                 fmt.fixed(1e3 * product.size.diameter_m, 1),
-                fmt.fixed(product.size.linear_density_kg_per_m, 3),
+                fmt.fixed(product.cable.linear_density_kg_per_m, 3),
                 fmt.fixed(product.cable.allowable_tension_N / 1e3, decimals),
                 fmt.utilisation(float(found.utilisation[k])),
                 _place(found.worst_place[k]),
