@@ -54,11 +54,13 @@ from designer.verdict import Verdict
 _SOLVED = int(Verdict.SOLVED)
 _AT_LIMIT = 1e-6
 _NEARLY_SINGULAR = 1e-13
-_TURNS = 2
 PROVED = 1e-6
 """Potential up to which the branch is proved to be the best: the solver's own tolerance."""
 _HANGING = 0.2
-"""Pull of a cable that hangs, about two and a half times as long as its horizontal distance."""
+"""Pull of a cable that hangs, about two and a half times as long as its horizontal distance; then
+C and S of `designer.kernel.unit_cable`, for a rigid cable."""
+_HANGING_C = 2.5 / np.tanh(2.5)
+_HANGING_S = (np.sinh(2.5) / 2.5) ** 2
 
 
 @kernel
@@ -137,7 +139,7 @@ def find_value(
 ) -> bool:
     """Fill the multipliers of the balance: the wrench that no cable off its limits can add to.
 
-    By inverse iteration, from the cables at their limit, which add to it.
+    By one inverse iteration, from the cables at their limit, which add to it.
     """
     c, rows = pose.cables, pose.rows
     m, n = rows.size, c.shape[1]
@@ -146,24 +148,22 @@ def find_value(
         if _is_full(c, i, limit):
             for k in range(m):
                 before[k] += c[WRENCH + rows[k], i]
-    for _ in range(_TURNS):
-        for k in range(m):
-            for q in range(m):
-                system[k, q] = _NEARLY_SINGULAR if k == q else 0.0
-            system[k, m] = before[k]
-        for i in range(n):
-            if not _is_full(c, i, limit) and not _is_least(c, pose.scale, i, scaled_c):
-                _add_square(system, c, rows, i)
-        if not solve_small(system, value):
-            return False
-        size = 0.0
-        for k in range(m):
-            size = max(size, abs(value[k]))
-        if not 0.0 < size < np.inf:
-            return False
-        for k in range(m):
-            value[k] /= size
-            before[k] = value[k]
+    for k in range(m):
+        for q in range(m):
+            system[k, q] = _NEARLY_SINGULAR if k == q else 0.0
+        system[k, m] = before[k]
+    for i in range(n):
+        if not _is_full(c, i, limit) and not _is_least(c, pose.scale, i, scaled_c):
+            _add_square(system, c, rows, i)
+    if not solve_small(system, value):
+        return False
+    size = 0.0
+    for k in range(m):
+        size = max(size, abs(value[k]))
+    if not 0.0 < size < np.inf:
+        return False
+    for k in range(m):
+        value[k] /= size
     return _orient(pose, limit, value)
 
 
@@ -248,8 +248,14 @@ def _potential(
         if beta < 0.0:
             is_concave = False
             best = 0.0
-            for p in (min(max(_HANGING, least), tight), tight):
-                moved = alpha * (p - c[P, i]) + beta * (rise(pose, i, p) - c[V, i])
+            if not _is_full(c, i, limit):  # pulled tight, when the lift nears p D - L/2
+                sag = 0.5 * c[CHORD, i] + c[X2, i] / (48.0 * c[CHORD, i] * tight * tight)
+                moved = alpha * (tight - c[P, i]) + beta * (tight * c[D, i] - sag - c[V, i])
+                best = max(best, moved)
+            if least <= _HANGING and c[P, i] > _HANGING:
+                length = np.sqrt(c[D, i] * c[D, i] + c[X2, i] * _HANGING_S)
+                lift_there = _HANGING * _HANGING_C * c[D, i] - 0.5 * length
+                moved = alpha * (_HANGING - c[P, i]) + beta * (lift_there - c[V, i])
                 best = max(best, moved)
             gain += best
         elif slope > 0.0 and not (_is_full(c, i, limit) and c[T_P, i] > 0.0):
