@@ -7,9 +7,11 @@ pulls p gives c (or saves load factor) beyond what each cable can add on its own
 
 (weak duality: whatever y). The upward pull v is a concave function of the pull along the closure.
 So where a force up at its attachment does no harm (β ≥ 0), g is concave, and the pull of a solved
-pose, which makes it stationary or lies at its limit, is the best there is. If that goes for all
-cables, **the branch found is the best of all**, straight or hanging. Where β < 0 the cable might
+pose, which makes it stationary or lies at its limit, is the best there is. Where β < 0 the cable might
 rather hang as a counterweight, or be pulled: what it could gain so is the potential that is told.
+
+It is an estimate that tells which poses deserve a search, and **no proof**: of 1112 random poses of
+random robots 63 were bettered by the search where it said so, 5 more where it did not.
 """
 
 from __future__ import annotations
@@ -54,8 +56,6 @@ from designer.verdict import Verdict
 _SOLVED = int(Verdict.SOLVED)
 _AT_LIMIT = 1e-6
 _NEARLY_SINGULAR = 1e-13
-PROVED = 1e-6
-"""Potential up to which the branch is proved to be the best: the solver's own tolerance."""
 _HANGING = 0.2
 """Pull of a cable that hangs, about two and a half times as long as its horizontal distance; then
 C and S of `designer.kernel.unit_cable`, for a rigid cable."""
@@ -85,7 +85,7 @@ def rate_range(
     verdict: IntArray,
     out: FloatArray,
 ) -> None:
-    """Fill the potential of the solved poses `start` to `stop`; up to `PROVED` is proof.
+    """Fill the potential of the solved poses `start` to `stop`.
 
     Relative to the inverse weight when sizing, else to the load factor; infinite where the
     multipliers are not to be had.
@@ -236,7 +236,6 @@ def _potential(
     gain, worth = 0.0, 0.0
     for k in range(value.size):
         worth += scaled_c * value[k] * pose.load[pose.rows[k]] if is_sizing else 0.0
-    is_concave = True
     for i in range(c.shape[1]):
         slope = _slope(pose, value, i) / c[UNIT, i]
         if not is_sizing and _is_full(c, i, limit):
@@ -246,7 +245,6 @@ def _potential(
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
         least = scaled_c * pose.scale[FORCE] / pose.scale[SIZE] * c[LEAST, i] / c[CHORD, i]
         if beta < 0.0:
-            is_concave = False
             best = 0.0
             if not _is_full(c, i, limit):  # pulled tight, when the lift nears p D - L/2
                 sag = 0.5 * c[CHORD, i] + c[X2, i] / (48.0 * c[CHORD, i] * tight * tight)
@@ -264,4 +262,4 @@ def _potential(
             gain -= slope * (c[P, i] - least)
     if not (worth > 0.0 and gain >= 0.0):
         return np.inf
-    return gain / worth if is_concave else max(gain / worth, 2.0 * PROVED)
+    return gain / worth

@@ -21,7 +21,6 @@ _MOST_TURNS = 40
 _STILL_RAD = 1e-13
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
-_UNPROVED = 1e-5
 
 Answer = TypeVar("Answer")
 
@@ -109,8 +108,6 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
     _try_other_branches(robot, flat, solution, run, task)
     if robot.pulley_radius_m == 0.0:
         return solution, run
-    # What is proved of other branches goes for cables that leave from where they leave now.
-    np.maximum(solution.potential, _UNPROVED, out=solution.potential)
     shape = (*poses.shape, robot.n_cables)
     points = run.exit_points_m.reshape(*shape, 3)
     return solution, PulleyRun(points, run.wrap_m.reshape(shape))
