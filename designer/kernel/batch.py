@@ -8,16 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, VerdictArray, require_shape
+from designer.arrays import FloatArray, VerdictArray, require_shape
 from designer.kernel import layout
-from designer.kernel.branches import PROVED, rate_range
+from designer.kernel.branches import rate_range
 from designer.kernel.calling import plain, pool
 from designer.kernel.cone import refuse_range
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
 from designer.kernel.redundant_search import search_range
 from designer.kernel.square import solve_range
 from designer.robot import Poses, Robot
-from designer.verdict import Verdict
 
 _SHARE = 32 * layout.LANES
 
@@ -43,8 +42,7 @@ class Solution:
     massless_tension_N : array (n_poses,)
         Largest tension of straight, weightless cables [N]; NaN outside their hull.
     potential : array (n_poses,)
-        Bound of what other branches could gain, relative, as `designer.kernel.branches` has it;
-        up to `branches.PROVED` where the branch found is proved to be the best of all.
+        Estimate of what other branches could gain, relative, by `designer.kernel.branches`.
     """
 
     verdict: VerdictArray
@@ -57,11 +55,6 @@ class Solution:
     load_factor: FloatArray
     massless_tension_N: FloatArray
     potential: FloatArray
-
-    @property
-    def is_best(self) -> BoolArray:
-        """Whether a pose (n_poses,) is solved, and its branch proved to be the best of all."""
-        return np.asarray((self.verdict == Verdict.SOLVED) & (self.potential <= PROVED))
 
 
 def solve_batch(

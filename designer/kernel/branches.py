@@ -5,11 +5,12 @@ pulls p gives c (or saves load factor) beyond what each cable can add on its own
 
     Σᵢ gᵢ(pᵢ) - c y · load,    gᵢ(p) = y · Wᵢ(p) = α p + β v(p)
 
-(weak duality: whatever y). The upward pull v is a concave function of the pull along the closure.
-So where a force up at its attachment does no harm (β ≥ 0), g is concave, and the pull of a solved
-pose, which makes it stationary or lies at its limit, is the best there is. If that goes for all
-cables, **the branch found is the best of all**, straight or hanging. Where β < 0 the cable might
-rather hang as a counterweight, or be pulled: what it could gain so is the potential that is told.
+(weak duality: whatever y). Where a force up at its attachment does no harm (β ≥ 0), the pull of a
+solved pose is nearly the best there is, v being all but concave in the pull. Where β < 0 the cable
+might rather hang as a counterweight, or be pulled: what it could gain is the potential.
+
+It is an estimate that tells which poses deserve a search, and **no proof**: of 1112 random poses of
+random robots 63 were bettered by the search where it said so, 5 more where it did not.
 """
 
 from __future__ import annotations
@@ -54,11 +55,11 @@ from designer.verdict import Verdict
 _SOLVED = int(Verdict.SOLVED)
 _AT_LIMIT = 1e-6
 _NEARLY_SINGULAR = 1e-13
-_TURNS = 2
-PROVED = 1e-6
-"""Potential up to which the branch is proved to be the best: the solver's own tolerance."""
 _HANGING = 0.2
-"""Pull of a cable that hangs, about two and a half times as long as its horizontal distance."""
+"""Pull of a cable that hangs, about two and a half times as long as its horizontal distance; then
+C and S of `designer.kernel.unit_cable`, for a rigid cable."""
+_HANGING_C = 2.5 / np.tanh(2.5)
+_HANGING_S = (np.sinh(2.5) / 2.5) ** 2
 
 
 @kernel
@@ -83,7 +84,7 @@ def rate_range(
     verdict: IntArray,
     out: FloatArray,
 ) -> None:
-    """Fill the potential of the solved poses `start` to `stop`; up to `PROVED` is proof.
+    """Fill the potential of the solved poses `start` to `stop`.
 
     Relative to the inverse weight when sizing, else to the load factor; infinite where the
     multipliers are not to be had.
@@ -137,7 +138,7 @@ def find_value(
 ) -> bool:
     """Fill the multipliers of the balance: the wrench that no cable off its limits can add to.
 
-    By inverse iteration, from the cables at their limit, which add to it.
+    By one inverse iteration, from the cables at their limit, which add to it.
     """
     c, rows = pose.cables, pose.rows
     m, n = rows.size, c.shape[1]
@@ -146,24 +147,22 @@ def find_value(
         if _is_full(c, i, limit):
             for k in range(m):
                 before[k] += c[WRENCH + rows[k], i]
-    for _ in range(_TURNS):
-        for k in range(m):
-            for q in range(m):
-                system[k, q] = _NEARLY_SINGULAR if k == q else 0.0
-            system[k, m] = before[k]
-        for i in range(n):
-            if not _is_full(c, i, limit) and not _is_least(c, pose.scale, i, scaled_c):
-                _add_square(system, c, rows, i)
-        if not solve_small(system, value):
-            return False
-        size = 0.0
-        for k in range(m):
-            size = max(size, abs(value[k]))
-        if not 0.0 < size < np.inf:
-            return False
-        for k in range(m):
-            value[k] /= size
-            before[k] = value[k]
+    for k in range(m):
+        for q in range(m):
+            system[k, q] = _NEARLY_SINGULAR if k == q else 0.0
+        system[k, m] = before[k]
+    for i in range(n):
+        if not _is_full(c, i, limit) and not _is_least(c, pose.scale, i, scaled_c):
+            _add_square(system, c, rows, i)
+    if not solve_small(system, value):
+        return False
+    size = 0.0
+    for k in range(m):
+        size = max(size, abs(value[k]))
+    if not 0.0 < size < np.inf:
+        return False
+    for k in range(m):
+        value[k] /= size
     return _orient(pose, limit, value)
 
 
@@ -231,12 +230,11 @@ def rise(pose: Pose, i: int, p: float) -> float:
 def _potential(
     pose: Pose, scaled_c: float, limit: float, is_sizing: bool, value: FloatArray
 ) -> float:
-    """Add up what single cables could gain: from tangents where g is concave, else at two pulls."""
+    """Add up what single cables could gain: from tangents where β ≥ 0, else at two pulls."""
     c = pose.cables
     gain, worth = 0.0, 0.0
     for k in range(value.size):
         worth += scaled_c * value[k] * pose.load[pose.rows[k]] if is_sizing else 0.0
-    is_concave = True
     for i in range(c.shape[1]):
         slope = _slope(pose, value, i) / c[UNIT, i]
         if not is_sizing and _is_full(c, i, limit):
@@ -246,10 +244,15 @@ def _potential(
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
         least = scaled_c * pose.scale[FORCE] / pose.scale[SIZE] * c[LEAST, i] / c[CHORD, i]
         if beta < 0.0:
-            is_concave = False
             best = 0.0
-            for p in (min(max(_HANGING, least), tight), tight):
-                moved = alpha * (p - c[P, i]) + beta * (rise(pose, i, p) - c[V, i])
+            if not _is_full(c, i, limit):  # pulled tight, when the lift nears p D - L/2
+                sag = 0.5 * c[CHORD, i] + c[X2, i] / (48.0 * c[CHORD, i] * tight * tight)
+                moved = alpha * (tight - c[P, i]) + beta * (tight * c[D, i] - sag - c[V, i])
+                best = max(best, moved)
+            if least <= _HANGING and c[P, i] > _HANGING:
+                length = np.sqrt(c[D, i] * c[D, i] + c[X2, i] * _HANGING_S)
+                lift_there = _HANGING * _HANGING_C * c[D, i] - 0.5 * length
+                moved = alpha * (_HANGING - c[P, i]) + beta * (lift_there - c[V, i])
                 best = max(best, moved)
             gain += best
         elif slope > 0.0 and not (_is_full(c, i, limit) and c[T_P, i] > 0.0):
@@ -258,4 +261,4 @@ def _potential(
             gain -= slope * (c[P, i] - least)
     if not (worth > 0.0 and gain >= 0.0):
         return np.inf
-    return gain / worth if is_concave else max(gain / worth, 2.0 * PROVED)
+    return gain / worth

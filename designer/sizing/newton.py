@@ -11,6 +11,7 @@ from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, statics_of
 from designer.statics.task import Task, solve_task
+from designer.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,8 +32,8 @@ class Sizing:
     equilibrium_residual_N : array (...)
         What is left of the platform's balance, moments divided by the platform's reach [N].
     is_thinnest : array (...)
-        Whether it is proved that no thinner cable of the family holds the pose, whichever way the
-        cables run (`designer.kernel.branches`); where not, it is the thinnest found.
+        Whether it is known that no thinner cable of the family holds the pose: of a point mass on
+        as few cables as hold it, which has one equilibrium. Elsewhere it is the thinnest found.
     """
 
     statics: Statics
@@ -64,5 +65,5 @@ def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
         massless_diameter_m=np.sqrt(4.0 * massless_area / np.pi).reshape(shape),
         closure_residual_m=solution.closure_residual_m.reshape(shape),
         equilibrium_residual_N=solution.equilibrium_residual_N.reshape(shape),
-        is_thinnest=solution.is_best.reshape(shape),
+        is_thinnest=((solution.verdict == Verdict.SOLVED) & robot.has_one_branch).reshape(shape),
     )

@@ -25,9 +25,9 @@ _PATIENCE = 8
 _LEAST_SHARE = 1.0 / 32.0
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
-_UNPROVED = 1e-5
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
+_AS_GOOD = 1.0 + 1e-7
 
 Answer = TypeVar("Answer")
 
@@ -115,8 +115,6 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
     _try_other_branches(robot, flat, solution, run, task)
     if robot.pulley_radius_m == 0.0:
         return solution, run
-    # What is proved of other branches goes for cables that leave from where they leave now.
-    np.maximum(solution.potential, _UNPROVED, out=solution.potential)
     shape = (*poses.shape, robot.n_cables)
     points = run.exit_points_m.reshape(*shape, 3)
     return solution, PulleyRun(points, run.wrap_m.reshape(shape))
@@ -141,6 +139,8 @@ def _try_other_branches(
 ) -> None:
     """Search again where nothing is found or proved, or where another branch may be better.
 
+    Of branches that are as good, one without cables far longer than their chords is preferred.
+
     Writes what is better into the solution and the run of the cables.
     """
     open_verdicts = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
@@ -154,10 +154,15 @@ def _try_other_branches(
     )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
-        better = again.weight_N_per_m < solution.weight_N_per_m[at]
+        burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
     else:
-        better = again.load_factor < solution.load_factor[at]
-    better = solved & (better | (solution.verdict[at] != Verdict.SOLVED))
+        burden, before = again.load_factor, solution.load_factor[at]
+    chord = cable_geometry(robot, part_of(flat, at)).chord_m
+    was_long, is_long = (
+        (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
+    )
+    tauter = was_long & ~is_long & (burden <= _AS_GOOD * before)
+    better = solved & ((burden < before) | tauter | (solution.verdict[at] != Verdict.SOLVED))
     for field in fields(solution):
         getattr(solution, field.name)[at[better]] = getattr(again, field.name)[better]
     if robot.pulley_radius_m > 0.0:

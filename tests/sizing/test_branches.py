@@ -40,14 +40,16 @@ def test_the_other_solver_finds_the_same_cable() -> None:
         assert sizing.diameter_m[k] == pytest.approx(other.diameter_m, rel=1e-6)
 
 
-def test_a_point_mass_under_its_cables_is_proved_to_have_the_thinnest() -> None:
-    sizing = size_poses(FOUR, four_poses(50), steel(5.0))
-    assert sizing.is_thinnest[sizing.statics.is_solved].all()
-    assert sizing.statics.is_solved.any()
+def test_only_one_equilibrium_is_called_the_thinnest(fast_robot) -> None:
+    three = size_poses(fast_robot, Poses.at([[250.0, 200.0, -50.0]]), steel())
+    assert three.is_thinnest.all()
+    four = size_poses(FOUR, four_poses(5), steel())
+    assert four.statics.is_solved.any()
+    assert not four.is_thinnest.any()
 
 
-def test_what_is_proved_to_be_thinnest_is_not_bettered(monkeypatch) -> None:
-    """With the search forced on every pose, proved ones stay, and none gets thicker."""
+def test_what_deserves_no_search_is_not_bettered(monkeypatch) -> None:
+    """With the search forced on every pose, none gets thicker, and none thinner by much."""
     from designer.statics import task
 
     poses = Poses.at(anywhere(300, 3).position_m[:120], anywhere(300, 3).place[:120, 3:])
@@ -59,7 +61,6 @@ def test_what_is_proved_to_be_thinnest_is_not_bettered(monkeypatch) -> None:
     gain = before.diameter_m[both] / after.diameter_m[both] - 1.0
     assert gain.min() > -1e-7
     assert gain.max() < 2.5e-4
-    assert gain[before.is_thinnest[both]].max() < 1e-6
 
 
 def test_no_thinner_cable_is_within_its_strength() -> None:

@@ -78,7 +78,8 @@ def test_the_cone_is_that_of_least_squares(kind) -> None:
         load = load_wrench_N(robot, poses)
         for k in range(8):
             sizes = np.ones(len(load[k]))
-            sizes[robot.balance_rows >= 3] = np.abs(robot.attachments_m).sum(axis=1).max()
+            lever = cable_geometry(robot, one(poses, k)).lever_m
+            sizes[robot.balance_rows >= 3] = np.abs(lever).sum(axis=1).max()
             both = np.hstack([straight[k], down[k]]) / sizes[:, None]
             both = both / np.linalg.norm(both, axis=0)
             wanted = load[k] / sizes / np.linalg.norm(load[k] / sizes)
@@ -89,7 +90,8 @@ def test_the_cone_is_that_of_least_squares(kind) -> None:
             if verdict[k] == OUTSIDE:
                 assert separation[k] == pytest.approx(rest, rel=1e-6)
                 assert np.linalg.norm(wrench[k]) == pytest.approx(1.0)
-    assert {int(OUTSIDE), int(NOT_FOUND)} <= seen
+    # A force straight down is of no use to a point mass, which only hangs.
+    assert seen >= ({int(OUTSIDE)} if kind == "point" else {int(OUTSIDE), int(NOT_FOUND)})
 
 
 def held_by(robot: Robot, poses: Poses, pull: np.ndarray, weight: float) -> np.ndarray:
@@ -155,7 +157,8 @@ def test_a_least_tension_moves_the_cone() -> None:
     poses = Poses.at([[50.0, 40.0, -5.0]])
     assert refuse(FOUR, poses)[0] == [Verdict.NOT_CONVERGED]
     tight = replace(FOUR, tension_min_N=50_000.0)
-    assert refuse(tight, poses)[0] == [OUTSIDE]
+    # Straight cables cannot all be so tight; how far they may sag is not bounded.
+    assert refuse(tight, poses)[0] == [NOT_FOUND]
 
 
 def test_many_cables_are_judged_like_few() -> None:

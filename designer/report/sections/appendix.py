@@ -159,11 +159,10 @@ def _thinnest(robot: Robot) -> str:
         )
     return (
         "The cables may run in more than one way: one may hang as a counterweight, or be pulled "
-        "tight. At each pose the way found is tested by its multipliers: where no cable could help "
-        "by a force straight down, it is proved that none is better. Elsewhere, as soon as a cable "
-        "could gain 0.05 % of its weight, other ways are tried: each cable hanging in turn, all "
-        "cables with half their pull, and random pulls. A needed diameter is then the thinnest "
-        "that was found."
+        "tight. At each pose the multipliers of the way found tell what a cable could gain by "
+        "hanging or by more pull; where that is above 0.05 % of the weight, other ways are tried: "
+        "each cable hanging in turn, all cables with half their pull, and random pulls. A needed "
+        "diameter is the thinnest that was found; it is not proved that there is no thinner one."
     )
 
 
