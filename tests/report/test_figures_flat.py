@@ -16,7 +16,8 @@ from designer.region import PointList
 from designer.report.drawings import draw
 from designer.report.figures.maps import WorkspaceMaps, workspace_maps
 from designer.report.figures.workspace_scene import edges_m
-from designer.report.sections.workspace import describe_orientations, describe_region
+from designer.report.sections.scope import describe_orientations
+from designer.report.sections.workspace import describe_region
 from designer.resources import example_file
 from designer.robot import Poses
 from designer.sizing.newton import size_poses
