@@ -28,6 +28,7 @@ _MOST_ROUNDS = 8
 _GAIN = 1e-10
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 _NEAR_TRIALS = 24
+_SLIDES, _BISECTIONS = 10, 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -289,7 +290,7 @@ class _Search:
         row, extreme = np.concatenate(rows), np.concatenate(extremes)
         climbs = _Climbs.of(places[row], extreme, values[row, extreme], 0.5 / _CELLS_A_SIDE)
         climbs = self._climb(climbs, 1e-3)
-        self._climb(self._finalists(climbs), effort.tolerance)
+        self._climb(self._finalists(climbs), effort.tolerance, slides=True)
 
     def _finalists(self, climbs: _Climbs) -> _Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
@@ -303,8 +304,8 @@ class _Search:
                 kept.append(int(k))
         return climbs.some(np.array(kept, dtype=np.int64))
 
-    def _climb(self, climbs: _Climbs, tolerance: float) -> _Climbs:
-        """Climb until the clouds are smaller than the tolerance."""
+    def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> _Climbs:
+        """Climb until the clouds are smaller than the tolerance, along what does not count."""
         n = len(self._size)
         for _ in range(_MOST_TURNS):
             active = np.flatnonzero(climbs.radius > tolerance)
@@ -317,6 +318,10 @@ class _Search:
             trials = np.concatenate([trials, onward], axis=1)
             asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
             own = np.take_along_axis(asked, some.extreme[:, None, None], axis=2)[..., 0]
+            on_border = np.flatnonzero(slides & np.isneginf(own).any(axis=1))
+            if len(on_border):
+                slid = self._slide(some.some(on_border), trials[on_border], own[on_border])
+                trials[on_border, -1], own[on_border, -1] = slid
             best = own.argmax(axis=1)
             rows = np.arange(len(active))
             better = own[rows, best] > some.value
@@ -326,6 +331,41 @@ class _Search:
             climbs.value[active] = np.where(better, own[rows, best], some.value)
             climbs.radius[active] = some.radius * np.where(better, 1.1, 0.5)
         return climbs
+
+    def _slide(
+        self, climbs: _Climbs, trials: FloatArray, values: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the best place (n, n_coordinates) on the border of what counts, and its value.
+
+        Where the largest demand lies on that border, the directions that lead upward and stay
+        inside become few. The border's normal is the difference between the trials on either side
+        of it; moves across the normal are brought to the border by bisection along it.
+        """
+        n, size = len(self._size), np.where(self._size > 0.0, self._size, 1.0)
+        reach = climbs.radius[:, None, None]
+        offsets = (trials - climbs.at[:, None]) / size
+        outside = np.isneginf(values)[..., None]
+        normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
+        normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        some = offsets[:, self._rng.permutation(offsets.shape[1])[:_SLIDES]]
+        across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
+        low, high = np.full(across.shape[:2], -1.0), np.full(across.shape[:2], 1.0)
+
+        def at(share: FloatArray) -> tuple[FloatArray, FloatArray]:
+            steps = across + share[..., None] * reach * normal[:, None]
+            places = self._space.nearest(climbs.at[:, None] + steps * size)
+            asked = self._ask(places.reshape(-1, n)).reshape(*places.shape[:2], -1)
+            return places, np.take_along_axis(asked, climbs.extreme[:, None, None], axis=2)[..., 0]
+
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            inside = ~np.isneginf(at(middle)[1])
+            low, high = np.where(inside, low, middle), np.where(inside, middle, high)
+        places, asked = at(high)
+        best = asked.argmax(axis=1)
+        rows = np.arange(len(places))
+        return places[rows, best], asked[rows, best]
 
     def _directions(self, count: int) -> FloatArray:
         """Return directions (count, n_trials, n_coordinates) along the axes, and random ones.

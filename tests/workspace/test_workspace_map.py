@@ -269,3 +269,26 @@ def test_sweep_is_stored_with_units_and_read_back(fast_robot, steel, tmp_path) -
         again = size_poses(fast_robot, Poses.at(sweep["position"].to_numpy()[:50]), steel)
         assert np.allclose(again.diameter_m, sweep["diameter"].to_numpy()[:50], equal_nan=True)
     assert sum(steps) == CHUNK + 100
+
+
+def test_the_search_slides_along_what_does_not_count() -> None:
+    """The largest demand lies on a slanted border of what counts, curved and not."""
+    box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
+    nowhere = np.empty((0, 3))
+
+    def behind_a_plane(x):
+        inside = 0.577 * x[:, 0] + 0.8 * x[:, 1] + 0.16 * x[:, 2] <= 0.7
+        return np.where(inside, x[:, 0] + 1.5 * x[:, 1] - (x[:, 2] - 0.4) ** 2, -np.inf)
+
+    def behind_a_sphere(x):
+        gap = np.linalg.norm(x - [0.1, 0.2, 0.3], axis=1)
+        return np.where(gap <= 0.6, x @ [1.0, 2.0, 0.5], -np.inf)
+
+    steep = [0.1, 0.2, 0.3] + 0.6 * np.array([1.0, 2.0, 0.5]) / np.linalg.norm([1.0, 2.0, 0.5])
+    assert refine(box, behind_a_sphere, nowhere).demand == pytest.approx(
+        steep @ [1.0, 2.0, 0.5], rel=1e-7
+    )
+    # On the plane's border the demand is linear in x and concave in z: at x = 0.
+    z = np.linspace(0.0, 1.0, 100_001)
+    along = 1.5 * (0.7 - 0.16 * z) / 0.8 - (z - 0.4) ** 2
+    assert refine(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
