@@ -26,6 +26,7 @@ from designer.kernel.redundant_layout import (
     FORCE,
     KAPPA,
     LEAST,
+    LOWEST,
     SHARE,
     SIZE,
     STRENGTH,
@@ -47,9 +48,10 @@ from designer.kernel.redundant_pose import (
     new_pose,
     place,
     settled_length,
+    smallest_pull,
     write_wrenches,
 )
-from designer.kernel.unit_cable import unit_cable
+from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 from designer.verdict import Verdict
 
 _SOLVED = int(Verdict.SOLVED)
@@ -205,8 +207,8 @@ def _is_full(c: FloatArray, i: int, limit: float) -> bool:
 
 @kernel
 def _is_least(c: FloatArray, scale: FloatArray, i: int, scaled_c: float) -> bool:
-    least = scaled_c * scale[FORCE] / scale[SIZE] * c[LEAST, i] / c[CHORD, i]
-    return bool(least > 0.0 and c[P, i] <= least * (1.0 + _AT_LIMIT))
+    least = scaled_c * scale[FORCE] / scale[SIZE] * c[LEAST, i]
+    return bool(least > 0.0 and c[LOWEST, i] <= least * (1.0 + _AT_LIMIT))
 
 
 @kernel
@@ -242,7 +244,8 @@ def _potential(
         beta = upward_share(pose, value, i)
         alpha = slope - beta * c[V_P, i]
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
-        least = scaled_c * pose.scale[FORCE] / pose.scale[SIZE] * c[LEAST, i] / c[CHORD, i]
+        low, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        least = (low + low_c * scaled_c) * c[UNIT, i]
         if beta < 0.0:
             best = 0.0
             if not _is_full(c, i, limit):  # pulled tight, when the lift nears p D - L/2
