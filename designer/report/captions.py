@@ -116,8 +116,16 @@ def edge(maps: WorkspaceMaps) -> str:
     if profile is None or profile.region_distance_m is None:
         return shown
     text = f"{shown} The region ends {_metres(profile.region_distance_m)} before that edge"
-    last = profile.limit_distance_m
-    if last is None or last < _NEGLIGIBLE * profile.region_distance_m:
+    last, straight = (
+        None if distance is None or distance < _NEGLIGIBLE * profile.region_distance_m else distance
+        for distance in (profile.limit_distance_m, profile.straight_distance_m)
+    )
+    if straight is not None and (last is None or straight > 1.001 * last):
+        text += (
+            f"; within {_metres(straight)} of it straight cables hold nothing, and one has to hang "
+            "as a counterweight"
+        )
+    if last is None:
         return f"{text}."
     if profile.holds_again:
         return f"{text}; within {_metres(last)} of it some poses are held and others are not."

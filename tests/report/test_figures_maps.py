@@ -15,8 +15,9 @@ from designer.region import Prism
 from designer.report import captions
 from designer.report.figures import grids
 from designer.report.figures.charts_edge import _not_held
-from designer.report.figures.edge import edge_profile
+from designer.report.figures.edge import _limit, edge_profile
 from designer.report.figures.field import (
+    Field,
     cable_curves_m,
     chords_m,
     field_at,
@@ -229,22 +230,37 @@ class TestEdge:
         assert profile.limit_distance_m is None
 
     def test_limit_is_the_first_failure_on_the_way_out(self) -> None:
-        """Farther out this robot of seven cables is held again, twice."""
+        """Farther out poses are held again, twice."""
+        profile = maps_of("served").edge
+        assert profile is not None
+
+        def at(distance_m: np.ndarray) -> Field:
+            lost = (distance_m < 0.1) | ((distance_m > 0.2) & (distance_m < 0.3211))
+            verdict = np.where(lost, np.int8(Verdict.OUTSIDE_HULL), np.int8(Verdict.SOLVED))
+            blank = np.zeros(len(distance_m))
+            return Field(
+                np.zeros((len(distance_m), 3)), *[blank] * 5, verdict, np.zeros(len(lost), bool)
+            )
+
+        distance = np.linspace(1.0, 0.0, 101)
+        limit = _limit(at, distance, lambda some: some.is_solved)
+        assert limit == pytest.approx(0.3211, abs=1e-9)
+        again = replace(profile, distance_m=distance, field=at(distance), limit_distance_m=limit)
+        assert again.holds_again
+        assert len(_not_held(again)) == 2
+
+    def test_where_straight_cables_end_is_told_apart_from_where_all_cables_do(self) -> None:
+        """Beyond it this robot of seven cables is held by one that hangs as a counterweight."""
         study = read_study(example_file("falcon"))
         assert study.workspace is not None
         low, high = study.workspace.region.bounds_m
         profile = edge_profile(study, np.array([low[0], high[1], low[2]]))
-        assert profile is not None
-        held = profile.distance_m[profile.field.is_solved]
-        lost = profile.distance_m[~profile.field.is_solved]
-        assert profile.limit_distance_m == pytest.approx(0.32, abs=0.005)
-        assert lost.max() < profile.limit_distance_m < held[held > lost.max()].min()
-        assert profile.holds_again
-        stretches = _not_held(profile)
-        assert len(stretches) == 2
-        for start, stop in stretches:
-            inside = (profile.distance_m < start) & (profile.distance_m > stop)
-            assert not profile.field.is_solved[inside].any()
+        assert profile is not None and profile.straight_distance_m is not None
+        assert profile.straight_distance_m == pytest.approx(0.32, abs=0.01)
+        assert profile.limit_distance_m is not None
+        assert profile.limit_distance_m < 0.1
+        text = captions.edge(replace(maps_of("served"), edge=profile))
+        assert "within 0.3" in text and "counterweight" in text
 
     def test_only_a_proof_is_called_impossible(self) -> None:
         profile = maps_of("served").edge

@@ -248,7 +248,7 @@ _SHOWN = {
     "partly_exclude": "scale, left out",
     "found_by_search": "scale",
     "box": "scale, no cable",
-    "six": "scale, no cable",
+    "six": "scale",
     "points": "dots",
     "one_point": "dots",
     "lost_points": "dots",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray, VerdictArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.region import PointList, Prism, Rectangle
 from designer.report.figures import grids
 from designer.report.figures.field import Field, field_at
@@ -36,6 +36,9 @@ class EdgeProfile:
     limit_distance_m : float or None
         Where the first pose that is not held lies, on the way outward [m]; farther out some may be
         held again. None where all are held, and where the centre is not.
+    straight_distance_m : float or None
+        Where the first pose lies that straight cables cannot hold, so that a cable has to hang as a
+        counterweight [m]; None as above.
     """
 
     distance_m: FloatArray
@@ -43,6 +46,7 @@ class EdgeProfile:
     focus_distance_m: float
     region_distance_m: float | None
     limit_distance_m: float | None
+    straight_distance_m: float | None = None
 
     @property
     def holds_again(self) -> bool:
@@ -104,19 +108,24 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
         field=field,
         focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
         region_distance_m=inside,
-        limit_distance_m=_limit(at, distance, field),
+        limit_distance_m=_limit(at, distance, lambda some: some.is_solved),
+        straight_distance_m=_limit(at, distance, lambda some: some.is_held_straight),
     )
 
 
-def _limit(at: Callable[[FloatArray], Field], distance: FloatArray, field: Field) -> float | None:
+def _limit(
+    at: Callable[[FloatArray], Field],
+    distance: FloatArray,
+    is_held: Callable[[Field], BoolArray],
+) -> float | None:
     """Bisect between the first pose that is not held and the one before it."""
-    failed = np.flatnonzero(~field.is_solved)
+    failed = np.flatnonzero(~is_held(at(distance)))
     if len(failed) == 0 or failed[0] == 0:
         return None
     holds, fails = distance[failed[0] - 1], distance[failed[0]]
     for _ in range(_BISECTIONS):
         middle = 0.5 * (holds + fails)
-        if at(np.array([middle])).is_solved[0]:
+        if is_held(at(np.array([middle])))[0]:
             holds = middle
         else:
             fails = middle

@@ -62,6 +62,11 @@ class Field:
         return np.asarray(self.verdict == Verdict.SOLVED)
 
     @property
+    def is_held_straight(self) -> BoolArray:
+        """Positions (...) that straight weightless cables hold as well."""
+        return np.asarray(self.is_solved & ~np.isnan(self.massless_tension_N))
+
+    @property
     def counts(self) -> BoolArray:
         """Positions (...) that have a value and are not left out."""
         return np.asarray(self.is_solved & ~self.is_left_out)
