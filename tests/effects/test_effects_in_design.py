@@ -199,8 +199,14 @@ def test_a_robot_that_depends_on_its_cable_is_refused(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        (lambda machine, value: added(machine, -9.0), "mass per length -"),
-        (lambda machine, value: added(machine, math.nan), "mass per length nan"),
+        (
+            lambda machine, value: added(machine, -9.0),
+            "linear_density_kg_per_m must be above 0, not -",
+        ),
+        (
+            lambda machine, value: added(machine, math.nan),
+            "linear_density_kg_per_m must be above 0, not nan",
+        ),
     ],
 )
 def test_a_cable_that_cannot_be_is_told_with_the_plugin(tmp_path, law: Law, words: str) -> None:

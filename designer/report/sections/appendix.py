@@ -59,7 +59,7 @@ class AssumptionsSection:
     section : str
         What stands for the configured family where the effects do not leave it one; else empty.
     surroundings : str
-        What the laws of effects are given.
+        What the laws of effects are given; empty without any.
     thinnest : str
         How surely a needed diameter is the thinnest.
     """
@@ -137,14 +137,15 @@ def assumptions_section(analysis: Analysis) -> AssumptionsSection:
     if selection is not None:
         factor = fmt.trimmed(selection.safety_factor)
         safety = f"The safety factor of {factor} applies to the minimum breaking load."
+    effects = ", ".join(dict.fromkeys(effect.id for effect in study.effects))
     return AssumptionsSection(
         gravity=f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s²",
         safety=safety,
         exits=_exits(robot.pulley_radius_m),
         losses=_losses(selection),
-        effects=", ".join(dict.fromkeys(effect.id for effect in study.effects)),
+        effects=effects,
         section=_section(analysis.section_m),
-        surroundings=f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C",
+        surroundings=f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C" if effects else "",
         platform=_platform(robot),
         loads=_loads(robot),
         thinnest=_thinnest(robot),
