@@ -106,7 +106,7 @@ def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None
     assert bad.clearance.verdict.title == "The clearance is not kept"
     assert "of the samples" in bad.clearance.verdict.text
     assert bad.stiffness is not None
-    assert bad.stiffness.verdict.title == "Every pose is stable"
+    assert bad.stiffness.verdict.title == "No pose was found that is not stable"
     ids = [heading.id for heading in bad.headings]
     assert ids.index("stiffness") + 1 == ids.index("clearance")
     html = render_html(bad)
@@ -127,11 +127,12 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
 def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
-    shaky = replace(found, stiffness=replace(found.stiffness, unstable=3))
+    shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
     section = build_context(replace(kept, qualities=shaky), Pictures()).stiffness
     assert section is not None
     assert section.verdict.tone == "bad"
-    assert section.verdict.text.startswith("In 5.00\u00a0% of the samples")
+    assert "not stay where it is put in 5.00\u00a0% of the samples" in section.verdict.text
+    assert section.facts[1].value == "not stable"
 
 
 def test_maps_are_drawn(not_kept: Analysis) -> None:
