@@ -177,8 +177,8 @@ def test_no_pose_is_solved_with_a_residual(weights) -> None:
         assert closure.max() < 1e-8
         assert (balance / statics.largest_tension_N[solved]).max() < 1e-8
         assert np.isnan(statics.length_m[~solved]).all()
-        # With heavy cables there is not always a proof that no section will do.
-        unproved = 0.002 if weights == 1.0 else 0.01
+        # There is not always a proof that no section will do, least of all with heavy cables.
+        unproved = 0.003 if weights == 1.0 else 0.01
         assert (statics.verdict == Verdict.NOT_CONVERGED).mean() < unproved
     allowable = steel(weights).allowable_stress_Pa * np.pi / 4 * sizing.diameter_m**2
     use = (sizing.statics.largest_tension_N / allowable)[sizing.statics.is_solved]
@@ -313,12 +313,15 @@ def test_robots_in_a_plane(is_body) -> None:
 
 
 @pytest.mark.parametrize("weights", [1.0, 10.0])
-def test_a_least_tension_that_governs_is_met_and_no_more(weights) -> None:
+def test_a_least_tension_is_kept_and_where_it_governs_no_more(weights) -> None:
+    """It governs light cables; heavy ones are pulled harder, by what their own weight asks for."""
     poses = Poses.at([[12.0, 0.0, 9.0], [20.0, 0.0, 12.0], [15.0, 0.0, 5.0]])
     sizing = size_poses(FACADE, poses, steel(weights))
     for statics in (sizing.statics, solve_sagging(FACADE, poses, steel(weights).cable(0.02))):
         least = tension_along_N(statics).min(axis=(-2, -1))
-        assert np.abs(least / FACADE.tension_min_N - 1.0).max() < 1e-9
+        assert least.min() > FACADE.tension_min_N * (1.0 - 1e-9)
+        if weights == 1.0:
+            assert least.max() < FACADE.tension_min_N * (1.0 + 1e-9)
         assert statics.least_tension_N.min(axis=-1) == pytest.approx(least, rel=1e-9)
 
 
