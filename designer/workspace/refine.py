@@ -75,11 +75,11 @@ class Effort:
 
 LIGHT = Effort(
     per_edge=8,
-    per_face=32,
-    inside=256,
-    starts=8,
-    finalists=3,
-    trials=16,
+    per_face=24,
+    inside=192,
+    starts=6,
+    finalists=2,
+    trials=12,
     from_landmarks=False,
     tolerance=1e-7,
 )

@@ -322,7 +322,9 @@ def test_a_least_tension_is_kept_and_where_it_governs_no_more(weights) -> None:
         assert least.min() > FACADE.tension_min_N * (1.0 - 1e-9)
         if weights == 1.0:
             assert least.max() < FACADE.tension_min_N * (1.0 + 1e-9)
-        assert statics.least_tension_N.min(axis=-1) == pytest.approx(least, rel=1e-9)
+        # The lowest point of a heavy cable lies between those where its tension was taken.
+        between = 1e-9 if weights == 1.0 else 1e-6
+        assert statics.least_tension_N.min(axis=-1) == pytest.approx(least, rel=between)
 
 
 def test_batch_equals_loop_over_any_leading_axes() -> None:
