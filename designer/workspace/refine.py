@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.region import PointList
 from designer.space import Space
 from designer.workspace.strata import landmarks, scattered
 
@@ -21,6 +22,7 @@ Demand = Callable[[FloatArray], FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
 the place does not count. For several extremes at once (n, n_extremes)."""
 
+_CHUNK = 2**13
 _CELLS_A_SIDE = 12
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
@@ -108,7 +110,7 @@ def refine_each(
     Parameters
     ----------
     space : Space
-        Where to search; a list of points has nothing between its points.
+        Where to search; of a list of points every one is tried, since there is nothing between.
     demand : callable
         What is to be maximised, (n, n_extremes).
     starts : array (n, n_coordinates)
@@ -229,8 +231,10 @@ class _Search:
 
     def run(self, starts: FloatArray) -> list[Worst]:
         space = self._space
-        if space.is_discrete:
-            self._ask(starts)
+        if isinstance(space.region, PointList) and space.is_discrete:
+            every = space.places(space.region.points_m)
+            for at in range(0, len(every), _CHUNK):
+                self._ask(every[at : at + _CHUNK])
             return self._best
         marks = landmarks(space)
         places = np.concatenate([starts, marks, self._scatter()])

@@ -292,3 +292,15 @@ def test_the_search_slides_along_what_does_not_count() -> None:
     z = np.linspace(0.0, 1.0, 100_001)
     along = 1.5 * (0.7 - 0.16 * z) / 0.8 - (z - 0.4) ** 2
     assert refine(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
+
+
+def test_every_point_of_a_list_is_tried_for_every_extreme() -> None:
+    """Neighbours that share a cell of the pool differ in what they are extreme in."""
+    points = np.random.default_rng(1).random((9000, 3))
+    space = Space(PointList(frozen_array(points)), Orientations())
+
+    def demand(x):
+        return np.hstack([x, -x])
+
+    found = [one.demand for one in refine_each(space, demand, points[:1])]
+    assert found == pytest.approx([*points.max(axis=0), *-points.min(axis=0)])
