@@ -106,7 +106,7 @@ def held_by(robot: Robot, poses: Poses, pull: np.ndarray, weight: float) -> np.n
         force_x = pull * weight * geometry.horizontal_distance_m
         return (geometry, force_x, force_z), np.arctan2(weight * length - force_z, force_x), 0.0
 
-    (geometry, force_x, force_z), _ = over_pulleys(robot, poses, solve)
+    (geometry, force_x, force_z), _, _ = over_pulleys(robot, poses, solve)
     outward = np.concatenate([geometry.outward, np.zeros((robot.n_cables, 1))], axis=-1)
     forces = outward * force_x[:, None] + np.array([0.0, 0.0, 1.0]) * force_z[:, None]
     moment = np.cross(geometry.lever_m, forces).sum(axis=0)
