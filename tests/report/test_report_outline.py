@@ -6,12 +6,14 @@ import io
 
 import pypdf
 
+from designer.report.fonts import with_fonts
 from designer.report.outline import PageHeading, add_outline, summarise
 from designer.report.render import render_pdf
 
 PAGE = """<!doctype html><html><head><title>Tom &amp; Co</title>
 <meta name="generator" content="us 1.0">
-<meta name="dcterms.created" content="2026-02-03T04:05:06+01:30"></head><body>
+<meta name="dcterms.created" content="2026-02-03T04:05:06+01:30">
+<style>body { font-family: "Report Sans" }</style></head><body>
 <svg><title>not this one</title></svg>
 <h1 id="top">Top</h1>
 <h3 id="deep"><a href="#deep">Deep <b>one</b></a></h3>
@@ -35,8 +37,8 @@ def test_summary() -> None:
 
 
 def test_outline_holds_linked_headings_by_level() -> None:
-
-    reader = pypdf.PdfReader(io.BytesIO(render_pdf(PAGE)))
+    # With a font of its own: a machine may have none, and headings without letters have no place.
+    reader = pypdf.PdfReader(io.BytesIO(render_pdf(with_fonts(PAGE))))
     first, second, nested = reader.outline
     assert [first.title, second.title] == ["Deep one", "Two"]
     assert [item.title for item in nested] == ["Below"]
