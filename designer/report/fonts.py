@@ -21,13 +21,16 @@ FACES = (
 )
 """Family, weight and style as style sheets name them, and the file."""
 
-_BY_STYLE = "0123456789 pageof•◦▪▸▾"
-"""Letters that come from style sheets: page numbers, marks of lists."""
+_COMMON = frozenset(
+    [*map(chr, [*range(0x20, 0x7F), *range(0xA0, 0x100), *range(0x391, 0x3CA)])]
+    + [*"⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃₄₅₆₇₈₉–—…−√∞≈≤≥→•◦▪▸▾"]
+)
+"""Letters of most pages, in every font, so that it is made once for all pages of a run."""
 
 
 def with_fonts(page: str) -> str:
-    """Return an HTML page with those letters in its head that it shows, of each of its fonts."""
-    letters = "".join(sorted({*html.unescape(page), *_BY_STYLE}))
+    """Return an HTML page with its fonts in its head: common letters, and all that it shows."""
+    letters = "".join(sorted(_COMMON | {*html.unescape(page)}))
     rules = [
         f'@font-face {{ font-family: "{family}"; font-weight: {weight}; font-style: {style}; '
         f"src: url(data:font/woff;base64,{_letters_of(file, letters)}) }}\n"

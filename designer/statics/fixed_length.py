@@ -9,7 +9,7 @@ from designer.physics import catenary
 from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics
-from designer.statics.task import PulleyRun, over_pulleys
+from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
 from designer.verdict import Verdict
 
 
@@ -52,8 +52,8 @@ def cables_of_length(
         strain = np.hypot(force_x, downward) / axial_stiffness_N
         return (force_x, force_z), np.arctan2(downward, force_x), strain
 
-    (force_x, force_z), run, settled = over_pulleys(robot, poses, solve)
-    held = np.isfinite(force_x).all(axis=-1) & settled
+    (force_x, force_z), run, gap_rad = over_pulleys(robot, poses, solve)
+    held = np.isfinite(force_x).all(axis=-1) & (gap_rad <= SETTLED_RAD)
     return Statics(
         robot=robot,
         poses=poses,

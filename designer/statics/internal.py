@@ -18,7 +18,7 @@ from designer.statics.geometry import cable_geometry, upright_poses
 from designer.statics.inverse import Statics
 from designer.statics.nearest import solve_nearest
 from designer.statics.stiffness import per_reach
-from designer.statics.task import PulleyRun, over_pulleys
+from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
 from designer.verdict import Verdict
 
 _LEAST_PULL = 1.0 / 16.0
@@ -77,8 +77,8 @@ def solve_internal(
         strain = np.hypot(force_x, downward) / stiffness
         return np.stack([free, force_x, force_z]), np.arctan2(downward, force_x), strain
 
-    found, run, settled = over_pulleys(robot, poses, solve)
-    closes = (rest <= _CLOSES) & settled
+    found, run, gap_rad = over_pulleys(robot, poses, solve)
+    closes = (rest <= _CLOSES) & (gap_rad <= SETTLED_RAD)
     free, force_x, force_z = np.where(closes[:, None], found, np.nan)
     ones = np.ones((len(rest), 1))
     return Statics(

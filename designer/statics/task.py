@@ -17,9 +17,9 @@ from designer.verdict import Verdict
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-_MOST_TURNS = 40
+_FIRST_TURNS, _MOST_TURNS = 5, 40
 _STILL_RAD = 1e-13
-_SETTLED_RAD = 1e-9
+SETTLED_RAD = 1e-9
 _PATIENCE = 8
 """Turns after which a pose that does not come nearer moves by half as much."""
 _LEAST_SHARE = 1.0 / 32.0
@@ -121,8 +121,10 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
 
 
 def _solve_over_pulleys(
-    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool
+    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool, turns: int = _FIRST_TURNS
 ) -> tuple[Solution, PulleyRun]:
+    """Solve with a few turns, and those poses that have not come to rest again with more."""
+
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = _solve(robot, flat, task, run, is_thorough=is_thorough)
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
@@ -130,8 +132,40 @@ def _solve_over_pulleys(
             downward = weight * solution.length_m - solution.force_z_N
         return solution, np.arctan2(downward, solution.force_x_N), 0.0
 
-    solution, run, settled = over_pulleys(robot, flat, solve)
-    return (solution if robot.pulley_radius_m == 0.0 else _keep(solution, settled)), run
+    solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)
+    if turns >= _MOST_TURNS:
+        return _keep(solution, gap_rad <= SETTLED_RAD), run
+    at = np.flatnonzero(gap_rad > _STILL_RAD)
+    if len(at) > 0:
+        again = _solve_over_pulleys(
+            robot,
+            part_of(flat, at),
+            _part_of_task(task, at),
+            is_thorough=is_thorough,
+            turns=2 * turns,
+        )
+        _replace(solution, run, at, *again, np.ones(len(at), dtype=np.bool_))
+    return solution, run
+
+
+def _part_of_task(task: Task, at: IntArray) -> Task:
+    return task if task.force_N is None else replace(task, force_N=task.force_N[at])
+
+
+def _replace(
+    solution: Solution,
+    run: PulleyRun,
+    at: IntArray,
+    by: Solution,
+    its_run: PulleyRun,
+    chosen: BoolArray,
+) -> None:
+    """Write what is chosen of the answers for the poses `at`, and their run, over the former."""
+    for field in fields(solution):
+        getattr(solution, field.name)[at[chosen]] = getattr(by, field.name)[chosen]
+    if run.exit_points_m.ndim > 2:
+        run.exit_points_m[at[chosen]] = its_run.exit_points_m[chosen]
+        run.wrap_m[at[chosen]] = its_run.wrap_m[chosen]
 
 
 def _try_other_branches(
@@ -148,9 +182,8 @@ def _try_other_branches(
     at = np.flatnonzero(hard)
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
-    force = None if task.force_N is None else task.force_N[at]
     again, its_run = _solve_over_pulleys(
-        robot, part_of(flat, at), replace(task, force_N=force), is_thorough=True
+        robot, part_of(flat, at), _part_of_task(task, at), is_thorough=True
     )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
@@ -163,12 +196,8 @@ def _try_other_branches(
     )
     tauter = was_long & ~is_long & (burden <= _AS_GOOD * before)
     better = solved & ((burden < before) | tauter | (solution.verdict[at] != Verdict.SOLVED))
-    for field in fields(solution):
-        getattr(solution, field.name)[at[better]] = getattr(again, field.name)[better]
-    if robot.pulley_radius_m > 0.0:
-        run.exit_points_m[at[better]] = its_run.exit_points_m[better]
-        run.wrap_m[at[better]] = its_run.wrap_m[better]
-    else:  # a proof is for points that stay where they are
+    _replace(solution, run, at, again, its_run, better)
+    if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are
         proved = at[again.verdict == Verdict.NO_FINITE_CABLE]
         solution.verdict[proved] = Verdict.NO_FINITE_CABLE
 
@@ -200,7 +229,8 @@ def over_pulleys(
     robot: Robot,
     poses: Poses,
     solve: Callable[[PulleyRun], tuple[Answer, FloatArray, FloatArray | float]],
-) -> tuple[Answer, PulleyRun, BoolArray]:
+    turns: int = _MOST_TURNS,
+) -> tuple[Answer, PulleyRun, FloatArray]:
     """Solve until the tangent points on the pulleys rest; once, where there are none.
 
     The tangent point follows the slope of the sagging cable at its upper end, which moves by about
@@ -224,7 +254,7 @@ def over_pulleys(
     """
     if robot.pulley_radius_m == 0.0:
         run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-        return solve(run)[0], run, np.ones(poses.shape, dtype=np.bool_)
+        return solve(run)[0], run, np.zeros(poses.shape)
     geometry = cable_geometry(robot, poses)
     straight = pulley.straight_slope_rad(
         geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
@@ -232,17 +262,17 @@ def over_pulleys(
     slope = straight
     strain: FloatArray | float = 0.0
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
-    for turn in range(_MOST_TURNS):
+    for turn in range(turns):
         run = _run(robot, geometry.outward, slope).unstrained(strain)
         answer, found, strain = solve(run)
         step = np.where(np.isfinite(found), found, straight) - slope
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= _STILL_RAD):
             break
-        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > _SETTLED_RAD)
+        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
         share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
         slope = slope + share[..., None] * step
-    return answer, run, gap <= _SETTLED_RAD
+    return answer, run, gap
 
 
 def _keep(solution: Solution, settled: BoolArray) -> Solution:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _MOST = 5
 _LAYERS = 25
+_MOST_SOLVED = 2_000_000
+"""Poses of all sizes and orientations; rings and layers are fewer where there would be more."""
 _BEYOND = 1e3
 
 
@@ -74,11 +76,15 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
 def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
     """Solve the grid with the sizes that are shown; None where there is nothing to show."""
     shown = chosen_sizes(usable)
-    if not isinstance(maps.region, Prism) or not shown:
+    workspace = maps.study.workspace
+    if not isinstance(maps.region, Prism) or not shown or workspace is None:
         return None
     plan = maps.shell["top"].position_m
-    heights = np.linspace(*maps.region.z_m, _LAYERS)
-    position = np.repeat(plan[:, :, None], _LAYERS, axis=2)
+    solved = plan[..., 0].size * _LAYERS * len(shown) * len(workspace.orientations.turns_rad)
+    share = min(1.0, np.sqrt(_MOST_SOLVED / solved))
+    rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
+    heights = np.linspace(*maps.region.z_m, max(2, round(share * _LAYERS)))
+    position = np.repeat(plan[rings, :, None], len(heights), axis=2)
     position[..., 2] = heights
     return Layers(shown, position, np.stack([_utilisation(maps, s, position) for s in shown]))
 
