@@ -19,7 +19,6 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.interference.hull import Hull, platform_hull
-from designer.interference.segments import segment_distance_m, triangle_distance_m
 from designer.interference.shapes import Curves, Polylines
 from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
@@ -223,7 +222,9 @@ def _candidates(coarse: Polylines, n: int, pairs: IntArray) -> tuple[IntArray, I
     sag = np.linalg.norm(off, axis=-1).max(axis=-1)
     sag = sag + coarse.sagitta_m.max(axis=-1).reshape(-1, n)
     i, j = pairs.T
-    straight, _ = segment_distance_m(start[:, i], end[:, i], start[:, j], end[:, j])
+    chords = np.stack([start, end], axis=-2)
+    straight, _, _ = _pieces(chords[:, i].reshape(-1, 2, 3), chords[:, j].reshape(-1, 2, 3))
+    straight = straight.reshape(-1, len(pairs))
     both = sag[:, i] + sag[:, j]
     surely = (straight + both).min(axis=-1, keepdims=True)
     row, kind = np.nonzero(straight - both <= surely)
@@ -267,8 +268,7 @@ def _near_hull(
 
     A straight piece is nowhere nearer to the body than to the face that both its ends are beyond.
     """
-    last = body_m[:, -1, None]
-    surely = triangle_distance_m(last, last, hull.triangles_m)[0].min(axis=-1)
+    surely, _, _ = _faces(body_m[:, [-1, -1]], hull.triangles_m)
     least = np.full(int(row.max(initial=-1)) + 1, np.inf)
     np.minimum.at(least, row, surely)
     heights = hull.heights_m(body_m)
@@ -279,27 +279,41 @@ def _near_hull(
 
 def _hull_distance(hull: Hull, body_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return distance, place and number of the nearest piece of polylines (n, segments + 1, 3)."""
-    a, b = body_m[:, :-1, None], body_m[:, 1:, None]
-    distance, place = triangle_distance_m(a, b, hull.triangles_m)
+    distance, place, at = _faces(body_m, hull.triangles_m)
     inside = hull.heights_m(body_m).max(axis=-1) < 0.0
-    distance = np.where((inside[:, :-1] | inside[:, 1:])[..., None], 0.0, distance)
-    best = np.argmin(distance.reshape(len(body_m), -1), axis=-1)
-    rows = np.arange(len(body_m))
-    segment, triangle = np.unravel_index(best, distance.shape[1:])
-    return distance[rows, segment, triangle], place[rows, segment, triangle], segment
+    rows = np.flatnonzero(inside.any(axis=-1))
+    first = inside[rows].argmax(axis=-1)
+    distance[rows], place[rows] = 0.0, body_m[rows, first]
+    at[rows] = np.minimum(first, body_m.shape[1] - 2)
+    return distance, place, at
 
 
 def _between(
     first: Polylines, second: Polylines
 ) -> tuple[FloatArray, FloatArray, tuple[IntArray, IntArray]]:
     """Return distance, middle and nearest pieces of polylines, one by one."""
+    distance, middle, at = _pieces(first.points_m, second.points_m)
+    return distance, middle, (at[:, 0], at[:, 1])
+
+
+def _pieces(first_m: FloatArray, second_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     from designer.kernel.distance import nearest_pieces
 
-    count = len(first.points_m)
+    count = len(first_m)
     distance, middle = np.empty(count), np.empty((count, 3))
     at = np.zeros((count, 2), dtype=np.int64)
-    nearest_pieces(plain(first.points_m), plain(second.points_m), distance, middle, at)
-    return distance, middle, (at[:, 0], at[:, 1])
+    nearest_pieces(plain(first_m), plain(second_m), distance, middle, at)
+    return distance, middle, at
+
+
+def _faces(lines_m: FloatArray, triangles_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    from designer.kernel.distance import nearest_faces
+
+    count = len(lines_m)
+    distance, place = np.empty(count), np.empty((count, 3))
+    at = np.zeros(count, dtype=np.int64)
+    nearest_faces(plain(lines_m), plain(triangles_m), distance, place, at)
+    return distance, place, at
 
 
 def _around(piece: Polylines, at: IntArray) -> tuple[FloatArray, FloatArray]:

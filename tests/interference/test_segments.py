@@ -6,7 +6,23 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize
 
-from designer.interference.segments import segment_distance_m, triangle_distance_m
+from designer.kernel.distance import nearest_faces, nearest_pieces
+
+
+def segment_distance_m(a, b, c, d):
+    """Return distances (n,) of segments ab and cd (n, 3), and the middles; plain for one."""
+    first, second = (np.stack(ends, axis=-2).reshape(-1, 2, 3) for ends in ((a, b), (c, d)))
+    distance, middle = np.empty(len(first)), np.empty((len(first), 3))
+    nearest_pieces(first, second, distance, middle, np.zeros((len(first), 2), dtype=np.int64))
+    return distance.reshape(a.shape[:-1]), middle.reshape(a.shape)
+
+
+def triangle_distance_m(a, b, corners):
+    """Return the distance of one segment from triangles (..., 3, 3), and the nearest place."""
+    distance, place = np.empty(1), np.empty((1, 3))
+    surface = np.ascontiguousarray(corners.reshape(-1, 3, 3))
+    nearest_faces(np.stack([a, b])[None], surface, distance, place, np.zeros(1, dtype=np.int64))
+    return distance[0], place[0]
 
 
 def array(*rows: list[float]) -> list[np.ndarray]:
@@ -75,7 +91,7 @@ def test_triangles_against_an_optimiser() -> None:
     rng = np.random.default_rng(2)
     a, b = rng.normal(size=(2, 60, 3))
     corners = rng.normal(size=(60, 3, 3))
-    found, _ = triangle_distance_m(a, b, corners)
+    found = [triangle_distance_m(a[k], b[k], corners[k])[0] for k in range(60)]
     crossing = 0
     for k in range(60):
         u, v = corners[k, 1] - corners[k, 0], corners[k, 2] - corners[k, 0]
