@@ -18,7 +18,7 @@ from designer.interference.clearance import (
 from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
-from designer.workspace.refine import LIGHT, refine
+from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 1000
@@ -111,15 +111,16 @@ def survey(
     cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 
     def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
-        def clearance(places: FloatArray) -> Clearance:
-            return among(solve_sagging(robot, Poses.at(places), cable))
+        def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
+            poses = Poses.at(places)
+            return among(solve_sagging(robot, poses, cable, seeks_better=seeks_better))
 
-        def nearness(places: FloatArray) -> FloatArray:
-            return -np.nan_to_num(clearance(places).distance_m, nan=np.inf)
+        def nearness_with(seeks_better: bool) -> Demand:
+            return lambda at: -np.nan_to_num(clearance(at, seeks_better).distance_m, nan=np.inf)
 
         if np.isnan(sampled.distance_m).all():
             return None
-        worst = refine(workspace.space, nearness, some, LIGHT)
+        (worst,) = refine_over_branches(workspace.space, nearness_with, some, LIGHT)
         return _nearest(worst.place, clearance(worst.place[None]))
 
     return Interference(

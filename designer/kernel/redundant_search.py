@@ -125,14 +125,15 @@ def search_range(
         if out_verdict[at] == _SOLVED:
             best = to_scaled / out_poses[at, WEIGHT] if sizing else -out_poses[at, LOAD_FACTOR]
         state = np.uint64(88172645463325252)
-        is_proved = sizing and best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
+        is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
         for attempt in range(n + 3 + _RANDOM_STARTS):
-            if is_proved and best == -np.inf:
-                out_verdict[at] = _NO_FINITE_CABLE
+            if is_proved and best == -np.inf:  # nor does this section hold within its strength
+                out_verdict[at] = _NO_FINITE_CABLE if sizing else out_verdict[at]
                 break
             s, state = _begin(pose, ask, straight_c, attempt, state)
             s, gap = climb(pose, ask, s, _KEEPS[0 if attempt != 1 else 1], scratch)
-            if sizing and best == -np.inf and not (s > 0.0 and gap <= OPTIMAL_WITHIN):
+            is_solved = gap <= OPTIMAL_WITHIN and (s > 0.0 or not sizing)
+            if best == -np.inf and not is_solved:
                 for k in range(m):
                     scratch.value[k] = -scratch.dual[k]
                 is_proved = _bounds(pose, scratch.value)

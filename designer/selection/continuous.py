@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from designer.cable import Material
 from designer.catalogue.grade import Grade
@@ -44,8 +45,8 @@ def continuous_optimum(
         return built.material(family, diameter_m)
 
     def worst_with(family: Material) -> Worst:
-        demand = diameter_demand(built.robot, family, workspace.hangs_below)
-        return worst_of(workspace, demand)
+        demand_with = partial(diameter_demand, built.robot, family, workspace.hangs_below)
+        return worst_of(workspace, demand_with)
 
     if built.is_family(unbent.family(grade, grade.thickest.diameter_m)):
         family, diameter = _member(grade, allowance, built, family_at, worst_with)

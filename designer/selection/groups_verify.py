@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from designer.robot import Poses, Robot
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
-from designer.workspace.refine import Demand, Pool, refine_each
+from designer.workspace.refine import Demand, Pool, refine_over_branches
 from designer.workspace.samples import places
 
 Members = Sequence[IntArray]
@@ -63,7 +64,8 @@ def verify_groups(
 ) -> GroupVerification:
     """Solve every sample with these cables, then search between them for each group's worst."""
     space = workspace.space
-    demand = _demand(robot, workspace, cables, members)
+    demand_with = partial(_demand, robot, workspace, cables, members)
+    demand = demand_with()
     pools = [Pool(space) for _ in members]
     used = np.full(len(members), -np.inf)
     at = np.full((len(members), space.n_coordinates), np.nan)
@@ -82,7 +84,7 @@ def verify_groups(
     if used.max() > 1.0:
         return GroupVerification(at, used, longest, False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
-    worst = refine_each(space, demand, starts)
+    worst = refine_over_branches(space, demand_with, starts)
     of_groups, lengths = worst[: len(members)], worst[len(members) :]
     return GroupVerification(
         np.array([one.place for one in of_groups]),
@@ -92,11 +94,18 @@ def verify_groups(
     )
 
 
-def _demand(robot: Robot, workspace: Workspace, cables: Cables, members: Members) -> Demand:
+def _demand(
+    robot: Robot,
+    workspace: Workspace,
+    cables: Cables,
+    members: Members,
+    *,
+    seeks_better: bool = True,
+) -> Demand:
     """What cables meet (n, n_groups + n_cables): utilisation of each group, lengths [m]."""
 
     def demand(some: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(some), cables)
+        statics = solve_sagging(robot, Poses.at(some), cables, seeks_better=seeks_better)
         left_out = is_left_out(statics, workspace.hangs_below)
         used = utilisation_of(statics, cables, left_out)
         groups = np.column_stack([used[:, cable].max(axis=1) for cable in members])

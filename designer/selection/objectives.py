@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray
 from designer.cable import Cable
 from designer.catalogue.grade import Grade, Size
 from designer.robot import Robot
 from designer.study import Objective, Workspace
-from designer.workspace.refine import LIGHT, refine
+from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 from designer.workspace.samples import thinned
 from designer.workspace.stiffness import displacement_demand
 
@@ -121,14 +121,16 @@ def smallest_stiffness_N_per_m(
     searched : bool
         Whether to search between the samples as well, or to take `STIFFNESS_POSES` of them.
     """
-    demand = displacement_demand(robot, workspace, cable)
+    demand_with = partial(displacement_demand, robot, workspace, cable)
     some = thinned(workspace, STIFFNESS_POSES)
 
-    def softness(places: FloatArray) -> FloatArray:
-        return demand(places)[:, 0]
+    def softness_with(**how: bool) -> Demand:
+        demand = demand_with(**how)
+        return lambda places: demand(places)[:, 0]
 
     if searched:
-        softest = refine(workspace.space, softness, some, LIGHT).demand
+        (worst,) = refine_over_branches(workspace.space, softness_with, some, LIGHT)
+        softest = worst.demand
     else:
-        softest = float(softness(some).max(initial=-np.inf))
+        softest = float(softness_with()(some).max(initial=-np.inf))
     return float("nan") if np.isneginf(softest) else 1.0 / softest

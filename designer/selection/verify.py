@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from designer.cable import Cable
 from designer.robot import Robot
 from designer.study import Workspace
 from designer.workspace.demand import rope_demand
-from designer.workspace.refine import Demand, Pool, Worst, refine, refine_each
+from designer.workspace.refine import Demand, Pool, Worst, refine_over_branches
 from designer.workspace.samples import places
 
 
@@ -61,8 +63,8 @@ def searched(robot: Robot, workspace: Workspace, cable: Cable, starts: FloatArra
 
     Where every pose is left out, nothing is served: infinite, at no position.
     """
-    demand = rope_demand(robot, cable, workspace.hangs_below)
-    tension, *lengths = refine_each(workspace.space, demand, starts)
+    demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
+    tension, *lengths = refine_over_branches(workspace.space, demand_with, starts)
     most = np.inf if np.isneginf(tension.demand) else tension.demand
     length = np.array([one.demand for one in lengths]).reshape(2, -1)
     return Verification(
@@ -74,13 +76,15 @@ def searched(robot: Robot, workspace: Workspace, cable: Cable, starts: FloatArra
     )
 
 
-def worst_of(workspace: Workspace, demand: Demand) -> Worst:
+def worst_of(workspace: Workspace, demand_with: Callable[..., Demand]) -> Worst:
     """Return the largest demand over the samples, then over the region from the best of them.
+
+    See `refine_over_branches` for what makes the demand.
 
     Where every pose is left out, nothing is served: infinite, at no position.
     """
-    pool = Pool(workspace.space)
+    pool, demand = Pool(workspace.space), demand_with()
     for some in places(workspace):
         pool.add(some, demand(some))
-    worst = refine(workspace.space, demand, pool.places)
+    (worst,) = refine_over_branches(workspace.space, demand_with, pool.places)
     return Worst(worst.place, np.inf) if np.isneginf(worst.demand) else worst

@@ -45,16 +45,19 @@ class Sizing:
     is_thinnest: BoolArray
 
 
-def size_poses(robot: Robot, poses: Poses, material: Material) -> Sizing:
+def size_poses(
+    robot: Robot, poses: Poses, material: Material, *, seeks_better: bool = True
+) -> Sizing:
     """Return the thinnest cable of the family for each pose (...).
 
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
     cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`. Where
-    another branch might be thinner, `designer.kernel.redundant_search` tries more of them.
+    another branch might be thinner, `designer.kernel.redundant_search` tries more of them, unless
+    it is not to ``seeks_better`` than what was found first.
     """
     task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)
-    solution, run = solve_task(robot, poses, task)
+    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa
     shape = poses.shape

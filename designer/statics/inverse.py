@@ -181,7 +181,12 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
 
 
 def solve_sagging(
-    robot: Robot, poses: Poses, cable: Cable | Cables, force_N: FloatArray | None = None
+    robot: Robot,
+    poses: Poses,
+    cable: Cable | Cables,
+    force_N: FloatArray | None = None,
+    *,
+    seeks_better: bool = True,
 ) -> Statics:
     """Return the equilibrium of poses (...) with these cables, with sag and elasticity.
 
@@ -196,6 +201,8 @@ def solve_sagging(
         with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
+    seeks_better : bool
+        Whether to try other branches where one may be better than that found first.
 
     Raises
     ------
@@ -213,7 +220,7 @@ def solve_sagging(
         force_N=force_N,
         relative_weights=weight / heaviest,
     )
-    solution, run = solve_task(robot, poses, task)
+    solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
     solved = solution.verdict[:, None] == Verdict.SOLVED
     stiffness = np.where(solved, cable.axial_stiffness_N, np.nan)
     return statics_of(robot, poses, solution, run, stiffness, force_N, task.relative_weights)

@@ -103,8 +103,14 @@ def flat_poses(poses: Poses) -> Poses:
     return Poses(poses.position_m.reshape(count, 3), rotation)
 
 
-def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, PulleyRun]:
-    """Solve poses (...), flattened to one axis."""
+def solve_task(
+    robot: Robot, poses: Poses, task: Task, *, seeks_better: bool = True
+) -> tuple[Solution, PulleyRun]:
+    """Solve poses (...), flattened to one axis.
+
+    Other branches are tried where nothing is found and, if it ``seeks_better``, where one may be
+    better than what is.
+    """
     flat = flat_poses(poses)
     count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
@@ -112,7 +118,7 @@ def solve_task(robot: Robot, poses: Poses, task: Task) -> tuple[Solution, Pulley
 
     solution, run = _solve_over_pulleys(robot, flat, task, is_thorough=False)
     _judge_unsolved(robot, flat, solution, task)
-    _try_other_branches(robot, flat, solution, run, task)
+    _try_other_branches(robot, flat, solution, run, task, seeks_better=seeks_better)
     if robot.pulley_radius_m == 0.0:
         return solution, run
     shape = (*poses.shape, robot.n_cables)
@@ -169,7 +175,13 @@ def _replace(
 
 
 def _try_other_branches(
-    robot: Robot, flat: Poses, solution: Solution, run: PulleyRun, task: Task
+    robot: Robot,
+    flat: Poses,
+    solution: Solution,
+    run: PulleyRun,
+    task: Task,
+    *,
+    seeks_better: bool,
 ) -> None:
     """Search again where nothing is found or proved, or where another branch may be better.
 
@@ -178,8 +190,8 @@ def _try_other_branches(
     Writes what is better into the solution and the run of the cables.
     """
     open_verdicts = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
-    hard = np.isin(solution.verdict, open_verdicts) | (solution.potential > _WORTH_A_SEARCH)
-    at = np.flatnonzero(hard)
+    hard = np.isin(solution.verdict, open_verdicts)
+    at = np.flatnonzero(hard | (seeks_better & (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
     again, its_run = _solve_over_pulleys(

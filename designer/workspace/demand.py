@@ -49,24 +49,28 @@ def size_worst(
     return some, size_poses(robot, Poses.at(some), material)
 
 
-def diameter_demand(robot: Robot, material: Material, hangs_below: HangsBelow) -> Demand:
+def diameter_demand(
+    robot: Robot, material: Material, hangs_below: HangsBelow, *, seeks_better: bool = True
+) -> Demand:
     """Needed diameter [m]; inf where no cable of the family will do."""
 
     def demand(places: FloatArray) -> FloatArray:
-        sizing = size_poses(robot, Poses.at(places), material)
+        sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
         return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
 
     return demand
 
 
-def rope_demand(robot: Robot, cable: Cable, hangs_below: HangsBelow) -> Demand:
+def rope_demand(
+    robot: Robot, cable: Cable, hangs_below: HangsBelow, *, seeks_better: bool = True
+) -> Demand:
     """What a given cable meets (n, 1 + 2 n_cables): largest tension [N], lengths, negated lengths.
 
     Lengths are unstrained [m]; the largest of the negated ones is the shortest.
     """
 
     def demand(places: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(places), cable)
+        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
         tension = demand_of(statics.largest_tension_N, statics, hangs_below)
         return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
 

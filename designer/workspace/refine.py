@@ -30,7 +30,8 @@ _MOST_ROUNDS = 8
 _GAIN = 1e-10
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
 _NEAR_TRIALS = 24
-_SLIDES, _BISECTIONS = 10, 12
+_SLIDES, _SECTIONS = 10, 4
+_SHARES = np.arange(1, 8) / 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,11 +91,7 @@ LIGHT = Effort(
 
 def refine(space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None) -> Worst:
     """Return the largest demand in the space; see `refine_each`."""
-
-    def one(places: FloatArray) -> FloatArray:
-        return demand(places)[:, None]
-
-    return refine_each(space, one, starts, effort)[0]
+    return refine_each(space, demand, starts, effort)[0]
 
 
 def refine_each(
@@ -119,6 +116,36 @@ def refine_each(
         How hard to search.
     """
     return _Search(space, demand, effort or Effort()).run(starts)
+
+
+def refine_over_branches(
+    space: Space,
+    demand_with: Callable[..., Demand],
+    starts: FloatArray,
+    effort: Effort | None = None,
+) -> list[Worst]:
+    """Return the largest of each of several demands of solutions that may have better branches.
+
+    To look for better branches takes a hundred times as long. Where it changes none of the starts,
+    the search does without, and its results are computed again with it: a better branch asks for
+    less, so that a largest diameter or tension stands if it stands there. If anything has changed,
+    the whole search is made again with it.
+
+    Parameters
+    ----------
+    demand_with : callable
+        Takes ``seeks_better``, whether to look for better branches, and returns the demand.
+    space, starts, effort
+        As for `refine_each`.
+    """
+    plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
+    if np.array_equal(plain(starts), thorough(starts)):
+        found = refine_each(space, plain, starts, effort)
+        places = np.array([worst.place for worst in found])
+        places = places[np.isfinite(places).all(axis=1)]
+        if np.array_equal(plain(places), thorough(places)):
+            return found
+    return refine_each(space, thorough, starts, effort)
 
 
 class Pool:
@@ -270,6 +297,7 @@ class _Search:
     def _ask(self, places: FloatArray) -> FloatArray:
         """Return what places ask for (n, n_extremes), and remember the largest."""
         values = self._demand(places)
+        values = values[:, None] if values.ndim == 1 else values
         if not self._best:
             nowhere = np.full(len(self._size), np.nan)
             self._best = [Worst(nowhere, -np.inf)] * values.shape[1]
@@ -322,7 +350,8 @@ class _Search:
             trials = np.concatenate([trials, onward], axis=1)
             asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
             own = np.take_along_axis(asked, some.extreme[:, None, None], axis=2)[..., 0]
-            on_border = np.flatnonzero(slides & np.isneginf(own).any(axis=1))
+            rises = own.max(axis=1) > some.value
+            on_border = np.flatnonzero(slides & ~rises & np.isneginf(own).any(axis=1))
             if len(on_border):
                 slid = self._slide(some.some(on_border), trials[on_border], own[on_border])
                 trials[on_border, -1], own[on_border, -1] = slid
@@ -343,7 +372,7 @@ class _Search:
 
         Where the largest demand lies on that border, the directions that lead upward and stay
         inside become few. The border's normal is the difference between the trials on either side
-        of it; moves across the normal are brought to the border by bisection along it.
+        of it; moves across the normal are brought to the border along it, by search in eight parts.
         """
         n, size = len(self._size), np.where(self._size > 0.0, self._size, 1.0)
         reach = climbs.radius[:, None, None]
@@ -354,19 +383,22 @@ class _Search:
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
         some = offsets[:, self._rng.permutation(offsets.shape[1])[:_SLIDES]]
         across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
-        low, high = np.full(across.shape[:2], -1.0), np.full(across.shape[:2], 1.0)
+        low, part = np.full((*across.shape[:2], 1), -1.0), 2.0
 
         def at(share: FloatArray) -> tuple[FloatArray, FloatArray]:
-            steps = across + share[..., None] * reach * normal[:, None]
-            places = self._space.nearest(climbs.at[:, None] + steps * size)
-            asked = self._ask(places.reshape(-1, n)).reshape(*places.shape[:2], -1)
-            return places, np.take_along_axis(asked, climbs.extreme[:, None, None], axis=2)[..., 0]
+            steps = (
+                across[:, :, None] + (share[..., None] * reach[..., None]) * normal[:, None, None]
+            )
+            places = self._space.nearest(climbs.at[:, None, None] + steps * size)
+            asked = self._ask(places.reshape(-1, n)).reshape(*places.shape[:3], -1)
+            own = np.take_along_axis(asked, climbs.extreme[:, None, None, None], axis=3)
+            return places, own[..., 0]
 
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            inside = ~np.isneginf(at(middle)[1])
-            low, high = np.where(inside, low, middle), np.where(inside, middle, high)
-        places, asked = at(high)
+        for _ in range(_SECTIONS):
+            outside_there = np.isneginf(at(low + part * _SHARES)[1])
+            low = low + part / 8.0 * outside_there.sum(axis=2, keepdims=True)
+            part /= 8.0
+        places, asked = (values[:, :, 0] for values in at(low + part))
         best = asked.argmax(axis=1)
         rows = np.arange(len(places))
         return places[rows, best], asked[rows, best]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.refine import Demand, refine_each
+from designer.workspace.refine import Demand, refine_over_branches
 from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 2000
@@ -55,13 +56,13 @@ def survey_stiffness(
     robot, workspace, cable
         What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
     """
-    demand = displacement_demand(robot, workspace, cable)
+    demand_with = partial(displacement_demand, robot, workspace, cable)
     some = thinned(workspace, MOST_SAMPLES)
-    asked = demand(some)
+    asked = demand_with()(some)
     counts = ~np.isneginf(asked[:, 0])
     if np.isneginf(asked[:, 1]).all():
         return None
-    softest, stiffest = refine_each(workspace.space, demand, some)
+    softest, stiffest = refine_over_branches(workspace.space, demand_with, some)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(asked[:, 0]).sum()),
@@ -72,14 +73,16 @@ def survey_stiffness(
     )
 
 
-def displacement_demand(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> Demand:
+def displacement_demand(
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, *, seeks_better: bool = True
+) -> Demand:
     """Displacement under a unit force, and negated, (n, 2) [m/N].
 
     Inf and -inf where the platform would not stay, both -inf where the pose does not count.
     """
 
     def demand(places: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(places), cable)
+        statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
         displacement = largest_displacement_m_per_N(statics)
         stays = counts & np.isfinite(displacement)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from designer.study import Workspace
 from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
 from designer.workspace.hanging import HangingCables, look_at
-from designer.workspace.refine import Pool, refine
+from designer.workspace.refine import Pool, refine, refine_over_branches
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.samples import pieces_m
 from designer.workspace.store import SweepFile
@@ -124,8 +125,8 @@ def _summarise(
     sagging: Extreme | None = None
     ratio = np.nan
     if example is None and gathered.sampled is not None:
-        demand = diameter_demand(robot, material, workspace.hangs_below)
-        worst = refine(workspace.space, demand, gathered.starts.places)
+        demand_with = partial(diameter_demand, robot, material, workspace.hangs_below)
+        (worst,) = refine_over_branches(workspace.space, demand_with, gathered.starts.places)
         if np.isfinite(worst.demand):
             pose = Poses.at(worst.place)
             tension = float(size_poses(robot, pose, material).statics.largest_tension_N)
