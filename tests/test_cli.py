@@ -219,6 +219,7 @@ def test_units_and_names_in_brackets_are_printed_as_they_are(designer) -> None:
     assert "mass [kg/m]" in sizes
 
 
+@pytest.mark.slow
 def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> None:
     Path("a.yaml").write_text(STUDY)
     Path("out").mkdir()
@@ -272,6 +273,7 @@ def test_report_end_to_end(designer) -> None:
     assert "small crane" in told.out
 
 
+@pytest.mark.slow
 def test_report_without_a_product_is_a_negative_answer(designer) -> None:
     text = STUDY + WORKSPACE.replace("unirope-6x36-iwrc-1960", "unirope-7x19-galvanised")
     Path("study.yaml").write_text(text)
@@ -282,6 +284,7 @@ def test_report_without_a_product_is_a_negative_answer(designer) -> None:
     assert "too thin" in result["selection"]["reason"]
 
 
+@pytest.mark.slow
 def test_a_workspace_that_no_cable_serves(designer) -> None:
     outside = "region: {box: [[900, 910], [900, 910], [-60, -50]]}"
     workspace = WORKSPACE.replace("region: {prism: anchors, inset: 30 m, z: [-200, -60]}", outside)
@@ -292,6 +295,7 @@ def test_a_workspace_that_no_cable_serves(designer) -> None:
     assert outcome.out.index("worst pose") < outcome.out.index("outside hull")
 
 
+@pytest.mark.slow
 def test_a_clearance_that_means_nothing_is_told(designer) -> None:
     workspace = "workspace: {region: {points: [[250, 200, -60]]}, clearance: 1 m}\n"
     Path("a.yaml").write_text(STUDY + workspace)

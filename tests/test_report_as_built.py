@@ -21,6 +21,8 @@ from designer.config import read_study
 from designer.progress import Silent
 from designer.result_json import result_dict
 
+pytestmark = pytest.mark.slow
+
 DENSITY, MODULUS, STRESS = 7800.0, 200e9, 180e6
 GRADE = "unirope-6x36-iwrc-1960"
 STUDY = f"""

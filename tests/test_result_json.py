@@ -18,6 +18,8 @@ from designer.progress import Advance
 from designer.result_json import result_dict, size_text, write_result
 from designer.selection_json import write_candidates
 
+pytestmark = pytest.mark.slow
+
 CONFIG = """
 name: Crane
 robot:

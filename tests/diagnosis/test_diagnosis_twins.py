@@ -28,6 +28,8 @@ from designer.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study
 
+pytestmark = pytest.mark.slow
+
 TWINS = ("measured", "simulated-twins")
 
 

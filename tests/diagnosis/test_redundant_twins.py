@@ -15,6 +15,8 @@ from designer.effects.effect import Setting
 from designer.measured.read import read_measured
 from designer.measured_data import Noise
 
+pytestmark = pytest.mark.slow
+
 
 def diagnosed(effects, folder, rows: int = 60, quantities=("length", "tension")) -> Diagnosis:
     make(HALL8, effects, rows=rows, seed=1).write(folder, quantities)

@@ -12,6 +12,8 @@ from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis, Reason
 from designer.measured.read import read_measured
 
+pytestmark = pytest.mark.slow
+
 
 def diagnosed(dataset: DataSet, folder) -> Diagnosis:
     dataset.write(folder)

@@ -269,6 +269,7 @@ def test_batch_equals_loop_and_tilt_and_turns_change_nothing(six_cable_robot) ->
     assert np.allclose(again.place_m[good] @ Q.T, batch.place_m[good], atol=1e-3)
 
 
+@pytest.mark.slow
 def test_survey_finds_the_worst_pose_and_says_which_pair(six_cable_robot) -> None:
     region = Prism.over(six_cable_robot.exit_points_m, 40.0, (-60.0, -30.0))
     workspace = Workspace(region, samples=60)

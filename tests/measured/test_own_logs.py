@@ -48,6 +48,7 @@ def test_a_swaying_platform_on_four_cables_names_the_clock(tmp_path: Path) -> No
     assert "temperature" in dict(found.skipped)["thermal_expansion"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1.03, 1.0])
 def test_motor_angles_of_four_lines_tell_whether_drums_are_true(
     scale: float, tmp_path: Path

@@ -15,6 +15,8 @@ from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
 from designer.measured.read import read_measured
 
+pytestmark = pytest.mark.slow
+
 SCAMPI = ("measured", "scampi-cable-robot", "scampi_rows_0000_0499.csv")
 HANGPRINTER = ("measured", "hangprinter-hp4-2022-04-series2", "poses_motor_angles_forces.csv")
 GUIDE = Path(__file__).parents[2] / "designer" / "examples" / "measured-logs.md"

@@ -22,6 +22,8 @@ from designer.plugins.new_plugin import write_plugin
 from designer.progress import Silent
 from designer.resources import data_folder
 
+pytestmark = pytest.mark.slow
+
 STUDY = """\
 robot:
   anchors: [[0, 0, 12], [30, 0, 12], [15, 26, 12]]

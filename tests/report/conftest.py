@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -37,10 +37,29 @@ def solve(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Analysis]
     return solved
 
 
+class Analyses(Mapping[str, Analysis]):
+    """The cases of `report_cases`, each solved when it is first asked for."""
+
+    def __init__(self, solve: Callable[[str], Analysis]) -> None:
+        self._solve = solve
+        self._solved: dict[str, Analysis] = {}
+
+    def __getitem__(self, name: str) -> Analysis:
+        if name not in self._solved:
+            self._solved[name] = self._solve(FAST.format(**{**DEFAULTS, **CASES[name]}))
+        return self._solved[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(CASES)
+
+    def __len__(self) -> int:
+        return len(CASES)
+
+
 @pytest.fixture(scope="session")
-def analyses(solve: Callable[[str], Analysis]) -> dict[str, Analysis]:
+def analyses(solve: Callable[[str], Analysis]) -> Analyses:
     """Every case of `report_cases`."""
-    return {name: solve(FAST.format(**{**DEFAULTS, **case})) for name, case in CASES.items()}
+    return Analyses(solve)
 
 
 @pytest.fixture(scope="session")

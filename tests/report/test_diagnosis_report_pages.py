@@ -31,6 +31,8 @@ from designer.report.diagnosis_sections.design import design_section
 from designer.report.diagnosis_sections.search import search_section
 from designer.report.render import DIAGNOSIS, render_html
 
+pytestmark = pytest.mark.slow
+
 CONFIG = """
 name: {name}
 robot:

@@ -30,6 +30,8 @@ from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.study import Selection, Workspace
 
+pytestmark = pytest.mark.slow
+
 CHARTS: dict[str, Callable[[WorkspaceMaps], str | None]] = {
     "slice": slice_chart,
     "panels": slice_panels,

@@ -25,6 +25,8 @@ from designer.space import Orientations
 from designer.study import Study
 from designer.workspace.sweep import map_workspace
 
+pytestmark = pytest.mark.slow
+
 
 def analysed(study: Study, folder: Path) -> Analysis:
     assert study.workspace is not None

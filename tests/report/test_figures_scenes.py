@@ -42,6 +42,8 @@ from designer.report.figures.workspace_scene import (
     workspace_scene,
 )
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="session")
 def graphics() -> None:

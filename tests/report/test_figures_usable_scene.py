@@ -17,6 +17,8 @@ from designer.robot import Poses
 from designer.selection.usable import Usable, usable
 from designer.sizing.newton import size_poses
 
+pytestmark = pytest.mark.slow
+
 SIZES_MM = [10.0, 20.0, 24.0, 28.0, 32.0, 36.0, 40.0, 60.0]
 
 

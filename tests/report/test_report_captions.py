@@ -13,6 +13,8 @@ from designer.report import captions
 from designer.report.drawings import draw
 from designer.report.figures.maps import Served
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def crane(yard: Analysis) -> list[str]:

@@ -19,6 +19,8 @@ from designer.report.pictures import Pictures
 from designer.report.render import render_html
 from designer.report.sections.candidates import front_sentence
 
+pytestmark = pytest.mark.slow
+
 Solve = Callable[[str], Analysis]
 
 

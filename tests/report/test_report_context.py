@@ -22,6 +22,8 @@ from designer.report.sections.candidates import best_table, thin_table
 from designer.report.sections.pose import turns_table
 from designer.sizing.loop import Iterate, LoopSizing
 
+pytestmark = pytest.mark.slow
+
 PICTURE = Picture("What it shows.", "For who cannot see it.", svg="<svg><path d=''/></svg>")
 SCENE = Picture(
     "A scene.", "Also a scene.", bitmap="data:image/png;base64,AA==", scene="<p>3-D</p>"

@@ -16,6 +16,8 @@ from designer.report.pictures import Pictures
 from designer.report.render import render_html, render_pdf
 from designer.report.sections.candidates import thin_table
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def pictures(analyses: dict[str, Analysis]) -> Pictures:

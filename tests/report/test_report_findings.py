@@ -12,6 +12,8 @@ from designer.robot import Poses
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
 
+pytestmark = pytest.mark.slow
+
 
 def test_massless_choice_is_thinner_and_falls_short(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]

@@ -40,6 +40,7 @@ def fonts_in(page: str) -> list[TTFont]:
     return [TTFont(io.BytesIO(base64.b64decode(one))) for one in found]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="fontconfig's settings")
 def test_without_any_font_installed_the_pdf_is_the_same(
     context: ReportContext, tmp_path: Path

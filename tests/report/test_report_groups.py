@@ -17,6 +17,8 @@ from designer.report.sections.first_page import first_page
 from designer.report.sections.groups import groups_section
 from designer.result_json import result_dict
 
+pytestmark = pytest.mark.slow
+
 YARD = """
 name: Yard with a far mast
 robot:

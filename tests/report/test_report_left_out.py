@@ -5,10 +5,14 @@ from __future__ import annotations
 import dataclasses
 import json
 
+import pytest
+
 from designer.analysis import Analysis
 from designer.report.sections.appendix import left_out_section
 from designer.resources import data_folder
 from designer.result_json import result_dict
+
+pytestmark = pytest.mark.slow
 
 EVIL = "plugin acme (<script>alert(1)</script> 1.2) cannot be loaded: KeyError: left out"
 LOST = "plugin acme (acme 1.2): effect 'creep' is in 'builtin-effects' already: left out"

@@ -9,6 +9,8 @@ from designer.report.context import build_context
 from designer.report.pictures import Pictures
 from designer.report.sections.first_page import FirstPage
 
+pytestmark = pytest.mark.slow
+
 
 def page_of(analysis: Analysis) -> FirstPage:
     return build_context(analysis, Pictures()).first_page

@@ -19,6 +19,8 @@ from designer.report.pictures import Pictures
 from designer.report.render import render_html
 from designer.result_json import result_dict
 
+pytestmark = pytest.mark.slow
+
 SIX = """
 name: Six cables
 robot:

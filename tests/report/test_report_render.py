@@ -17,6 +17,8 @@ from designer.analysis import Analysis
 from designer.report.context import ReportContext, build_context
 from designer.report.render import render_html, render_pdf, write_report
 
+pytestmark = pytest.mark.slow
+
 A4_POINTS = (595.3, 841.9)
 
 

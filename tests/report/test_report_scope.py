@@ -23,6 +23,8 @@ from designer.robot import Poses
 from designer.space import Orientations, Space
 from designer.study import Selection, Study
 
+pytestmark = pytest.mark.slow
+
 BOX = Prism.box((0.0, 2.0), (0.0, 2.0), (0.0, 1.0))
 TURN = [0.0, 0.1, 0.0]
 

@@ -28,6 +28,8 @@ from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Selection, Workspace
 from designer.workspace.demand import is_left_out
 
+pytestmark = pytest.mark.slow
+
 # Strength per mass scatters as it does in tables, so that no size is just a scaled other one.
 SCATTER = (1.0, 0.9, 1.12, 1.0, 0.95, 1.1, 0.97, 1.05)
 

@@ -81,6 +81,7 @@ def test_optimum_over_a_sheave_is_as_strong_as_itself(fast_robot, workspace) -> 
     assert unbent.continuous_diameter_m < optimum
 
 
+@pytest.mark.slow
 def test_sheave_thinner_than_every_rope_leaves_nothing_to_try(fast_robot, workspace) -> None:
     selection = Selection(None, 2.0, sheave_diameter_m=0.005)
     found = select(fast_robot, workspace, selection, [rope("a", [10.0, 20.0])])

@@ -124,6 +124,7 @@ class InternalForces:
         return np.where(balanced, ratio, np.inf)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weights", WEIGHTS)
 def test_brute_force_over_internal_forces_finds_nothing_thinner(weights) -> None:
     """With the sized cable no internal forces stay below the strength; the found ones reach it."""

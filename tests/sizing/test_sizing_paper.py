@@ -159,6 +159,7 @@ def test_every_random_pose_is_solved_or_judged(fast_robot, steel) -> None:
     assert stress[solved] == pytest.approx(steel.allowable_stress_Pa, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_six_cables_leave_no_pose_undecided(six_cable_robot, steel) -> None:
     rng = np.random.default_rng(3)
     position = np.column_stack([rng.uniform(-60, 60, (20_000, 2)), rng.uniform(-150, -20, 20_000)])

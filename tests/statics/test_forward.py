@@ -49,6 +49,7 @@ def test_eight_cables_on_six_degrees_of_freedom() -> None:
 AS_BUILT = {"pulley_radius_m": 0.8, "tilt_rad": frozen_array([0.02, -0.03])}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("as_built", [{}, AS_BUILT], ids=["plain", "pulleys, tilt, force"])
 @pytest.mark.parametrize("name", ["fast_robot", "six_cable_robot"])
 def test_round_trip_with_inverse_statics(request, steel: Material, name: str, as_built) -> None:

@@ -12,6 +12,8 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.verdict import Verdict
 
+pytestmark = pytest.mark.slow
+
 ROPE = Material(5290.0, 62.7e9, 198e6)
 
 
@@ -49,7 +51,7 @@ def off_tangent(statics: Statics) -> FloatArray:
 
 @pytest.mark.parametrize(("seed", "n_cables"), [(0, 6), (1, 8), (2, 8)])
 def test_what_is_solved_leaves_its_pulley_as_a_tangent(seed, n_cables) -> None:
-    robot, poses = robot_and_poses(seed, n_cables, 400)
+    robot, poses = robot_and_poses(seed, n_cables, 150)
     for statics in (
         size_poses(robot, poses, ROPE).statics,
         solve_sagging(robot, poses, ROPE.cable(0.01)),

@@ -46,6 +46,7 @@ def assert_same(robot: Robot, cable: Cable, position: np.ndarray, turn: np.ndarr
     assert np.allclose(twin.exit_tension_N, statics.exit_tension_N, rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", [*ROBOTS.values(), FAST3_WIDE])
 def test_agrees_with_the_closed_form_on_the_twins(robot) -> None:
     machine = robot.machine()

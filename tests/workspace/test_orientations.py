@@ -55,6 +55,7 @@ def test_a_range_has_its_middle_its_corners_and_a_filling() -> None:
     assert len(np.unique(inner, axis=0)) == FILLING
 
 
+@pytest.mark.slow
 def test_every_sample_is_in_its_worst_orientation(
     six_cable_robot: Robot, steel: Material, tmp_path: Path
 ) -> None:
@@ -82,6 +83,7 @@ def test_every_sample_is_in_its_worst_orientation(
     assert float(there.diameter_m) == pytest.approx(found.sagging.diameter_m, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_range_is_searched_between_its_orientations(
     six_cable_robot: Robot, steel: Material
 ) -> None:
@@ -101,6 +103,7 @@ def test_a_range_is_searched_between_its_orientations(
     assert found.sagging.diameter_m >= brute.diameter_m.max()
 
 
+@pytest.mark.slow
 def test_a_list_of_points_in_a_range(six_cable_robot: Robot, steel: Material) -> None:
     region = PointList(frozen_array([[0.0, 0, -80], [5, 5, -75]]))
     space = Space(region, Orientations.within([-0.03, 0, 0], [0.05, 0, 0]))
@@ -115,6 +118,7 @@ def test_a_list_of_points_in_a_range(six_cable_robot: Robot, steel: Material) ->
     assert worst.demand == pytest.approx(max(tried), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_cable_is_verified_in_every_orientation(six_cable_robot: Robot, steel: Material) -> None:
     level = verify(six_cable_robot, workspace_in(Orientations()), steel.cable(0.03))
     tilted = verify(six_cable_robot, workspace_in(Orientations(TILTS)), steel.cable(0.03))
