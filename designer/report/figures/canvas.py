@@ -115,7 +115,7 @@ def grid_lines(axes: Axes, axis: Literal["x", "y"] = "y") -> None:
 
 
 def svg(figure: Figure, key: str, title: str) -> str:
-    """Return the figure as an ``<svg>`` element that scales with its surroundings.
+    """Return the figure as an ``<svg>`` element that scales with its surroundings, and empty it.
 
     Parameters
     ----------
@@ -130,7 +130,9 @@ def svg(figure: Figure, key: str, title: str) -> str:
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     figure.savefig(stream, format="svg", transparent=True, metadata=nothing)
     text = stream.getvalue()
-    return _standalone(text[text.index("<svg") :].strip(), key, title, _words(figure))
+    words = _words(figure)
+    figure.clear()  # it lies in reference cycles, which Python would clear up much later
+    return _standalone(text[text.index("<svg") :].strip(), key, title, words)
 
 
 def _words(figure: Figure) -> str:
