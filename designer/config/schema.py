@@ -68,7 +68,7 @@ from designer.config.orientation import (
 )
 from designer.config.section import Section
 from designer.formats import CONFIG_FORMAT
-from designer.study import HangsBelow, Objective, Sampling
+from designer.study import HangsBelow, Objective, Reading, Sampling
 from designer.units import describe
 
 MOST_CABLES = 64
@@ -92,6 +92,11 @@ Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
 Objectives = Annotated[
     tuple[Objective, ...],
     BeforeValidator(ListOf(1, 5, "a list of objectives such as [mass, drum_diameter]")),
+    AfterValidator(different),
+]
+Readings = Annotated[
+    tuple[Reading, ...],
+    BeforeValidator(ListOf(0, 2, "a list of readings: length, tension or both")),
     AfterValidator(different),
 ]
 Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
@@ -311,6 +316,7 @@ class NoiseSection(Section):
 
     length: LengthNoise | None = None
     tension: TensionNoise | None = None
+    estimated: Readings = ()
 
 
 class MeasurementsSection(Section):

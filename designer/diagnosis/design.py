@@ -17,11 +17,13 @@ _NONE = float("nan")
 
 
 def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
-    """Return what was found as effects to declare, after those declared already."""
-    found = tuple(
-        DeclaredEffect(s.effect.id, s.effect.cable, dict(s.values)) for s in diagnosis.settings
+    """Return the whole model as effects to declare: what was declared, fitted and found."""
+    fitted = (
+        DeclaredEffect(s.effect.id, s.effect.cable, dict(s.values))
+        for s in (*diagnosis.given, *diagnosis.settings)
     )
-    return (*diagnosis.study.effects, *found)
+    all_of_it = {(e.id, e.cable): e for e in (*diagnosis.study.effects, *fitted)}
+    return tuple(all_of_it.values())
 
 
 def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
@@ -30,7 +32,7 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     if study.workspace is None or study.selection is None or not study.robot.has_enough_cables:
         return diagnosis
     before = choice(study, grades)
-    reaches = any(setting.effect.reaches_design for setting in diagnosis.settings)
+    reaches = any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings))
     better = replace(study, effects=declared_by(diagnosis))
     after = choice(better, grades) if reaches else before
     return replace(diagnosis, design_before=before, design_after=after)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class Case:
     Parameters
     ----------
     study, measurements, machine, measured
-        The study, its measurements, the machine as declared, the data.
+        The study, its measurements, the machine as drawn, the data.
     candidates : tuple of Effect
         Effects that the data can show, in the order in which they act.
     given : tuple of Effect
@@ -45,7 +45,9 @@ class Case:
     skipped : tuple of (effect, reason)
         Effects that the data cannot show.
     fixed : tuple of Setting
-        Declared effects on readings.
+        Declared effects that act on these data, less those that are unknown.
+    idle : tuple of (effect, reason)
+        Declared effects for which these data lack something.
     """
 
     study: Study
@@ -56,6 +58,7 @@ class Case:
     given: tuple[Effect, ...]
     skipped: tuple[tuple[str, str], ...]
     fixed: tuple[Setting, ...] = ()
+    idle: tuple[tuple[str, str], ...] = ()
 
 
 def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
@@ -69,12 +72,15 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     """
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
-    _check_size(case, heldout)
-    predict = Predictor(case.machine, measured, case.fixed)
-    _check_held(case, predict)
+    check_size(case, heldout)
+    predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
+    check_held(case, predict)
     outcome = _with_settled_noise(case, predict, ~heldout, progress)
-    problem, search = outcome.problem, outcome.search
-    base = fit(problem, case.given, ~heldout)
+    # What is told of the model shall not depend on the path that the search took to it.
+    problem = replace(outcome.problem, predict=predict.at(measured))
+    outcome = replace(outcome, problem=problem)
+    search = outcome.search
+    base = fit(problem, case.given, ~heldout) if search.found else search.fit
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
@@ -103,8 +109,8 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         outliers=outliers_of(after, measured.row_numbers),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
-        foretold_before=foretell(problem, case.machine, base.settings, compared),
-        foretold_after=foretell(problem, case.machine, search.fit.settings, compared),
+        foretold_before=foretell(problem, base.settings, compared),
+        foretold_after=foretell(problem, search.fit.settings, compared),
     )
 
 
@@ -200,7 +206,7 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
             names = (finding.effect.key, rival)
             answer.append(
                 propose(
-                    case.machine,
+                    outcome.problem.predict,
                     case.measured,
                     outcome.problem.noise,
                     region,
@@ -212,7 +218,8 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
     return tuple(answer)
 
 
-def _check_size(case: Case, heldout: BoolArray) -> None:
+def check_size(case: Case, heldout: BoolArray) -> None:
+    """Refuse fewer readings than the unknowns ask for."""
     measured = case.measured
     readings = np.hstack([measured.length_m, measured.tension_N])[~heldout]
     known = int(np.sum(~np.isnan(readings)))
@@ -231,7 +238,7 @@ def _check_size(case: Case, heldout: BoolArray) -> None:
         )
 
 
-def _check_held(case: Case, predict: Predictor) -> None:
+def check_held(case: Case, predict: Predictor) -> None:
     """Refuse poses most of which no cables can hold: frames, units or exit points are mixed up."""
     held = ~np.isnan(predict(()).length_m).any(axis=1)
     if 2 * held.sum() < held.size:
