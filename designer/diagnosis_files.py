@@ -24,6 +24,7 @@ from designer.diagnosis.result import (
     Interval,
     Outlier,
     Proposal,
+    Use,
     Withdrawn,
 )
 from designer.diagnosis.structure import Structure
@@ -49,7 +50,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}
             for s in diagnosis.given
         ],
-        "unexplained": _structure(diagnosis.structure_after),
+        "unexplained": {**_structure(diagnosis.structure_after), **_where(diagnosis)},
         "error": _errors(diagnosis),
         "forward": {
             "before": _foretold(diagnosis.foretold_before),
@@ -64,6 +65,11 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         "design": {
             "before": _choice(diagnosis.design_before),
             "after": _choice(diagnosis.design_after),
+            "kept": _use(diagnosis.kept),
+            "mounted": {
+                "before": _use(diagnosis.mounted_before),
+                "after": _use(diagnosis.mounted_after),
+            },
         },
         "provenance": _provenance(diagnosis.study, diagnosis.measured),
     }
@@ -236,6 +242,11 @@ def _withdrawn(withdrawn: Withdrawn) -> Json:
     }
 
 
+def _where(diagnosis: Diagnosis) -> Json:
+    place = diagnosis.left_in
+    return {"reading": place and place.reading, "rows": list(place.rows) if place else []}
+
+
 def _structure(structure: Structure) -> Json:
     strongest = structure.carriers[0] if structure.carriers else None
     return {
@@ -327,6 +338,17 @@ def _choice(choice: Choice | None) -> Json | None:
         "max_tension_N": _number(choice.max_tension_N),
         "optimum_m": _number(choice.optimum_m),
         "optimum_tension_N": _number(choice.optimum_tension_N),
+        "utilisation": _number(choice.utilisation),
+    }
+
+
+def _use(use: Use | None) -> Json | None:
+    if use is None:
+        return None
+    return {
+        "max_tension_N": _number(use.max_tension_N),
+        "utilisation": _number(use.utilisation),
+        "holds": use.utilisation <= 1.0,
     }
 
 

@@ -215,7 +215,9 @@ class Measurements:
     tension_noise_N : float or None
         Standard deviation of a measured tension [N]; None where not given.
     diameter_m : float or None
-        Diameter of the cable, which only effects of plugins may ask for [m].
+        Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
+    minimum_breaking_load_N : float or None
+        Of the cable on the machine [N]; None where not given.
     estimated_noise : tuple of str
         Readings whose noise a diagnosis has estimated; the next one estimates it anew.
     """
@@ -229,6 +231,7 @@ class Measurements:
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
     diameter_m: float | None = None
+    minimum_breaking_load_N: float | None = None
     estimated_noise: tuple[Reading, ...] = ()
 
 

@@ -23,6 +23,7 @@ from designer.config.bounds import MOST_SAMPLES
 from designer.config.columns import Columns
 from designer.config.fields import (
     AxialStiffness,
+    BreakingLoad,
     Clearance,
     Corner,
     Density,
@@ -309,6 +310,7 @@ class MeasuredCableSection(Section):
     linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
     axial_stiffness: AxialStiffness = Field(description="a force such as '3.3 MN'")
     diameter: RopeDiameter | None = None
+    minimum_breaking_load: BreakingLoad | None = None
 
 
 class NoiseSection(Section):

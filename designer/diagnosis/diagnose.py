@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import BoolArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
 from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
@@ -19,7 +19,8 @@ from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
-from designer.diagnosis.structure import covariates_of, find_structure
+from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.diagnosis.whereabouts import Whereabouts, whereabouts
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
@@ -107,6 +108,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         predicted=predicted,
         covariates=covariates,
         outliers=outliers_of(after, measured.row_numbers),
+        left_in=_left_in(after, outcome.structure, covariates, measured),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
         foretold_before=foretell(problem, base.settings, compared),
@@ -168,6 +170,17 @@ def _finding(
         heldout_gain=1.0 - (error_with / error_without) ** 2,
         warnings=tuple(warnings),
     )
+
+
+def _left_in(
+    residual: FloatArray,
+    structure: Structure,
+    covariates: Mapping[str, FloatArray],
+    measured: Measured,
+) -> Whereabouts | None:
+    if not structure.is_present:
+        return None
+    return whereabouts(residual, covariates[structure.carriers[0].name], measured.row_numbers)
 
 
 def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
