@@ -198,7 +198,7 @@ def test_design_says_what_changes_and_what_does_not_reach_it(
     design = context_of(changed).first_page.design
     assert design.sentence == "The choice changes from grade, 5 mm to grade, 6 mm."
     numbers = design.numbers.replace("\xa0", " ")
-    assert "It is used to 88.1 % of its allowable tension." in numbers
+    assert "Its utilisation is 88.1 %." in numbers
     assert "The one chosen before would be used to 104.0 %." in numbers
     assert "(+4.0 %)" in numbers
     assert "no minimum_breaking_load" in design.mounted
@@ -208,9 +208,9 @@ def test_design_says_what_changes_and_what_does_not_reach_it(
         mounted_before=Use(3500.0, 0.96), mounted_after=Use(3710.0, 1.02),
     )  # fmt: skip
     text = visible(render_html(context_of(stays), DIAGNOSIS))
-    assert "It is used to 97.9 % of its allowable tension, 92.3 % as declared." in text
-    assert "The rope on the machine is used to 102.0 % of its allowable tension, 96.0 %" in text
-    assert "It is overloaded." in text
+    assert "Its utilisation goes from 92.3 % to 97.9 %." in text
+    assert "The utilisation of the rope on the machine goes from 96.0 % to 102.0 %." in text
+    assert "That rope is overloaded." in text
     kept = dataclasses.replace(diagnoses["nothing"], design_before=before, design_after=before)
     assert "stays as it is: grade, 5 mm" in context_of(kept).first_page.design.sentence
 

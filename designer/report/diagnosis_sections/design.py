@@ -116,9 +116,11 @@ def _numbers(diagnosis: Diagnosis) -> str:
 def _utilisation(diagnosis: Diagnosis, before: Choice, after: Choice) -> Iterator[str]:
     """Yield how far the cable is used, and how far the one chosen before would be."""
     if after.grade and before.grade == after.grade and before.size_id == after.size_id:
-        yield _use("It", before.utilisation, after.utilisation, changes=after is not before)
+        yield _use(
+            "Its utilisation", before.utilisation, after.utilisation, changes=after is not before
+        )
     elif after.grade:
-        yield _use("It", after.utilisation, after.utilisation, changes=False)
+        yield _use("Its utilisation", after.utilisation, after.utilisation, changes=False)
     if diagnosis.kept is not None:
         used = fmt.utilisation(diagnosis.kept.utilisation)
         yield f"The one chosen before would be used to {used}."
@@ -127,8 +129,8 @@ def _utilisation(diagnosis: Diagnosis, before: Choice, after: Choice) -> Iterato
 def _use(what: str, before: float, after: float, *, changes: bool) -> str:
     was, now = fmt.utilisation(before), fmt.utilisation(after)
     if not changes or was == now:
-        return f"{what} is used to {now} of its allowable tension."
-    return f"{what} is used to {now} of its allowable tension, {was} as declared."
+        return f"{what} is {now}."
+    return f"{what} goes from {was} to {now}."
 
 
 def _mounted(diagnosis: Diagnosis) -> str:
@@ -141,8 +143,13 @@ def _mounted(diagnosis: Diagnosis) -> str:
             "Whether the rope on the machine holds is not said: "
             "measurements.cable gives no minimum_breaking_load."
         )
-    text = _use("The rope on the machine", before.utilisation, after.utilisation, changes=True)
-    return text if after.utilisation <= 1.0 else f"{text} It is overloaded."
+    text = _use(
+        "The utilisation of the rope on the machine",
+        before.utilisation,
+        after.utilisation,
+        changes=True,
+    )
+    return text if after.utilisation <= 1.0 else f"{text} That rope is overloaded."
 
 
 def _why_not(diagnosis: Diagnosis) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TITLE = "Residual against what it goes with most"
-_PANEL_MM, _LONE_MM = 36.0, 29.0  # so that a lone row finds room on the first page
+_PANEL_MM, _LONE_MM = 36.0, 25.0  # so that a lone row finds room on the first page
 _BINS = 12
 _FEW = 3
 
