@@ -162,6 +162,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
         noise = document["measurements"].setdefault("noise", {})
         noise.update({**estimated, "estimated": list(estimated)})
     _move_paths(document, source.parent, folder)
+    assert diagnosis.study.measurements is not None
+    data = diagnosis.study.measurements.file.resolve()  # not always the one that the config names
+    document["measurements"]["file"] = Path(os.path.relpath(data, folder.resolve())).as_posix()
     text = io.StringIO()
     yaml.dump(document, text)
     return text.getvalue()
@@ -214,8 +217,6 @@ def _move_paths(document: Any, old: Path, new: Path) -> None:
     def moved(path: str) -> str:
         return Path(os.path.relpath((old / path).resolve(), new.resolve())).as_posix()
 
-    if "file" in (document.get("measurements") or {}):
-        document["measurements"]["file"] = moved(document["measurements"]["file"])
     if document.get("catalogues"):
         document["catalogues"] = [moved(path) for path in document["catalogues"]]
 

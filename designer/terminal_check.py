@@ -28,10 +28,9 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
             if left is not None:
                 table.add_row(f"{name} [{unit}]".replace("[", r"\["), label, *_cells(left, scale))
     for label, model in models:
-        if model.foretold is not None:
+        if model.foretold is not None and model.foretold.n_solved:
             place = model.foretold.position_m
-            cells = (f"{1e3 * x:.4g}" for x in (place.value, place.low, place.high))
-            value, low, high = cells
+            value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, place.low, place.high))
             table.add_row(r"pose by lengths \[mm]", label, value, f"{low} to {high}", "")
     show(table)
     for line in _remarks(check):

@@ -85,6 +85,16 @@ def test_what_is_declared_and_found_acts_in_one_order(tmp_path) -> None:
     assert found.final.length_m.heldout.value < 1.2 * YARD3.noise_m
 
 
+def test_it_names_the_data_that_were_diagnosed(tmp_path) -> None:
+    path = make(YARD3, rows=32).write(tmp_path)
+    (tmp_path / "measured.csv").rename(tmp_path / "new.csv")
+    study = read_study(path)
+    study = replace(study, measurements=replace(study.measurements, file=tmp_path / "new.csv"))
+    case = case_of(study, study.measurements, read_measured(study))
+    text = diagnosed_config(diagnose(replace(case, candidates=())), tmp_path / "out")
+    assert yaml.safe_load(text)["measurements"]["file"] == "../new.csv"
+
+
 def test_what_is_unknown_stays_so_and_is_fitted_again(tmp_path) -> None:
     effects = drawn(YARD3, "pulley_radius", "length_offset")
     _, better = diagnosed(tmp_path, YARD3, effects, ["length_offset"], {"pulley_radius": {}})
