@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.case import case_of
-from designer.diagnosis.diagnose import Case, check_held, check_size
+from designer.diagnosis.diagnose import Case, check_held
 from designer.diagnosis.errors_of import bootstrap, outliers_of, without_outliers
 from designer.diagnosis.fit import fit
 from designer.diagnosis.foretell import foretell
@@ -80,7 +80,7 @@ class Check:
         Without any effect, and with those that the config declares.
     fitted : Model or None
         Without any, but what the config calls unknown fitted to these very rows: the best that can
-        be said without the effects. None where nothing is unknown.
+        be said without the effects. None where nothing is unknown, or the rows are too few.
     idle : tuple of (effect, reason)
         Declared effects for which these data lack something.
     n_compared : int
@@ -146,7 +146,7 @@ def check(
         "declared": (declared, ()),
         "without": (without, ()),
     }
-    if bare.given:
+    if bare.given and _can_be_fitted(bare, without):
         progress("what is unknown, fitted without the effects")
         problems["fitted"] = (without, _fitted(bare, without))
     models = _models(problems, case.fixed, progress)
@@ -174,9 +174,14 @@ def _noise(measurements: Measurements, measured: Measured, predict: Predictor) -
     return replace(noise, source=CARRIED) if is_carried else noise
 
 
+def _can_be_fitted(bare: Case, problem: Problem) -> bool:
+    """Tell whether there are more readings than unknowns; a check needs no such rows."""
+    unknown = sum(len(effect.parameters) for effect in bare.given)
+    return problem.free_readings(np.isfinite(problem.readings)) > unknown
+
+
 def _fitted(bare: Case, problem: Problem) -> tuple[Setting, ...]:
     everywhere = np.ones(bare.measured.n_rows, dtype=bool)
-    check_size(bare, ~everywhere)
     return fit(problem, bare.given, everywhere).settings
 
 

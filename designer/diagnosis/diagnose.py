@@ -73,7 +73,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     """
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
-    check_size(case, heldout)
+    _check_size(case, heldout)
     predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
     check_held(case, predict)
     outcome = _with_settled_noise(case, predict, ~heldout, progress)
@@ -231,8 +231,7 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
     return tuple(answer)
 
 
-def check_size(case: Case, heldout: BoolArray) -> None:
-    """Refuse fewer readings than the unknowns ask for."""
+def _check_size(case: Case, heldout: BoolArray) -> None:
     measured = case.measured
     readings = np.hstack([measured.length_m, measured.tension_N])[~heldout]
     known = int(np.sum(~np.isnan(readings)))
