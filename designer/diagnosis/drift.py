@@ -69,11 +69,10 @@ def _weights(
     """Yield standardised covariates: of the row (n_rows, 1), or each cable's own (…, 2 n_cables).
 
     The latter tell what differs between cables in one pose, such as a stiffness that rises with
-    tension. Not speeds: they average to nothing, which no constant can suit, and an exit point in
-    proportion to its cable's speed is nothing but a lag.
+    tension. Not speeds: an exit point in proportion to its cable's speed is but a lag.
     """
     for carrier in structure.carriers[:_MOST_CARRIERS]:
-        if carrier.chance < SIGNIFICANCE and not carrier.name.startswith("speed_"):
+        if carrier.chance < SIGNIFICANCE and not carrier.is_speed:
             yield carrier.name, _standard(covariates[carrier.name])[:, None]
     for name, own in (
         ("the cable's own tension", predicted.tension_N),

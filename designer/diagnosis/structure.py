@@ -36,6 +36,11 @@ class Carrier:
     fraction_of_variance: float
     chance: float
 
+    @property
+    def is_speed(self) -> bool:
+        """Whether it is a speed, which averages to nothing and so bends no constant to fit it."""
+        return self.name.startswith("speed_")
+
 
 @dataclass(frozen=True, slots=True)
 class Structure:
@@ -56,6 +61,11 @@ class Structure:
     def is_present(self) -> bool:
         """Whether the strongest covariate explains more than accident would."""
         return bool(self.carriers) and self.carriers[0].chance < SIGNIFICANCE
+
+    @property
+    def may_bend(self) -> bool:
+        """Whether it is such that effects of the list may be bent to fit it."""
+        return any(c.chance < SIGNIFICANCE and not c.is_speed for c in self.carriers)
 
 
 def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArray]:

@@ -46,3 +46,10 @@ def test_no_effect_drifts_with_a_speed() -> None:
     told = _weights(Structure(carriers, 2.0), covariates, Readings(values, values))
     names = [name for name, _ in told]
     assert names == ["z_m", "the cable's own tension", "the cable's own length"]
+
+
+def test_what_goes_with_speeds_alone_casts_no_doubt_on_constants() -> None:
+    speed, height = Carrier("speed_1_m_per_s", 0.5, 0.001), Carrier("z_m", 0.4, 0.001)
+    assert Structure((speed, Carrier("z_m", 0.1, 0.4)), 2.0).is_present
+    assert not Structure((speed, Carrier("z_m", 0.1, 0.4)), 2.0).may_bend
+    assert Structure((speed, height), 2.0).may_bend

@@ -15,6 +15,7 @@ from designer.report.diagnosis_sections.sureness import sureness
 from designer.report.parts import Column, Picture, Row, Statement, Table
 
 _ABOUT_AS_FAR = 0.9
+_MOST_STATEMENTS = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,11 @@ class FirstPage:
     errors: Table
     picture: Picture | None
     design: DesignSection
+
+    @property
+    def is_full(self) -> bool:
+        """Whether the statements leave the picture no room on one sheet; it comes again later."""
+        return len(self.findings) + len(self.sureness) > _MOST_STATEMENTS
 
 
 def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
