@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,6 +29,7 @@ from designer.process import readable_output, settle_in
 
 if TYPE_CHECKING:
     from designer.catalogue.registry import Catalogue
+    from designer.measured_data import Measured
     from designer.plugins.find import Plugins
     from designer.study import Study
 
@@ -191,16 +193,28 @@ def size(
 def diagnose(
     config: Config,
     output: Annotated[Path | None, output_option("diagnosis")] = None,
+    checks: Annotated[
+        bool, typer.Option("--check", help="Search nothing: how well do the declared effects fit?")
+    ] = False,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            "--data", parser=path_of, metavar="CSV", help="Measured data, instead of the study's."
+        ),
+    ] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Compare measured data with the model, and find the effect that the model lacks.
 
     Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
-    was found under `effects:`; `designer report` on it uses it everywhere.
+    was fitted and found under `effects:`; `designer report` on it uses it everywhere. With --check
+    nothing is searched, and diagnosis.json alone is written, into CONFIG-check.
 
     Example:  designer diagnose built-crane.yaml
+    A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
 
-    Exit status 0: all structure is explained. 1: some is left. 2: the input is wrong.
+    Exit status 0: all structure is explained. 1: some is left, or declared effects do not help.
+    2: the input is wrong.
     """
     from designer.measured.read import read_measured
     from designer.output import file_names, output_folder
@@ -209,9 +223,18 @@ def diagnose(
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = _study(config, plugins)
-    if study.measurements is None:
+    measurements = study.measurements
+    if measurements is None:
         raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
+    if data is not None:
+        if not data.is_file():
+            raise InputError([Fault("--data", None, "", f"there is no file {data}", "a CSV file")])
+        measurements = replace(measurements, file=data)
+        study = replace(study, measurements=measurements)
     measured = read_measured(study)
+    if checks:
+        _check(study, measured, output or Path(f"{config.stem}-check"))
+        return
     catalogue = _catalogue(study, plugins)
     announce_compiling()
     folder = output or Path(f"{config.stem}-diagnosis")
@@ -222,7 +245,7 @@ def diagnose(
     from designer.report.diagnosis import write_diagnosis
 
     with output_folder(folder) as building, Spinner("searching") as spinner:
-        diagnosis = diagnose_study(study, study.measurements, measured, spinner)
+        diagnosis = diagnose_study(study, measurements, measured, spinner)
         spinner("the design with and without")
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
@@ -235,6 +258,24 @@ def diagnose(
     print_left_out(diagnosis.study.known_effects.problems[n_known:])
     print_diagnosis(diagnosis, folder, written)
     if diagnosis.is_unexplained:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _check(study: Study, measured: Measured, folder: Path) -> None:
+    from designer.diagnosis.check import check
+    from designer.diagnosis_files import check_dict, json_text
+    from designer.output import file_names, output_folder
+    from designer.terminal import Spinner, announce_compiling
+    from designer.terminal_check import print_check
+
+    assert study.measurements is not None
+    announce_compiling()
+    with output_folder(folder) as building, Spinner("checking") as spinner:
+        found = check(study, study.measurements, measured, spinner)
+        (building / "diagnosis.json").write_text(json_text(check_dict(found)), encoding="utf-8")
+        written = file_names(building)
+    print_check(found, folder, written)
+    if not found.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
 
 

@@ -6,10 +6,14 @@ import io
 import json
 import math
 import os
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from designer import __version__
+from designer.diagnosis.check import Check, Left, Model
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import (
     Choice,
@@ -18,12 +22,16 @@ from designer.diagnosis.result import (
     Finding,
     Foretold,
     Interval,
+    Outlier,
     Proposal,
+    Use,
     Withdrawn,
 )
+from designer.diagnosis.structure import Structure
 from designer.formats import DIAGNOSIS_FORMAT
+from designer.measured_data import Measured
 from designer.selection_json import finite
-from designer.study import DeclaredEffect
+from designer.study import DeclaredEffect, Study
 
 Json = dict[str, Any]
 
@@ -42,7 +50,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}
             for s in diagnosis.given
         ],
-        "unexplained": _unexplained(diagnosis),
+        "unexplained": {**_structure(diagnosis.structure_after), **_where(diagnosis)},
         "error": _errors(diagnosis),
         "forward": {
             "before": _foretold(diagnosis.foretold_before),
@@ -57,21 +65,90 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         "design": {
             "before": _choice(diagnosis.design_before),
             "after": _choice(diagnosis.design_after),
+            "kept": _use(diagnosis.kept),
+            "mounted": {
+                "before": _use(diagnosis.mounted_before),
+                "after": _use(diagnosis.mounted_after),
+            },
         },
-        "provenance": {"version": __version__, "config_sha256": diagnosis.study.source.sha256},
+        "provenance": _provenance(diagnosis.study, diagnosis.measured),
     }
+
+
+def check_dict(check: Check) -> Json:
+    """Return what ``diagnosis.json`` holds of a check; a missing number is None."""
+    models = {"without": check.without, "with": check.declared, "unknowns_fitted": check.fitted}
+    return {
+        "format": DIAGNOSIS_FORMAT,
+        "name": check.study.name,
+        "rows": {
+            "all": check.measured.n_rows,
+            "compared": check.n_compared,
+            "not_held": {name: model.n_not_held for name, model in models.items() if model},
+            "outliers": [_outlier(one) for one in check.outliers],
+            "notes": list(check.measured.notes),
+        },
+        "check": {
+            "length_m": _by_model(models, lambda model: _left(model.length_m)),
+            "tension_N": _by_model(models, lambda model: _left(model.tension_N)),
+            "forward": _by_model(models, lambda model: _foretold(model.foretold)),
+            "helps": check.helps,
+            "stands": check.is_positive,
+        },
+        "effects": effects_table(check.study.effects),
+        "idle": [{"id": key, "reason": reason} for key, reason in check.idle],
+        "unexplained": _structure(check.structure),
+        "noise": {
+            "length_m": check.noise.length_m,
+            "tension_N": check.noise.tension_N,
+            "source": check.noise.source,
+        },
+        "provenance": _provenance(check.study, check.measured),
+    }
+
+
+def json_text(answer: Json) -> str:
+    """Return the text of ``diagnosis.json``."""
+    return json.dumps(finite(answer), indent=1, allow_nan=False) + "\n"
 
 
 def diagnosis_text(diagnosis: Diagnosis) -> str:
     """Return `diagnosis_dict` as JSON text."""
-    return json.dumps(finite(diagnosis_dict(diagnosis)), indent=1, allow_nan=False) + "\n"
+    return json_text(diagnosis_dict(diagnosis))
+
+
+def _by_model(
+    models: Mapping[str, Model | None], shown: Callable[[Model], Json | None]
+) -> Json | None:
+    """Return one thing of each model; None where it was not measured."""
+    found = {name: shown(model) for name, model in models.items() if model is not None}
+    return None if all(one is None for one in found.values()) else found
+
+
+def _left(left: Left | None) -> Json | None:
+    if left is None:
+        return None
+    return {
+        "rms": _number(left.rms.value),
+        "interval": [_number(left.rms.low), _number(left.rms.high)],
+        "median": _number(left.median),
+    }
+
+
+def _provenance(study: Study, measured: Measured) -> Json:
+    return {
+        "version": __version__,
+        "config_sha256": study.source.sha256,
+        "data_sha256": measured.sha256,
+    }
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
-    """Return the text of the config with the found effects under ``effects``.
+    """Return the text of the config with the whole model in it.
 
-    Comments and order are kept. Paths in it, which are relative to the config, are rewritten for
-    a config that lies in ``folder``.
+    What was fitted and what was found go under ``effects``, noise that was estimated under
+    ``measurements.noise``. Comments and order are kept. Paths in it, which are relative to the
+    config, are rewritten for a config that lies in ``folder``.
     """
     from ruamel.yaml import YAML
 
@@ -80,10 +157,48 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
     yaml.width = 100
     document = yaml.load(source.read_text(encoding="utf-8-sig"))
     document["effects"] = effects_table(declared_by(diagnosis))
+    document.yaml_set_comment_before_after_key("effects", before=_origin(diagnosis))
+    if estimated := _estimated_noise(diagnosis):
+        noise = document["measurements"].setdefault("noise", {})
+        noise.update({**estimated, "estimated": list(estimated)})
     _move_paths(document, source.parent, folder)
+    assert diagnosis.study.measurements is not None
+    data = diagnosis.study.measurements.file.resolve()  # not always the one that the config names
+    document["measurements"]["file"] = Path(os.path.relpath(data, folder.resolve())).as_posix()
     text = io.StringIO()
     yaml.dump(document, text)
     return text.getvalue()
+
+
+def _origin(diagnosis: Diagnosis) -> str:
+    """Return where the effects come from, for whoever reads the config later."""
+    measured = diagnosis.study.measurements
+    assert measured is not None
+    told = [f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"]
+    for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
+        first, last = (
+            stage.length_m if kind == "length" else stage.tension_N
+            for stage in (diagnosis.stages[0], diagnosis.final)
+        )
+        if first is not None and last is not None:
+            was, now = scale * first.heldout.value, scale * last.heldout.value
+            told.append(f"{kind} error on unseen rows {was:.3g} -> {now:.3g} {unit}")
+    return "; ".join(told)
+
+
+def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
+    """Return the noise that nobody declared, of readings that there are."""
+    declared, measured, noise = diagnosis.study.measurements, diagnosis.measured, diagnosis.noise
+    assert declared is not None
+    kinds = {
+        "length": (declared.length_noise_m, measured.length_m, noise.length_m),
+        "tension": (declared.tension_noise_N, measured.tension_N, noise.tension_N),
+    }
+    return {
+        kind: float(size)
+        for kind, (given, readings, size) in kinds.items()
+        if (given is None or kind in declared.estimated_noise) and np.isfinite(readings).any()
+    }
 
 
 def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
@@ -102,8 +217,6 @@ def _move_paths(document: Any, old: Path, new: Path) -> None:
     def moved(path: str) -> str:
         return Path(os.path.relpath((old / path).resolve(), new.resolve())).as_posix()
 
-    if "file" in (document.get("measurements") or {}):
-        document["measurements"]["file"] = moved(document["measurements"]["file"])
     if document.get("catalogues"):
         document["catalogues"] = [moved(path) for path in document["catalogues"]]
 
@@ -112,12 +225,13 @@ def _rows(diagnosis: Diagnosis) -> Json:
     return {
         "fit": int((~diagnosis.heldout).sum()),
         "heldout": int(diagnosis.heldout.sum()),
-        "outliers": [
-            {"row": o.row, "reading": o.channel, "size": _number(o.size)}
-            for o in diagnosis.outliers
-        ],
+        "outliers": [_outlier(one) for one in diagnosis.outliers],
         "notes": list(diagnosis.measured.notes),
     }
+
+
+def _outlier(outlier: Outlier) -> Json:
+    return {"row": outlier.row, "reading": outlier.channel, "size": _number(outlier.size)}
 
 
 def _withdrawn(withdrawn: Withdrawn) -> Json:
@@ -129,11 +243,15 @@ def _withdrawn(withdrawn: Withdrawn) -> Json:
     }
 
 
-def _unexplained(diagnosis: Diagnosis) -> Json:
-    carriers = diagnosis.structure_after.carriers
-    strongest = carriers[0] if carriers else None
+def _where(diagnosis: Diagnosis) -> Json:
+    place = diagnosis.left_in
+    return {"reading": place and place.reading, "rows": list(place.rows) if place else []}
+
+
+def _structure(structure: Structure) -> Json:
+    strongest = structure.carriers[0] if structure.carriers else None
     return {
-        "present": diagnosis.is_unexplained,
+        "present": structure.is_present,
         "strongest_covariate": strongest.name if strongest else None,
         "fraction_of_variance": _number(strongest.fraction_of_variance) if strongest else None,
         "chance": _number(strongest.chance) if strongest else None,
@@ -221,6 +339,17 @@ def _choice(choice: Choice | None) -> Json | None:
         "max_tension_N": _number(choice.max_tension_N),
         "optimum_m": _number(choice.optimum_m),
         "optimum_tension_N": _number(choice.optimum_tension_N),
+        "utilisation": _number(choice.utilisation),
+    }
+
+
+def _use(use: Use | None) -> Json | None:
+    if use is None:
+        return None
+    return {
+        "max_tension_N": _number(use.max_tension_N),
+        "utilisation": _number(use.utilisation),
+        "holds": use.utilisation <= 1.0,
     }
 
 

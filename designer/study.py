@@ -19,6 +19,7 @@ from designer.space import Orientations, Space
 
 Sampling = Literal["low_discrepancy", "grid"]
 HangsBelow = Literal["include", "exclude"]
+Reading = Literal["length", "tension"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
 
@@ -214,7 +215,11 @@ class Measurements:
     tension_noise_N : float or None
         Standard deviation of a measured tension [N]; None where not given.
     diameter_m : float or None
-        Diameter of the cable, which only effects of plugins may ask for [m].
+        Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
+    minimum_breaking_load_N : float or None
+        Of the cable on the machine [N]; None where not given.
+    estimated_noise : tuple of str
+        Readings whose noise a diagnosis has estimated; the next one estimates it anew.
     """
 
     file: Path
@@ -226,6 +231,8 @@ class Measurements:
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
     diameter_m: float | None = None
+    minimum_breaking_load_N: float | None = None
+    estimated_noise: tuple[Reading, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

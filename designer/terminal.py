@@ -228,6 +228,8 @@ def _saving(saving_kg: float) -> str:
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer diagnose``."""
+    from designer.diagnosis.whereabouts import in_runs
+
     table = bare_table(title=diagnosis.study.name)
     for finding in diagnosis.findings:
         values = ", ".join(
@@ -242,6 +244,8 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
         carrier = diagnosis.structure_after.carriers[0]
         share = f"{carrier.fraction_of_variance:.0%} of its variance"
         table.add_row("[bold red]unexplained[/]", f"goes with {escape(carrier.name)}, {share}")
+        if place := diagnosis.left_in:
+            table.add_row("  most in", f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
     for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
         before, after = (
             stage.length_m if kind == "length" else stage.tension_N
@@ -255,8 +259,16 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
         ("after", diagnosis.design_after),
     ):
         if choice is not None:
-            named = f"{choice.grade}, {choice.size_id}" if choice.grade else "none"
+            used = f", {choice.utilisation:.1%} used"
+            named = f"{choice.grade}, {choice.size_id}{used}" if choice.grade else "none"
             table.add_row(label, escape(named))
+    for label, use in (
+        ("  the one before", diagnosis.kept),
+        ("on the machine", diagnosis.mounted_after),
+    ):
+        if use is not None:
+            too_much = "" if use.utilisation <= 1.0 else ": [bold red]too much[/]"
+            table.add_row(label, f"{use.utilisation:.1%} used{too_much}")
     _out.print(table)
     _out.print(f"{folder}: {', '.join(written)}", markup=False)
 

@@ -14,7 +14,8 @@ ROOMS = [
     "formats",
     "measured", "config", "catalogue", "workspace", "interference", "selection", "diagnosis",
     "qualities", "analysis", "selection_json", "groups_json", "result_json", "diagnosis_files",
-    "report", "terminal", "terminal_catalog", "cli_options", "cli_catalog", "cli", "__main__",
+    "report", "terminal", "terminal_catalog", "terminal_check", "cli_options", "cli_catalog",
+    "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

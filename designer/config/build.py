@@ -146,9 +146,11 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         linear_density_kg_per_m=section.cable.linear_mass,
         axial_stiffness_N=section.cable.axial_stiffness,
         diameter_m=section.cable.diameter,
+        minimum_breaking_load_N=section.cable.minimum_breaking_load,
         columns=tuple(log_column(*item) for item in section.columns.items()),
         settled=section.settled,
         unknown=section.unknown,
         length_noise_m=section.noise.length,
         tension_noise_N=section.noise.tension,
+        estimated_noise=section.noise.estimated,
     )

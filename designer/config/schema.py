@@ -23,6 +23,7 @@ from designer.config.bounds import MOST_SAMPLES
 from designer.config.columns import Columns
 from designer.config.fields import (
     AxialStiffness,
+    BreakingLoad,
     Clearance,
     Corner,
     Density,
@@ -68,7 +69,7 @@ from designer.config.orientation import (
 )
 from designer.config.section import Section
 from designer.formats import CONFIG_FORMAT
-from designer.study import HangsBelow, Objective, Sampling
+from designer.study import HangsBelow, Objective, Reading, Sampling
 from designer.units import describe
 
 MOST_CABLES = 64
@@ -92,6 +93,11 @@ Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
 Objectives = Annotated[
     tuple[Objective, ...],
     BeforeValidator(ListOf(1, 5, "a list of objectives such as [mass, drum_diameter]")),
+    AfterValidator(different),
+]
+Readings = Annotated[
+    tuple[Reading, ...],
+    BeforeValidator(ListOf(0, 2, "a list of readings: length, tension or both")),
     AfterValidator(different),
 ]
 Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
@@ -304,6 +310,7 @@ class MeasuredCableSection(Section):
     linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
     axial_stiffness: AxialStiffness = Field(description="a force such as '3.3 MN'")
     diameter: RopeDiameter | None = None
+    minimum_breaking_load: BreakingLoad | None = None
 
 
 class NoiseSection(Section):
@@ -311,6 +318,7 @@ class NoiseSection(Section):
 
     length: LengthNoise | None = None
     tension: TensionNoise | None = None
+    estimated: Readings = ()
 
 
 class MeasurementsSection(Section):

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from designer.cable import Cable
 from designer.catalogue.grade import Grade
 from designer.declared import as_built_by
-from designer.diagnosis.result import Choice, Diagnosis
+from designer.diagnosis.result import Choice, Diagnosis, Use
+from designer.selection.efficiency import bending_efficiency
+from designer.selection.result import SelectionResult
 from designer.selection.select import select
+from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
@@ -17,38 +22,106 @@ _NONE = float("nan")
 
 
 def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
-    """Return what was found as effects to declare, after those declared already."""
-    found = tuple(
-        DeclaredEffect(s.effect.id, s.effect.cable, dict(s.values)) for s in diagnosis.settings
+    """Return the whole model as effects to declare: what was declared, fitted and found."""
+    fitted = (
+        DeclaredEffect(s.effect.id, s.effect.cable, dict(s.values))
+        for s in (*diagnosis.given, *diagnosis.settings)
     )
-    return (*diagnosis.study.effects, *found)
+    all_of_it = {(e.id, e.cable): e for e in (*diagnosis.study.effects, *fitted)}
+    return tuple(all_of_it.values())
 
 
 def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
-    """Add the chosen cable and the worst tension before and after, where the study has both."""
+    """Add what the design comes to before and after, where the study has one.
+
+    That is the cable to choose, the one chosen before in the better model, and the one that hangs
+    on the machine, where its breaking load is known.
+    """
     study = diagnosis.study
     if study.workspace is None or study.selection is None or not study.robot.has_enough_cables:
         return diagnosis
-    before = choice(study, grades)
-    reaches = any(setting.effect.reaches_design for setting in diagnosis.settings)
+    first = _selected(study, grades)
+    reaches = any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings))
     better = replace(study, effects=declared_by(diagnosis))
-    after = choice(better, grades) if reaches else before
-    return replace(diagnosis, design_before=before, design_after=after)
+    last = _selected(better, grades) if reaches else first
+    mounted = mounted_use(study)
+    return replace(
+        diagnosis,
+        design_before=first.choice,
+        design_after=last.choice,
+        kept=_kept(first, last),
+        mounted_before=mounted,
+        mounted_after=mounted_use(better) if reaches else mounted,
+    )
 
 
 def choice(study: Study, grades: Sequence[Grade]) -> Choice:
     """Size the workspace and choose a product, with the effects that the study declares."""
+    return _selected(study, grades).choice
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Selected:
+    """A choice, and the selection that led to it."""
+
+    choice: Choice
+    selection: SelectionResult
+
+
+def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
     assert study.workspace is not None
     assert study.selection is not None
     built = as_built_by(study)
     built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
     worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
-    chosen = select(built.robot, study.workspace, study.selection, grades, built=built).chosen
-    return Choice(
+    selection = select(built.robot, study.workspace, study.selection, grades, built=built)
+    chosen = selection.chosen
+    found = Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
         diameter_m=chosen.size.diameter_m if chosen else _NONE,
         max_tension_N=chosen.verification.max_tension_N if chosen else _NONE,
         optimum_m=worst.diameter_m if worst else _NONE,
         optimum_tension_N=worst.max_tension_N if worst else _NONE,
+        utilisation=chosen.verification.utilisation if chosen else _NONE,
     )
+    return _Selected(found, selection)
+
+
+def _kept(first: _Selected, last: _Selected) -> Use | None:
+    """Return what the product of the first choice meets in the last; None where that is as good."""
+    before, after = first.selection.chosen, last.selection.chosen
+    if before is None or (after is not None and after.name == before.name):
+        return None
+    again = next((c for c in last.selection.candidates if c.name == before.name), None)
+    if again is None:
+        return None
+    return Use(again.verification.max_tension_N, again.verification.utilisation)
+
+
+def mounted_use(study: Study) -> Use | None:
+    """Return what the cable on the machine meets, with the effects that the study declares.
+
+    Its allowable tension is as for a product: end fittings or bending, whichever takes more, and
+    the safety factor. None where the study lacks a part of that.
+    """
+    rope, workspace, selection = study.measurements, study.workspace, study.selection
+    if rope is None or workspace is None or selection is None:
+        return None
+    if rope.minimum_breaking_load_N is None:
+        return None
+    left = selection.termination_efficiency
+    if selection.sheave_diameter_m and rope.diameter_m:
+        bent = bending_efficiency(selection.sheave_diameter_m / rope.diameter_m)
+        if math.isnan(bent):  # outside the rule
+            return None
+        left = min(left, bent)
+    cable = Cable(
+        diameter_m=rope.diameter_m or _NONE,
+        linear_density_kg_per_m=rope.linear_density_kg_per_m,
+        axial_stiffness_N=rope.axial_stiffness_N,
+        allowable_tension_N=rope.minimum_breaking_load_N * left / selection.safety_factor,
+    )
+    built = as_built_by(study)
+    found = verify(built.robot, workspace, built.cable(cable))
+    return Use(found.max_tension_N, found.utilisation)

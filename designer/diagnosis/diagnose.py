@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import BoolArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
 from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
@@ -19,7 +19,8 @@ from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
-from designer.diagnosis.structure import covariates_of, find_structure
+from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.diagnosis.whereabouts import Whereabouts, whereabouts
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
 from designer.machine import Machine
@@ -37,7 +38,7 @@ class Case:
     Parameters
     ----------
     study, measurements, machine, measured
-        The study, its measurements, the machine as declared, the data.
+        The study, its measurements, the machine as drawn, the data.
     candidates : tuple of Effect
         Effects that the data can show, in the order in which they act.
     given : tuple of Effect
@@ -45,7 +46,9 @@ class Case:
     skipped : tuple of (effect, reason)
         Effects that the data cannot show.
     fixed : tuple of Setting
-        Declared effects on readings.
+        Declared effects that act on these data, less those that are unknown.
+    idle : tuple of (effect, reason)
+        Declared effects for which these data lack something.
     """
 
     study: Study
@@ -56,6 +59,7 @@ class Case:
     given: tuple[Effect, ...]
     skipped: tuple[tuple[str, str], ...]
     fixed: tuple[Setting, ...] = ()
+    idle: tuple[tuple[str, str], ...] = ()
 
 
 def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
@@ -70,11 +74,14 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
     _check_size(case, heldout)
-    predict = Predictor(case.machine, measured, case.fixed)
-    _check_held(case, predict)
+    predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
+    check_held(case, predict)
     outcome = _with_settled_noise(case, predict, ~heldout, progress)
-    problem, search = outcome.problem, outcome.search
-    base = fit(problem, case.given, ~heldout)
+    # What is told of the model shall not depend on the path that the search took to it.
+    problem = replace(outcome.problem, predict=predict.at(measured))
+    outcome = replace(outcome, problem=problem)
+    search = outcome.search
+    base = fit(problem, case.given, ~heldout) if search.found else search.fit
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
@@ -101,10 +108,11 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         predicted=predicted,
         covariates=covariates,
         outliers=outliers_of(after, measured.row_numbers),
+        left_in=_left_in(after, outcome.structure, covariates, measured),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
-        foretold_before=foretell(problem, case.machine, base.settings, compared),
-        foretold_after=foretell(problem, case.machine, search.fit.settings, compared),
+        foretold_before=foretell(problem, base.settings, compared),
+        foretold_after=foretell(problem, search.fit.settings, compared),
     )
 
 
@@ -164,6 +172,17 @@ def _finding(
     )
 
 
+def _left_in(
+    residual: FloatArray,
+    structure: Structure,
+    covariates: Mapping[str, FloatArray],
+    measured: Measured,
+) -> Whereabouts | None:
+    if not structure.is_present:
+        return None
+    return whereabouts(residual, covariates[structure.carriers[0].name], measured.row_numbers)
+
+
 def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
     answer: dict[str, dict[str, Estimate]] = {}
     at = 0
@@ -200,7 +219,7 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
             names = (finding.effect.key, rival)
             answer.append(
                 propose(
-                    case.machine,
+                    outcome.problem.predict,
                     case.measured,
                     outcome.problem.noise,
                     region,
@@ -231,7 +250,7 @@ def _check_size(case: Case, heldout: BoolArray) -> None:
         )
 
 
-def _check_held(case: Case, predict: Predictor) -> None:
+def check_held(case: Case, predict: Predictor) -> None:
     """Refuse poses most of which no cables can hold: frames, units or exit points are mixed up."""
     held = ~np.isnan(predict(()).length_m).any(axis=1)
     if 2 * held.sum() < held.size:

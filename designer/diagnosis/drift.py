@@ -69,10 +69,10 @@ def _weights(
     """Yield standardised covariates: of the row (n_rows, 1), or each cable's own (…, 2 n_cables).
 
     The latter tell what differs between cables in one pose, such as a stiffness that rises with
-    tension.
+    tension. Not speeds: an exit point in proportion to its cable's speed is but a lag.
     """
     for carrier in structure.carriers[:_MOST_CARRIERS]:
-        if carrier.chance < SIGNIFICANCE:
+        if carrier.chance < SIGNIFICANCE and not carrier.is_speed:
             yield carrier.name, _standard(covariates[carrier.name])[:, None]
     for name, own in (
         ("the cable's own tension", predicted.tension_N),

@@ -16,8 +16,7 @@ from designer.diagnosis.errors_of import bootstrap, without_outliers
 from designer.diagnosis.physical import wind_force_N
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold
-from designer.effects.effect import Setting, as_built
-from designer.machine import Machine
+from designer.effects.effect import Setting
 from designer.robot import Poses
 from designer.statics.forward import solve_forward
 
@@ -29,15 +28,13 @@ def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArr
     return np.asarray(np.isfinite(residual[:, :n]).all(axis=1))
 
 
-def foretell(
-    problem: Problem, machine: Machine, settings: Sequence[Setting], chosen: BoolArray
-) -> Foretold | None:
+def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -> Foretold | None:
     """Return how well lengths alone foretell pose and tensions; None without any row.
 
     Parameters
     ----------
-    problem, machine, settings
-        Data, the machine as declared, and the effects in the model.
+    problem, settings
+        Data, and the effects in the model.
     chosen : array (n_rows,) of bool
         Rows to compare; each has all lengths.
     """
@@ -46,7 +43,7 @@ def foretell(
     rows = np.flatnonzero(chosen)
     if not rows.size:
         return None
-    built = as_built(machine, settings)
+    built = problem.predict.built(settings)
     force = wind_force_N(built, measured)
     there = _rows_of(measured.poses, rows)
     found = solve_forward(

@@ -67,7 +67,7 @@ def search_and_hold(
     found, model = list(search.found), search.fit
     structure = structure_left(problem, model)
     withdrawn: list[Withdrawn] = []
-    while found and structure.is_present:
+    while found and structure.may_bend:
         loose = (
             _small(searcher, model, found)
             or _implausible(model, found)

@@ -12,7 +12,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.physical import straightened_m, wind_force_N
-from designer.effects.effect import Readings, Setting, as_built
+from designer.effects.effect import Readings, Setting
 from designer.machine import Machine
 from designer.measured_data import Measured, Noise
 from designer.statics.internal import solve_internal
@@ -27,8 +27,8 @@ class InternalForces:
 
     Parameters
     ----------
-    machine : Machine
-        As declared.
+    built : callable
+        The machine with given effects.
     measured : Measured
         The data.
     shown : callable
@@ -37,11 +37,11 @@ class InternalForces:
 
     def __init__(
         self,
-        machine: Machine,
+        built: Callable[[Sequence[Setting]], Machine],
         measured: Measured,
         shown: Callable[[Readings, Sequence[Setting]], Readings],
     ) -> None:
-        self._machine = machine
+        self._built = built
         self._measured = measured
         self._shown = shown
         self._guesses: dict[tuple[object, ...], _Guess] = {}
@@ -70,7 +70,7 @@ class InternalForces:
 
         What they add depends on the internal forces in turn, though little.
         """
-        machine = as_built(self._machine, settings)
+        machine = self._built(settings)
         shape = (2, *self._measured.length_m.shape)
         guess = self._guesses.get(_kind(settings, noise), _Guess(np.zeros(shape)))
         for _ in range(_MOST_TURNS):

@@ -10,6 +10,8 @@ import numpy as np
 from designer.diagnosis.internal_forces import InternalForces
 from designer.diagnosis.physical import readings_of
 from designer.effects.effect import Readings, Setting, as_built
+from designer.effects.known import KnownEffects
+from designer.effects.registry import SHIPPED
 from designer.machine import Machine
 from designer.measured_data import EVEN, Measured, Noise
 
@@ -25,19 +27,40 @@ class Predictor:
     Parameters
     ----------
     machine : Machine
-        As declared.
+        As drawn, without any effect.
     measured : Measured
         The data.
     fixed : sequence of Setting
-        Effects on readings that are declared: they act before all others.
+        Effects that are declared; with those that are tried they act in the order of ``known``.
+    known : KnownEffects
+        All effects, in the order in which they act.
     """
 
-    def __init__(self, machine: Machine, measured: Measured, fixed: Sequence[Setting] = ()) -> None:
+    def __init__(
+        self,
+        machine: Machine,
+        measured: Measured,
+        fixed: Sequence[Setting] = (),
+        known: KnownEffects = SHIPPED,
+    ) -> None:
         self._machine = machine
         self._measured = measured
         self._fixed = tuple(fixed)
-        self._forces = InternalForces(machine, measured, self._shown)
+        self._effects = known
+        self._forces = InternalForces(self.built, measured, self._shown)
         self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
+
+    def at(self, measured: Measured) -> Predictor:
+        """Return the same model for other rows; for the same rows, one without a memory."""
+        shown = [s for s in self._fixed if not (measured.settled and "motion" in s.effect.needs)]
+        return Predictor(self._machine, measured, shown, self._effects)
+
+    def built(self, settings: Sequence[Setting]) -> Machine:
+        """Return the machine with the declared effects and these."""
+        return as_built(self._machine, self._all(settings))
+
+    def _all(self, settings: Sequence[Setting]) -> list[Setting]:
+        return self._effects.in_order((*self._fixed, *settings))
 
     @property
     def spare_cables(self) -> int:
@@ -46,7 +69,7 @@ class Predictor:
         return max(robot.n_cables - robot.degrees_of_freedom, 0)
 
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
-        """Return what the sensors would show with these effects, applied in their order."""
+        """Return what the sensors would show with these effects."""
         if self.spare_cables:
             return self._remembered(settings, noise, self._forces.readings)[1]
         bodily = [s for s in settings if s.effect.on_machine is not None]
@@ -60,7 +83,7 @@ class Predictor:
         """
         if not self.spare_cables or np.isfinite(self._measured.tension_N).any():
             return self(settings, noise)
-        machine = as_built(self._machine, settings)
+        machine = self.built(settings)
         return self._shown(readings_of(machine, self._measured.poses, self._measured), settings)
 
     def true_readings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
@@ -69,7 +92,7 @@ class Predictor:
         if self.spare_cables:
             true = self._remembered(settings, noise, self._forces.readings)[0]
         else:
-            limp = replace(as_built(self._machine, settings), flexural_rigidity_N_m2=0.0)
+            limp = replace(self.built(settings), flexural_rigidity_N_m2=0.0)
             true = readings_of(limp, self._measured.poses, self._measured)
         return Readings(
             self._measured.length_m - shown.length_m + true.length_m,
@@ -90,7 +113,7 @@ class Predictor:
         return self._known[key]
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        machine = as_built(self._machine, settings)
+        machine = self.built(settings)
         readings = readings_of(machine, self._measured.poses, self._measured)
         return readings, readings
 
@@ -102,7 +125,7 @@ class Predictor:
         return True
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:
-        for setting in (*self._fixed, *settings):
+        for setting in self._all(settings):
             if setting.effect.on_readings is not None:
                 readings = setting.effect.on_readings(readings, setting.values, self._measured)
         return readings

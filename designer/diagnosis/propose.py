@@ -11,7 +11,6 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.result import Proposal
 from designer.effects.effect import Setting
-from designer.machine import Machine
 from designer.measured_data import Measured, Noise
 from designer.region import PointList, Region
 from designer.robot import Poses
@@ -24,7 +23,7 @@ _APART = 0.15
 
 
 def propose(
-    machine: Machine,
+    model: Predictor,
     measured: Measured,
     noise: Noise,
     region: Region | None,
@@ -36,7 +35,7 @@ def propose(
 
     Parameters
     ----------
-    machine, measured, noise
+    model, measured, noise
         As in the diagnosis; the surroundings of a new pose are taken from the middle row.
     region : Region or None
         Where to look; the box of the measured poses if there is none.
@@ -47,8 +46,8 @@ def propose(
     """
     positions = _candidates(measured, region)
     there = _measured_at(measured, positions)
-    predict = Predictor(machine, there)
-    one, other = predict(found, noise), predict(rival, noise)
+    predict = model.at(there)
+    one, other = (predict(_at_rest(settings), noise) for settings in (found, rival))
     gap = np.hstack(
         [
             (one.length_m - other.length_m) / noise.length_m,
@@ -89,6 +88,7 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
 
     return replace(
         measured,
+        settled=True,
         poses=Poses(positions, turned),
         length_m=np.full((count, n), np.nan),
         tension_N=np.full((count, n), np.nan),
@@ -98,6 +98,11 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
         covariates={},
         row_numbers=np.arange(1, count + 1),
     )
+
+
+def _at_rest(settings: Sequence[Setting]) -> list[Setting]:
+    """Return what shows in a pose at rest."""
+    return [s for s in settings if "motion" not in s.effect.needs]
 
 
 def _measures(measured: Measured) -> BoolArray:

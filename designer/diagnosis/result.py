@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.search import Step
@@ -13,6 +15,9 @@ from designer.effects.effect import Effect, Readings, Setting
 from designer.machine import Machine
 from designer.measured_data import Measured, Noise
 from designer.study import Study
+
+if TYPE_CHECKING:
+    from designer.diagnosis.whereabouts import Whereabouts
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +212,8 @@ class Choice:
         Of the product; NaN where none holds.
     optimum_m, optimum_tension_N : float
         Of the config's continuous family; NaN where it has no finite cable.
+    utilisation : float
+        Largest over allowable tension of the product; NaN where none holds.
     """
 
     grade: str | None
@@ -215,6 +222,23 @@ class Choice:
     max_tension_N: float
     optimum_m: float
     optimum_tension_N: float
+    utilisation: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """What a given rope meets in the workspace: one that was chosen before, or hangs there now.
+
+    Parameters
+    ----------
+    max_tension_N : float
+        Its largest tension [N]; inf where it cannot hold a pose at all.
+    utilisation : float
+        Largest over allowable tension.
+    """
+
+    max_tension_N: float
+    utilisation: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -258,6 +282,12 @@ class Diagnosis:
         held-out row has all lengths.
     design_before, design_after : Choice or None
         Where the study has a workspace and a selection.
+    left_in : Whereabouts or None
+        The reading and the rows in which structure is left; None where none is.
+    kept : Use or None
+        What the cable chosen before would meet by the model after, where another is chosen.
+    mounted_before, mounted_after : Use or None
+        What the cable on the machine meets, where its breaking load is given as well.
     """
 
     study: Study
@@ -284,6 +314,10 @@ class Diagnosis:
     foretold_after: Foretold | None = None
     design_before: Choice | None = None
     design_after: Choice | None = None
+    left_in: Whereabouts | None = None
+    kept: Use | None = None
+    mounted_before: Use | None = None
+    mounted_after: Use | None = None
 
     @property
     def final(self) -> Stage:

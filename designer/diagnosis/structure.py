@@ -36,6 +36,11 @@ class Carrier:
     fraction_of_variance: float
     chance: float
 
+    @property
+    def is_speed(self) -> bool:
+        """Whether it is a speed, which averages to nothing and so bends no constant to fit it."""
+        return self.name.startswith("speed_")
+
 
 @dataclass(frozen=True, slots=True)
 class Structure:
@@ -57,12 +62,17 @@ class Structure:
         """Whether the strongest covariate explains more than accident would."""
         return bool(self.carriers) and self.carriers[0].chance < SIGNIFICANCE
 
+    @property
+    def may_bend(self) -> bool:
+        """Whether it is such that effects of the list may be bent to fit it."""
+        return any(c.chance < SIGNIFICANCE and not c.is_speed for c in self.carriers)
+
 
 def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArray]:
     """Return everything that a residual may go with, by name (n_rows,).
 
-    Pose, predicted lengths and tensions, direction of motion, order, surroundings, and every
-    unnamed column.
+    Pose, predicted lengths and tensions, direction of motion, in a motion also speeds, order,
+    surroundings, and every unnamed column.
     """
     position = measured.poses.position_m
     found = {f"{axis}_m": position[:, k] for k, axis in enumerate("xyz")}
@@ -74,7 +84,10 @@ def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArr
         found["time_s"] = measured.time_s
         step = np.linalg.norm(np.gradient(position, axis=0), axis=1)
         if not measured.settled:
-            found["speed_m_per_s"] = step / np.maximum(np.gradient(measured.time_s), 1e-9)
+            passed_s = np.maximum(np.gradient(measured.time_s), 1e-9)
+            found["speed_m_per_s"] = step / passed_s
+            for k, length_m in enumerate(predicted.length_m.T, start=1):
+                found[f"speed_{k}_m_per_s"] = np.gradient(length_m) / passed_s
     else:
         found["row"] = np.arange(measured.n_rows, dtype=np.float64)
     if measured.temperature_C is not None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from designer.effect_names import EffectName
-from designer.effects.effect import Effect
+from designer.effects.effect import Effect, Setting
 from designer.effects.kind import EffectKind
 from designer.machine import Machine
 
@@ -40,6 +40,11 @@ class KnownEffects:
             If an effect of a plugin fails at this machine.
         """
         return [effect for kind in self.kinds for effect in kind.build(machine)]
+
+    def in_order(self, settings: Iterable[Setting]) -> list[Setting]:
+        """Return settings in the order in which they act: a model is one, however it was found."""
+        place = {effect_id: k for k, effect_id in enumerate(self.names)}
+        return sorted(settings, key=lambda s: (place[s.effect.id], s.effect.cable or 0))
 
     def without(self, effect_id: str, problem: str) -> KnownEffects:
         """Return all effects but one, with the reason why it is left out."""

@@ -136,10 +136,13 @@ def _set_half_a_wind_aside(found: Assigned) -> None:
 
 def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
     lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
-    yield from _missing_of(found, POSITION)
-    if not study.robot.is_point_mass:
-        yield from _missing_rotation(found)
     known = {*found.ours, *found.awaited}
+    if known.isdisjoint(POSITION):
+        yield _no_pose(found)
+    else:
+        yield from _missing_of(found, POSITION)
+        if not study.robot.is_point_mass:
+            yield from _missing_rotation(found)
     if known.isdisjoint(lengths + tensions):
         expected = f"{lengths[0]} … {lengths[-1]}, or {tensions[0]} … {tensions[-1]}, or both"
         problem = "there is neither a column for lengths nor one for tensions"
@@ -149,6 +152,16 @@ def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
     for names in (lengths, tensions):
         if not known.isdisjoint(names):
             yield from _missing_of(found, names)
+
+
+def _no_pose(found: Assigned) -> Fault:
+    problem = (
+        "there is no measured pose; the diagnosis holds readings against the pose of each row, "
+        "which is indispensable and has to be measured by other means than the winches"
+    )
+    expected = f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}"
+    hint = did_you_mean(POSITION[0], found.covariates)
+    return found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
 
 
 def _missing_rotation(found: Assigned) -> Iterator[Fault]:

@@ -49,7 +49,8 @@ def read_measured(study: Study) -> Measured:
     poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
     _refuse(_one_pose(table, poses))
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
-    is_homed = "length_offset" not in measurements.unknown
+    declared = {effect.id for effect in study.effects}
+    is_homed = "length_offset" not in declared.union(measurements.unknown)
     _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
     _refuse(sense_faults(study.robot, measured, table, is_homed=is_homed))
     return measured
@@ -132,6 +133,7 @@ def _measured(
         covariates=covariates(found, kept, notes),
         row_numbers=row_numbers,
         notes=tuple(notes),
+        sha256=found.table.sha256,
     )
 
 

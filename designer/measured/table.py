@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import BinaryIO, NoReturn
 
@@ -69,12 +70,15 @@ class Table:
         Line of each row in the file, from 1.
     faults : tuple of Fault
         Rows of another width, which are left out, and names that stand twice.
+    sha256 : str
+        Digest of the file's bytes.
     """
 
     name: str
     columns: tuple[RawColumn, ...]
     lines: IntArray
     faults: tuple[Fault, ...] = ()
+    sha256: str = ""
 
     @property
     def n_rows(self) -> int:
@@ -96,18 +100,19 @@ def read_table(file: BinaryIO, name: str) -> Table:
     InputError
         If it is too large, is no text in UTF-8, is empty, has no head, or is no CSV.
     """
-    rows = _rows(_lines(file, name), name)
+    digest = hashlib.sha256()
+    rows = _rows(_lines(file, name, digest.update), name)
     body = _Body(name, _head(rows, name))
     while block := list(islice(rows, _ROWS_AT_ONCE)):
         body.add(block)
-    return body.table()
+    return replace(body.table(), sha256=digest.hexdigest())
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
     raise InputError([Fault(name, line, "", problem, expected)])
 
 
-def _lines(file: BinaryIO, name: str) -> Iterator[str]:
+def _lines(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Iterator[str]:
     """Yield the lines one by one, so that neither size nor an endless file fills the memory."""
     size = 0
     for number, raw in enumerate(iter(lambda: file.readline(_LONGEST_LINE_BYTES), b""), start=1):
@@ -115,6 +120,7 @@ def _lines(file: BinaryIO, name: str) -> Iterator[str]:
         if size > LARGEST_FILE_BYTES:
             limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
             _refuse(name, None, "the file is too large", limit)
+        see(raw)
         yield _decoded(raw, name, number)
 
 

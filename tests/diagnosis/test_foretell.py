@@ -36,8 +36,8 @@ def test_lengths_without_noise_lead_to_the_pose(robot, tmp_path) -> None:
     effects = {effect.key: effect for effect in case.candidates}
     settings = [Setting(effects[key], values) for key, values in truth.items()]
     heldout = heldout_rows(48)
-    blind = foretell(problem, case.machine, (), heldout)
-    found = foretell(problem, case.machine, settings, heldout)
+    blind = foretell(problem, (), heldout)
+    found = foretell(problem, settings, heldout)
     assert found.n_rows == found.n_solved == heldout.sum()
     # The table has six decimals of a metre.
     assert found.position_m.value < 1e-5
@@ -52,12 +52,12 @@ def test_a_length_that_stands_off_is_left_out(tmp_path) -> None:
     heldout = heldout_rows(48)
     row = int(np.flatnonzero(heldout)[2])
     sound = heldout & with_sound_lengths(problem, ())
-    clean = foretell(problem, case.machine, (), sound)
+    clean = foretell(problem, (), sound)
     length = problem.measured.length_m.copy()
     length[row, 0] += 1.0
     measured = replace(problem.measured, length_m=length)
     spoilt = Problem(measured, Predictor(case.machine, measured), problem.noise)
-    wild = foretell(spoilt, case.machine, (), heldout & with_sound_lengths(spoilt, ()))
+    wild = foretell(spoilt, (), heldout & with_sound_lengths(spoilt, ()))
     assert wild.n_rows == clean.n_rows - 1
     assert wild.position_m.value < 1.5 * clean.position_m.value
 
@@ -71,4 +71,4 @@ def test_without_lengths_there_is_nothing_to_foretell(tmp_path) -> None:
     problem = Problem(measured, Predictor(case.machine, measured), noise)
     sound = with_sound_lengths(problem, ())
     assert not sound.any()
-    assert foretell(problem, case.machine, (), sound) is None
+    assert foretell(problem, (), sound) is None

@@ -81,6 +81,14 @@ def test_missing_columns_are_all_named(log: Log) -> None:
     assert faults[0].expected.endswith("did you mean 'Y_m'?")
 
 
+def test_a_log_without_any_pose_is_told_in_one_line(body: Log) -> None:
+    body.drop("x_m", "y_m", "z_m")
+    fault = only(body.faults())
+    assert fault.field == "x_m, y_m, z_m"
+    assert "there is no measured pose" in fault.problem
+    assert "indispensable" in fault.problem
+
+
 def test_neither_lengths_nor_tensions(log: Log) -> None:
     log.drop(*log.names[4:])
     fault = only(log.faults())

@@ -16,7 +16,8 @@ from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis.result import Choice, Diagnosis, Proposal, Withdrawn
+from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Proposal, Use, Withdrawn
+from designer.diagnosis.search import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
 from designer.measured.read import read_measured
@@ -191,12 +192,27 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
 def test_design_says_what_changes_and_what_does_not_reach_it(
     diagnoses: dict[str, Diagnosis],
 ) -> None:
-    before = Choice("grade", "5 mm", 0.005, 3500.0, 0.0050, 3520.0)
-    after = Choice("grade", "6 mm", 0.006, 3640.0, 0.0055, 3872.0)
-    changed = dataclasses.replace(diagnoses["pulley"], design_before=before, design_after=after)
+    before = Choice("grade", "5 mm", 0.005, 3500.0, 0.0050, 3520.0, 0.923)
+    after = Choice("grade", "6 mm", 0.006, 3640.0, 0.0055, 3872.0, 0.881)
+    changed = dataclasses.replace(
+        diagnoses["pulley"], design_before=before, design_after=after, kept=Use(3640.0, 1.04)
+    )
     design = context_of(changed).first_page.design
     assert design.sentence == "The choice changes from grade, 5 mm to grade, 6 mm."
-    assert "(+4.0 %)" in design.numbers.replace("\xa0", " ")
+    numbers = design.numbers.replace("\xa0", " ")
+    assert "Its utilisation is 88.1 %." in numbers
+    assert "The one chosen before would be used to 104.0 %." in numbers
+    assert "(+4.0 %)" in numbers
+    assert "no minimum_breaking_load" in design.mounted
+    same = dataclasses.replace(before, max_tension_N=3710.0, utilisation=0.979)
+    stays = dataclasses.replace(
+        diagnoses["pulley"], design_before=before, design_after=same,
+        mounted_before=Use(3500.0, 0.96), mounted_after=Use(3710.0, 1.02),
+    )  # fmt: skip
+    text = visible(render_html(context_of(stays), DIAGNOSIS))
+    assert "Its utilisation goes from 92.3 % to 97.9 %." in text
+    assert "The utilisation of the rope on the machine goes from 96.0 % to 102.0 %." in text
+    assert "That rope is overloaded." in text
     kept = dataclasses.replace(diagnoses["nothing"], design_before=before, design_after=before)
     assert "stays as it is: grade, 5 mm" in context_of(kept).first_page.design.sentence
 
@@ -217,6 +233,41 @@ def test_a_robot_with_too_few_cables_is_told(
     other = dataclasses.replace(diagnoses["nothing"], study=dataclasses.replace(study, robot=robot))
     sentence = design_section(other).sentence
     assert sentence.startswith(start)
+
+
+def test_moved_exit_points_are_summed_up(diagnoses: dict[str, Diagnosis]) -> None:
+    found = diagnoses["pulley"]
+    points = [e for e in SHIPPED.of(found.machine) if e.id == "anchor_offset"]
+    findings = tuple(
+        Finding(e, {name: Estimate(size, 1e-3) for name in ("x_m", "y_m", "z_m")}, (), gain, ())
+        for e, size, gain in zip(points[::-1], (0.03, 0.02), (0.5, 0.2), strict=False)
+    )
+    page = context_of(dataclasses.replace(found, findings=findings)).first_page
+    (statement,) = page.findings
+    assert statement.title.replace("\xa0", " ") == (
+        "The exit points of cables 2 and 3 are not where the drawing has them, by 34.6 to 52 mm"
+    )
+    assert statement.text.replace("\xa0", " ").startswith("cable 2: 34.6")
+    significance = next(one for one in page.sureness if one.title.startswith("Significance"))
+    assert significance.title == "Significance of anchor_offset of cables 2 and 3"
+    assert "1.25 to 2.00 times as large" in significance.text
+
+
+def test_the_chance_in_the_text_is_the_one_in_the_search(
+    pages: Callable[[str], str], diagnoses: dict[str, Diagnosis]
+) -> None:
+    text = visible(pages("pulley"))
+    assert f"with a chance below {100.0 * SIGNIFICANCE:.2f} %" in text
+    assert diagnoses["pulley"].measured.sha256 in text
+
+
+def test_where_structure_is_left_is_told(diagnoses: dict[str, Diagnosis]) -> None:
+    place = diagnoses["drift"].left_in
+    assert place is not None
+    assert place.reading.startswith("tension")
+    text = context_of(diagnoses["drift"]).first_page.verdict.text
+    assert f"({place.reading}, rows " in text
+    assert diagnoses["pulley"].left_in is None
 
 
 def test_what_was_added_and_is_not_found_is_told(diagnoses: dict[str, Diagnosis]) -> None:

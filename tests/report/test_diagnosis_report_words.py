@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from designer.diagnosis.result import Estimate
+from designer.diagnosis.whereabouts import in_runs, strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter
 from designer.report.diagnosis_sections import words
-from designer.report.figures.diagnosis_carriers import running_median, strongest_channel
+from designer.report.figures.diagnosis_carriers import running_median
 from designer.report.figures.diagnosis_style import MOST_POINTS, thinned, window
 
 
@@ -53,7 +54,12 @@ def test_label_drops_the_unit() -> None:
         ("time_s", "time", "time [s]"),
         ("tension_12_N", "tension of cable 12", "tension of cable 12 [N]"),
         ("direction_3", "direction of cable 3", "direction of cable 3"),
-        ("load_on_hook_N", "load_on_hook_N", "load_on_hook_N"),
+        ("load_on_hook_N", "load_on_hook_N", "load_on_hook [N]"),
+        ("temperature_C", "temperature", "temperature [°C]"),
+        ("wind_x_m_per_s", "wind along x", "wind along x [m/s]"),
+        ("speed_m_per_s", "speed of the platform", "speed of the platform [m/s]"),
+        ("speed_2_m_per_s", "speed of cable 2", "speed of cable 2 [m/s]"),
+        ("battery", "battery", "battery"),
     ],
 )
 def test_covariates_of_every_table_have_words_and_others_their_name(
@@ -86,6 +92,10 @@ def test_strongest_channel_and_its_trend() -> None:
     residual[:, 1] = np.nan
     residual[:, 2] += 5.0 * covariate
     assert strongest_channel(residual, covariate) == 2
+    place = whereabouts(residual, covariate, np.arange(11, 211))
+    assert place.reading == "tension 1"
+    assert {11, 12, 209, 210} & set(place.rows)
+    assert abs(place.size) == pytest.approx(5.0, abs=0.5)
     x, trend = running_median(covariate, residual[:, 2])
     assert np.max(np.abs(trend - 5.0 * x)) < 1.5
     x, trend = running_median(np.sign(covariate), residual[:, 2])
@@ -100,3 +110,7 @@ def test_long_logs_are_thinned_and_wild_readings_do_not_flatten() -> None:
     values[0] = 1e6
     low, high = window(values)
     assert -10.0 < low < -3.0 < 3.0 < high < 10.0
+
+
+def test_neighbouring_rows_are_drawn_together() -> None:
+    assert in_runs([3, 7, 8, 9, 12]) == ["3", "7 to 9", "12"]

@@ -19,7 +19,10 @@ def provenance_facts(diagnosis: Diagnosis, provenance: Provenance) -> tuple[Fact
         Fact("SHA-256 of the configuration", study.source.sha256),
     ]
     if study.measurements is not None:
-        facts.append(Fact("Measured data", study.measurements.file.name))
+        facts += [
+            Fact("Measured data", study.measurements.file.name),
+            Fact("SHA-256 of the data", diagnosis.measured.sha256),
+        ]
     facts += [
         Fact("Computed", created(provenance)),
         Fact("On", provenance.system),

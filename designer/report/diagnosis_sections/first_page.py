@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from designer.diagnosis.result import Diagnosis, Error, Finding
+from designer.diagnosis.whereabouts import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
 from designer.report.diagnosis_sections.design import DesignSection, design_section
@@ -14,6 +15,7 @@ from designer.report.diagnosis_sections.sureness import sureness
 from designer.report.parts import Column, Picture, Row, Statement, Table
 
 _ABOUT_AS_FAR = 0.9
+_MOST_STATEMENTS = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +45,17 @@ class FirstPage:
     picture: Picture | None
     design: DesignSection
 
+    @property
+    def is_full(self) -> bool:
+        """Whether the statements leave the picture no room on one sheet; it comes again later."""
+        return len(self.findings) + len(self.sureness) > _MOST_STATEMENTS
+
 
 def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
     """Return the first page."""
     return FirstPage(
         verdict=verdict(diagnosis),
-        findings=tuple(_finding(finding) for finding in diagnosis.findings),
+        findings=tuple(_finding(group) for group in words.grouped(diagnosis.findings)),
         sureness=sureness(diagnosis),
         errors=_errors(diagnosis),
         picture=picture,
@@ -58,7 +65,7 @@ def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
 
 def verdict(diagnosis: Diagnosis) -> Statement:
     """Return the answer: what was found, that there is nothing to find, or what is unexplained."""
-    found = [words.plain_finding(finding) for finding in diagnosis.findings]
+    found = [words.plain_group(group) for group in words.grouped(diagnosis.findings)]
     left = _left(diagnosis)
     if found:
         text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
@@ -81,9 +88,12 @@ def _left(diagnosis: Diagnosis) -> str:
         return ""
     carrier = diagnosis.structure_after.carriers[0]
     what = "What is left" if diagnosis.findings else "The residual"
+    place = diagnosis.left_in
+    where = f" ({place.reading}, rows {fmt.listing(in_runs(place.rows))})" if place else ""
     return (
         f"{what} goes with {words.covariate(carrier.name)}, which accounts for "
-        f"{fmt.percent(carrier.fraction_of_variance, 2)} of the variance where it shows most."
+        f"{fmt.percent(carrier.fraction_of_variance, 2)} of the variance where it shows most"
+        f"{where}."
     )
 
 
@@ -110,12 +120,28 @@ def _foretold(diagnosis: Diagnosis) -> str:
     return f" By the lengths alone the platform would be {first} off; now it is {last}."
 
 
-def _finding(finding: Finding) -> Statement:
-    title = words.capital(words.plain_finding(finding))
-    text = f"{words.values(finding.effect, finding.parameters)}."
-    if finding.rivals:
-        text += f" Or, as far as these data tell: {fmt.listing(finding.rivals, 'or')}."
-    return Statement(title, text, "doubt" if finding.rivals or finding.warnings else "")
+def _finding(group: Sequence[Finding]) -> Statement:
+    title = words.capital(words.plain_group(group))
+    if len(group) == 1:
+        text = f"{words.values(group[0].effect, group[0].parameters)}."
+    else:
+        text = "; ".join(_of_one_cable(finding) for finding in group) + "."
+    rivals = dict.fromkeys(rival for finding in group for rival in finding.rivals)
+    if rivals:
+        text += f" Or, as far as these data tell: {fmt.listing(rivals, 'or')}."
+    is_doubtful = rivals or any(finding.warnings for finding in group)
+    return Statement(title, text, "doubt" if is_doubtful else "")
+
+
+def _of_one_cable(finding: Finding) -> str:
+    """Return the values of one cable among several: of a point that moved, by how much."""
+    is_point = finding.effect.id == "anchor_offset"
+    values = (
+        fmt.millimetres(words.moved_m(finding))
+        if is_point
+        else words.values(finding.effect, finding.parameters)
+    )
+    return f"cable {finding.effect.cable}: {values}"
 
 
 def _errors(diagnosis: Diagnosis) -> Table:

@@ -53,7 +53,8 @@ def _structure(diagnosis: Diagnosis) -> Table | None:
     return Table.of(
         "What the residual goes with: share of the variance that a parabola in each covariate "
         "explains where it explains most, and the chance that the strongest of all would look so "
-        f"by accident, by permutation.{rest}",
+        f"by accident, by permutation; below {words.chance(SIGNIFICANCE)} it counts as structure."
+        f"{rest}",
         tuple(columns),
         *(_row(name, tuple(stages.values())) for name in shown),
     )

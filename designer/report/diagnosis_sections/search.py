@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from designer.diagnosis.result import Diagnosis, Estimate
-from designer.diagnosis.search import Step, Trial
+from designer.diagnosis.search import SIGNIFICANCE, Step, Trial
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
 from designer.report.parts import Column, Group, Row, Table
@@ -21,9 +21,12 @@ class SearchSection:
     ----------
     table : Table
         The best candidates of each round, and what was added.
+    significance : str
+        Chance below which a gain is no accident.
     """
 
     table: Table
+    significance: str
 
 
 def search_section(diagnosis: Diagnosis) -> SearchSection:
@@ -37,7 +40,7 @@ def search_section(diagnosis: Diagnosis) -> SearchSection:
         Column("Its values", is_number=False),
     )
     caption = f"Each round: the {_MOST} best candidates in addition to what was found before."
-    return SearchSection(Table(caption, columns, groups))
+    return SearchSection(Table(caption, columns, groups), words.chance(SIGNIFICANCE))
 
 
 def _group(diagnosis: Diagnosis, number: int, step: Step) -> Group:

@@ -30,8 +30,8 @@ def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
 
 
 def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
-    for finding in diagnosis.findings:
-        yield _significance(diagnosis, finding)
+    for group in words.grouped(diagnosis.findings):
+        yield _significance(diagnosis, group)
     yield from _without_rivals([f for f in diagnosis.findings if not f.rivals])
     for finding in diagnosis.findings:
         if finding.rivals:
@@ -58,25 +58,26 @@ def withdrawal(gone: Withdrawn) -> str:
     )
 
 
-def _significance(diagnosis: Diagnosis, finding: Finding) -> Statement:
-    trial = trial_of(diagnosis, finding)
-    accident = (
-        "It took the place of another effect during the search."
-        if trial is None
-        else f"The chance of such a gain by accident is {words.chance(trial.chance)}."
-    )
+def _significance(diagnosis: Diagnosis, group: Sequence[Finding]) -> Statement:
+    trials = [trial_of(diagnosis, finding) for finding in group]
+    chances = [trial.chance for trial in trials if trial is not None]
+    accident = "It took the place of another effect during the search."
+    if chances:
+        each = "" if len(group) == 1 else " at most"
+        accident = f"The chance of such a gain by accident is{each} {words.chance(max(chances))}."
+    gains = sorted(f.heldout_gain for f in group if math.isfinite(f.heldout_gain))
+    times = [fmt.number(1.0 / max(1.0 - gain, 1e-9), 3) for gain in gains]
     gain = ""
-    if math.isfinite(finding.heldout_gain):
-        gain = (
-            f" Without it, the mean square on held-out rows would be "
-            f"{fmt.number(1.0 / max(1.0 - finding.heldout_gain, 1e-9), 3)} times as large."
-        )
-    return Statement(f"Significance of {finding.effect.key}", accident + gain)
+    if times:
+        without = "Without it" if len(group) == 1 else "Without one of them"
+        span = " to ".join(dict.fromkeys((times[0], times[-1])))
+        gain = f" {without}, the mean square on held-out rows would be {span} times as large."
+    return Statement(f"Significance of {words.key_of(group)}", accident + gain)
 
 
 def _without_rivals(findings: Sequence[Finding]) -> Iterator[Statement]:
     if findings:
-        keys = fmt.listing((f.effect.key for f in findings), "or")
+        keys = fmt.listing((words.key_of(group) for group in words.grouped(findings)), "or")
         text = f"No other single effect explains the data as well in place of {keys}."
         yield Statement("No rivals", text, "good")
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.structure import SIGNIFICANCE
+from designer.diagnosis.whereabouts import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
 from designer.report.parts import Fact, Picture, Statement
@@ -42,7 +43,7 @@ def unexplained_section(diagnosis: Diagnosis, picture: Picture | None) -> Unexpl
         statement=Statement(
             f"Goes with {words.covariate(carriers[0].name)}",
             "No effect that the program knows accounts for it. Covariates that vary together share "
-            "the blame: the cause need not be the first of them.",
+            f"the blame: the cause need not be the first of them.{_where(diagnosis)}",
             "bad",
         ),
         facts=tuple(
@@ -55,6 +56,17 @@ def unexplained_section(diagnosis: Diagnosis, picture: Picture | None) -> Unexpl
         ),
         picture=picture,
         correction=_correction(diagnosis),
+    )
+
+
+def _where(diagnosis: Diagnosis) -> str:
+    place = diagnosis.left_in
+    if place is None:
+        return ""
+    return (
+        f" It shows most in {place.reading}, and is farthest off, by up to "
+        f"{fmt.number(abs(place.size), 2)} times the noise, at rows "
+        f"{fmt.listing(in_runs(place.rows))}."
     )
 
 

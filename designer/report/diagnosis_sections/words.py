@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from designer.diagnosis.result import Estimate, Finding
 from designer.effects.effect import Effect, Parameter
@@ -12,14 +12,31 @@ from designer.report import format as fmt
 
 NO_BREAK = "\u00a0"
 _UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
-_PLACE_OR_TIME = re.compile(r"(x|y|z|time)_(m|s)")
-_OF_A_CABLE = re.compile(r"(length|tension|direction)_(\d+)(?:_(m|N))?")
+_OF_A_CABLE = re.compile(r"(length|tension|direction|speed)_(\d+)(?:_(m|N|m_per_s))?")
+_OURS = {
+    **{f"{axis}_m": (axis, "m") for axis in "xyz"},
+    **{f"wind_{axis}_m_per_s": (f"wind along {axis}", "m/s") for axis in "xyz"},
+    "time_s": ("time", "s"),
+    "temperature_C": ("temperature", "°C"),
+    "speed_m_per_s": ("speed of the platform", "m/s"),
+    "row": ("row", ""),
+}
+_SUFFIX = re.compile(
+    r"(.+?)_((?:m|rad|deg)_per_s2?|mm|m|kN|N|kg|ms|s|degC|deg|rad|mV|V|mA|kW|Hz|rpm|bar|kPa|hPa|Pa|"
+    r"percent)"
+)
+"""Not the letters that number sensors as well: A, C, K."""
+_SPELT = {"degC": "°C", "deg": "°", "percent": "%"}
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NEGLIGIBLE = 1e-12
 _DIRECTIONS = {
     "elastic_modulus": ("scale", "the cable", "stiffer", "softer"),
     "linear_mass": ("scale", "the cable", "heavier", "lighter"),
     "platform_mass": ("offset_kg", "the platform with its payload", "heavier", "lighter"),
+}
+_OF_SEVERAL = {
+    "anchor_offset": "the exit points of {} are not where the drawing has them",
+    "tension_gain": "the load cells of {} have wrong gains",
 }
 _SIGNED = {
     "clock_offset": (
@@ -40,6 +57,40 @@ def plain(effect: Effect, values: Mapping[str, float]) -> str:
     name, what, more, less = _DIRECTIONS[effect.id]
     neutral = effect.neutral[name]
     return f"{what} is {more if values[name] > neutral else less} than declared"
+
+
+def grouped(findings: Iterable[Finding]) -> list[tuple[Finding, ...]]:
+    """Return findings with those of one kind drawn together, by cable."""
+    kinds: dict[str, list[Finding]] = {}
+    for finding in findings:
+        kinds.setdefault(finding.effect.id, []).append(finding)
+    return [tuple(sorted(kind, key=lambda f: f.effect.cable or 0)) for kind in kinds.values()]
+
+
+def plain_group(group: Sequence[Finding]) -> str:
+    """Return what was found of one kind, in a few words; how far, where points have moved."""
+    first = group[0].effect
+    if len(group) == 1 or first.id not in _OF_SEVERAL:
+        return fmt.listing(plain_finding(finding) for finding in group)
+    text = _OF_SEVERAL[first.id].format(_cables(group))
+    if first.id == "anchor_offset":
+        moved = [moved_m(finding) for finding in group]
+        text += f", by {_short(1e3 * min(moved))} to {_short(1e3 * max(moved))}{NO_BREAK}mm"
+    return text
+
+
+def key_of(group: Sequence[Finding]) -> str:
+    """Return id and cables of findings of one kind."""
+    return group[0].effect.key if len(group) == 1 else f"{group[0].effect.id} of {_cables(group)}"
+
+
+def moved_m(finding: Finding) -> float:
+    """Return how far a point is off [m]."""
+    return math.hypot(*(estimate.value for estimate in finding.parameters.values()))
+
+
+def _cables(group: Sequence[Finding]) -> str:
+    return f"cables {fmt.listing(str(finding.effect.cable) for finding in group)}"
 
 
 def plain_finding(finding: Finding) -> str:
@@ -67,16 +118,19 @@ def covariate(name: str) -> str:
 
 
 def covariate_axis(name: str) -> str:
-    """Return a covariate with its unit, where it is one of those that every table has."""
+    """Return a covariate with its unit, where its name tells one."""
     text, unit = _covariate(name)
+    if text == name and (found := _SUFFIX.fullmatch(name)):
+        text = found[1]
+        unit = _SPELT.get(found[2], found[2].replace("deg_per", "°_per").replace("_per_", "/"))
     return f"{text} [{unit}]" if unit else text
 
 
 def _covariate(name: str) -> tuple[str, str]:
-    if found := _PLACE_OR_TIME.fullmatch(name):
-        return found[1], found[2]
+    if name in _OURS:
+        return _OURS[name]
     if found := _OF_A_CABLE.fullmatch(name):
-        return f"{found[1]} of cable {found[2]}", found[3] or ""
+        return f"{found[1]} of cable {found[2]}", (found[3] or "").replace("_per_", "/")
     return name, ""
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.whereabouts import strongest_channel
 from designer.report.diagnosis_sections import words
 from designer.report.figures import canvas, diagnosis_style, palette
 
@@ -18,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TITLE = "Residual against what it goes with most"
-_CLIP = 4.0
-_PANEL_MM, _LONE_MM = 36.0, 29.0  # so that a lone row finds room on the first page
+_PANEL_MM, _LONE_MM = 36.0, 25.0  # so that a lone row finds room on the first page
 _BINS = 12
+_FEW = 3
 
 Layout = Literal["stacked", "overlaid", "after"]
 
@@ -75,30 +76,9 @@ def _rows(diagnosis: Diagnosis, layout: Layout) -> list[list[_Layer]]:
     ]
 
 
-def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:
-    """Return the reading of whose variance a parabola in the covariate explains most."""
-    return int(np.nanargmax([_explained(column, covariate) for column in residual.T]))
-
-
-def _explained(column: FloatArray, covariate: FloatArray) -> float:
-    known = np.isfinite(column) & np.isfinite(covariate)
-    if known.sum() < 4:
-        return -1.0
-    middle = np.median(column[known])
-    spread = 1.4826 * np.median(np.abs(column[known] - middle))
-    y = np.clip(column[known], middle - _CLIP * spread, middle + _CLIP * spread)
-    y, x = y - y.mean(), covariate[known]
-    z = (x - x.mean()) / (x.std() + 1e-300)
-    powers = np.stack([np.ones_like(z), z, z**2], axis=1)
-    left = y - powers @ np.linalg.lstsq(powers, y, rcond=None)[0]
-    return float((y @ y - left @ left) / max(y @ y, 1e-300))
-
-
 def _panel(
     axes: Axes, diagnosis: Diagnosis, covariate: FloatArray, channel: int, layers: list[_Layer]
 ) -> None:
-    from matplotlib.ticker import MaxNLocator
-
     rows = diagnosis_style.thinned(len(covariate))
     held = diagnosis.heldout[rows]
     diagnosis_style.noise_band(axes)
@@ -114,7 +94,18 @@ def _panel(
     reading = channel_names(layers[0].residual.shape[1] // 2)[channel]
     stages = " and ".join(layer.name for layer in layers)
     axes.set_title(f"{reading}, {stages}" if diagnosis.findings else reading, loc="left")
-    axes.xaxis.set_major_locator(MaxNLocator(4))
+    _ticks(axes, covariate)
+
+
+def _ticks(axes: Axes, covariate: FloatArray) -> None:
+    """Keep labels apart: there are few of them, and a covariate of few values has one for each."""
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
+    values = np.unique(covariate[np.isfinite(covariate)])
+    few = len(values) <= _FEW
+    axes.xaxis.set_major_locator(
+        FixedLocator(values.tolist()) if few else MaxNLocator(3, min_n_ticks=2)
+    )
     axes.tick_params(labelsize=palette.FONT_POINTS - 1.0)
 
 
