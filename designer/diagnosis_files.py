@@ -33,6 +33,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     return {
         "format": DIAGNOSIS_FORMAT,
         "name": diagnosis.study.name,
+        "verdict": diagnosis.verdict.value,
         "rows": _rows(diagnosis),
         "effects": [_finding(finding) for finding in diagnosis.findings],
         "withdrawn": [_withdrawn(one) for one in diagnosis.withdrawn],
@@ -42,7 +43,9 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}
             for s in diagnosis.given
         ],
+        "not_plausible": list(diagnosis.doubts),
         "unexplained": _unexplained(diagnosis),
+        "scatter": {"present": diagnosis.is_scattered, **diagnosis.scatter},
         "error": _errors(diagnosis),
         "forward": {
             "before": _foretold(diagnosis.foretold_before),
@@ -124,8 +127,11 @@ def _withdrawn(withdrawn: Withdrawn) -> Json:
     return {
         "id": withdrawn.effect,
         "reason": withdrawn.reason.name.lower(),
+        "detail": withdrawn.detail,
         "covariate": withdrawn.covariate or None,
         "variation": _number(withdrawn.variation),
+        "heldout_gain": _number(withdrawn.gain),
+        "heldout_gain_std": _number(withdrawn.gain_std),
     }
 
 
@@ -137,6 +143,11 @@ def _unexplained(diagnosis: Diagnosis) -> Json:
         "strongest_covariate": strongest.name if strongest else None,
         "fraction_of_variance": _number(strongest.fraction_of_variance) if strongest else None,
         "chance": _number(strongest.chance) if strongest else None,
+        "events": [
+            {"text": e.text, "fraction_of_variance": _number(e.fraction_of_variance)}
+            for e in diagnosis.structure_after.events
+        ],
+        "rows_alike": diagnosis.structure_after.lasting.rows,
     }
 
 
@@ -169,6 +180,7 @@ def _finding(finding: Finding) -> Json:
         "rivals": list(dict.fromkeys(rival.split(" of cable ")[0] for rival in finding.rivals)),
         "rival_keys": list(finding.rivals),
         "heldout_gain": _number(finding.heldout_gain),
+        "heldout_gain_std": _number(finding.heldout_gain_std),
         "warnings": list(finding.warnings),
     }
 

@@ -238,10 +238,20 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
             table.add_row("  or", escape(", ".join(finding.rivals)))
     if not diagnosis.findings:
         table.add_row("effects", "none found")
-    if diagnosis.is_unexplained:
-        carrier = diagnosis.structure_after.carriers[0]
+    for event in diagnosis.structure_after.events:
+        table.add_row("[bold red]unexplained[/]", f"goes with {escape(event.text)}")
+    for carrier in diagnosis.structure_after.present[:1]:
         share = f"{carrier.fraction_of_variance:.0%} of its variance"
         table.add_row("[bold red]unexplained[/]", f"goes with {escape(carrier.name)}, {share}")
+    if diagnosis.is_scattered:
+        times = max(diagnosis.scatter.values())
+        table.add_row(
+            "[bold red]scatter[/]", f"{times:.2g} times the noise: more than the sensors explain"
+        )
+    for doubt in diagnosis.doubts:
+        table.add_row("[bold red]not plausible[/]", escape(doubt))
+    for gone in diagnosis.withdrawn:
+        table.add_row("withdrawn", escape(f"{gone.effect}: {gone.reason.value}"))
     for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
         before, after = (
             stage.length_m if kind == "length" else stage.tension_N

@@ -32,7 +32,8 @@ class Trial:
     fit : Fit
         The model with it.
     gain : float
-        What it takes off the robust loss over the rows for fitting, in units of the variance left.
+        What it takes off the robust loss over the rows for fitting, in units of the variance left,
+        and for as many independent readings as there are.
     chance : float
         Probability of such a gain by chance in any of the candidates of this round.
     heldout_gain : float
@@ -199,7 +200,7 @@ class Searcher:
 
         self._progress(effect.key)
         model = self.fit([*found, effect], present, anew=True)
-        gain = (present.loss - model.loss) / model.variance
+        gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
         chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
         return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
 
@@ -255,7 +256,8 @@ class Searcher:
                 break
             rest = [e for e in found if e.key != effect.key]
             without = self.fit(rest, present)
-            loss = max((without.loss - present.loss) / present.variance, 0.0)
+            scale = present.variance * present.inflation[effect.key]
+            loss = max((without.loss - present.loss) / scale, 0.0)
             chance = float(chi2.sf(loss, len(effect.parameters))) * len(self._candidates)
             if chance > SIGNIFICANCE:
                 found, present = rest, without
