@@ -147,7 +147,7 @@ def _finding(
 ) -> Finding:
     search, searcher = outcome.search, outcome.searcher
     progress(f"rivals of {effect.key}")
-    rivals = searcher.rivals(search.found, effect, search.fit)
+    rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
     parameters = _estimates(search.fit)[effect.key]
     return Finding(
         effect=effect,

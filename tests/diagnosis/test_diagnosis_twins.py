@@ -63,6 +63,8 @@ def twin(robot: TwinRobot, effect: str, over_noise: float, seed: int = 0) -> Dat
         (YARD3, "tension_gain"),
         (HALL6, "centre_of_mass_offset"),
         (HALL6, "tension_bias"),
+        (YARD3, "mast_compliance"),
+        (YARD3, "tension_length"),
     ],
     ids=lambda value: getattr(value, "name", value),
 )

@@ -29,9 +29,6 @@ def sized(*effects: str, over_noise: float = 10.0) -> dict[str, dict[str, float]
     [
         ("tower_settles", {"time_s"}),
         ("cable_mass_drift", {"time_s"}),
-        # Where a cable is long, the pose is low or far, and what differs with tension goes with it.
-        ("mast_bending", {"z_m", "tension_1_N", "tension_2_N", "tension_3_N"}),
-        ("nonlinear_stiffness", {"y_m", "tension_1_N", "tension_2_N", "tension_3_N", "length_3_m"}),
     ],
 )
 def test_what_is_not_in_the_list_is_unexplained(effect, carriers, tmp_path) -> None:

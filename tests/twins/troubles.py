@@ -148,18 +148,14 @@ def _settlement(robot: TwinRobot, size: float, seed: int) -> DataSet:
 
 
 def _stiffening(robot: TwinRobot, size: float, seed: int) -> DataSet:
-    toe = robot.draw(
-        "nonlinear_stiffness", size_for(robot, "nonlinear_stiffness", size, seed), seed
-    )
-    return make(robot, {"nonlinear_stiffness": toe}, seed=seed)
+    toe = robot.draw("stiffening", size_for(robot, "stiffening", size, seed), seed)
+    return make(robot, {"stiffening": toe}, seed=seed)
 
 
 def _in_proportion(robot: TwinRobot, size: float, seed: int) -> DataSet:
-    """Lengths that read too short in proportion to tension."""
-    dataset = make(robot, seed=seed)
-    change = -dataset.clean_tension_N
-    per_N = size / _size(robot, change, np.zeros_like(change))
-    return _with(dataset, dataset.length_m + per_N * change, dataset.tension_N)
+    """Lengths that read wrong in proportion to tension."""
+    per_N = robot.draw("tension_length", size_for(robot, "tension_length", size, seed), seed)
+    return make(robot, {"tension_length": per_N}, seed=seed)
 
 
 def _size(robot: TwinRobot, length_m: np.ndarray, tension_N: np.ndarray) -> float:

@@ -11,7 +11,7 @@ from designer.effects.effect import Effect, Parameter
 from designer.report import format as fmt
 
 NO_BREAK = "\u00a0"
-_UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
+_UNIT_SUFFIX = re.compile(r"_(N_m2|m_per_N|m2|per_K|per_m|rad|kg|m|N|s)$")
 _PLACE_OR_TIME = re.compile(r"(x|y|z|time)_(m|s)")
 _OF_A_CABLE = re.compile(r"(length|tension|direction)_(\d+)(?:_(m|N))?")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
