@@ -116,25 +116,38 @@ def fit(
     if not effects:
         loss = float(huber(problem.residual(())[taken]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(taken))
-    anew = anew and any(effect.starts for effect in effects)
+    anew = anew and any(effect.starts or effect.starts_from for effect in effects)
     turns = _ALL_TURNS if thorough or anew or not known else _TRIAL_TURNS
     tolerance = _TOLERANCE if thorough else _TRIAL_TOLERANCE
     fits = [
         _fit_from(problem, effects, taken, start, turns, tolerance)
-        for start in _starts(effects, known, anew=anew)
+        for start in _starts(problem, effects, known, anew=anew)
     ]
     return min(fits, key=lambda one: one.loss)
 
 
-def _starts(effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool) -> list[FloatArray]:
+def _starts(
+    problem: Problem, effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool
+) -> list[FloatArray]:
     keys = {s.effect.key for s in known}
-    fresh = [e for e in effects if e.starts and (anew or e.key not in keys)]
+    several = [e for e in effects if e.starts or e.starts_from]
+    fresh = [e for e in several if anew or e.key not in keys]
     near = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
     return near + [
         starting_vector(effects, [s for s in known if s.effect.key != e.key], values)
         for e in fresh
-        for values in e.starts
+        for values in (*e.starts, *_starts_from(problem, e, effects, known))
     ]
+
+
+def _starts_from(
+    problem: Problem, effect: Effect, effects: Sequence[Effect], known: Sequence[Setting]
+) -> Sequence[Values]:
+    if effect.starts_from is None:
+        return ()
+    keys = {one.key for one in effects} - {effect.key}
+    rest = tuple(s for s in known if s.effect.key in keys)
+    return effect.starts_from(problem.measured, problem.residual(rest))
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:

@@ -43,9 +43,6 @@ def build(machine: Machine) -> list[Effect]:
             parameters=(strain, tension),
             on_readings=partial(_change, machine=machine),
             needs=frozenset({"length"}),
-            starts=tuple(
-                {"toe_strain": 1e-4, "toe_tension_N": share * weight} for share in (0.1, 0.4, 1.5)
-            ),
         )
     ]
 
