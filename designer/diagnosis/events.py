@@ -40,7 +40,8 @@ def find_events(
 ) -> tuple[Event, ...]:
     """Return what explains more of the residual than accident would, and than any covariate does.
 
-    A step: the mean of a reading, or of all of a kind, differs before and after a row. The end of
+    A step: the mean of a reading, or of all of a kind, differs before and after a row, more sharply
+    than a cubic over the rows follows. The end of
     a range: from some value on, a reading falls short by all that is predicted beyond it. Accident
     is drawn as in `designer.diagnosis.structure.find_structure`.
 
@@ -64,6 +65,8 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     if len(channels) < 4 * _LEAST_ROWS or not channels.size:
         return
     best = _step_in(channels)
+    if best.share < _smooth_share(channels[:, best.channel]):
+        return
     late = np.arange(len(channels))[:, None] >= best.which
     means = [channels[side[:, 0]].mean(axis=0) for side in (~late, late)]
     # What a step explains does not last of itself.
@@ -72,6 +75,13 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     by_accident = [_step_in(one).share for one in draws(channels, lasts, rng, _DRAWS)]
     (chance,) = chances_of(np.array([best.share]), by_accident)
     yield Event(f"a step at row {rows[best.which]}", best.share, float(chance))
+
+
+def _smooth_share(channel: FloatArray) -> float:
+    """Return the share of variance that a cubic over the rows explains: a drift is no step."""
+    powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(channel)), 3)
+    rest = channel - powers @ np.linalg.lstsq(powers, channel, rcond=None)[0]
+    return float(1.0 - rest @ rest / (channel @ channel))
 
 
 def _step_in(channels: FloatArray) -> _Best:
