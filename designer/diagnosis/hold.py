@@ -77,7 +77,7 @@ def search_and_hold(
     search = searcher.run()
     found, model = list(search.found), search.fit
     structure = structure_left(problem, model.settings, rows)
-    withdrawn: list[Withdrawn] = []
+    withdrawn = _not_to_be_believed(search)
     while found:
         loose: Withdrawn | None = implausible(model, found)
         if loose is None and structure.is_present:
@@ -135,6 +135,15 @@ def _small(searcher: Searcher, model: Fit, found: Sequence[Effect]) -> Withdrawn
     }
     least = min(gains, key=gains.__getitem__)
     return Withdrawn(least, reason=Reason.SMALL) if gains[least] < _SMALL * left else None
+
+
+def _not_to_be_believed(search: Search) -> list[Withdrawn]:
+    """Return the best of what would still earn its place, but with values that are not."""
+    for trial in search.steps[-1].trials if search.steps else ():
+        wild = implausible(trial.fit, [trial.effect]) if trial.earns_its_place else None
+        if wild is not None:
+            return [wild]
+    return []
 
 
 def implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:

@@ -58,6 +58,11 @@ class Trial:
         """Whether it is no accident, and foretells rows that it has not seen."""
         return self.chance < SIGNIFICANCE and self.heldout_gain > 0.0
 
+    @property
+    def may_be_added(self) -> bool:
+        """Whether it earns its place with values that an engineer would believe."""
+        return self.earns_its_place and is_plausible(self.fit, self.effect)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
@@ -99,7 +104,7 @@ Progress = Callable[[str], None]
 
 def _simplest(trials: Sequence[Trial]) -> Trial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
-    good = [t for t in trials if t.earns_its_place]
+    good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
     near = [
         t
@@ -255,7 +260,7 @@ class Searcher:
         """Cross-validate from the best down, the first few and then until one earns its place."""
         answer: list[Trial] = []
         for trial in tried:
-            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.earns_its_place for t in answer)
+            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.may_be_added for t in answer)
             answer.append(trial if settled else self._validated(found, trial))
         return answer
 
