@@ -14,7 +14,7 @@ from designer.config import read_study
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import Case, diagnose
-from designer.diagnosis.result import Diagnosis, Verdict
+from designer.diagnosis.result import Diagnosis, Reason, Verdict
 from designer.diagnosis.unseen import Gain
 from designer.measured.read import read_measured
 from designer.report.diagnosis_sections.first_page import verdict
@@ -98,3 +98,15 @@ def test_an_unknown_far_off_is_not_plausible(tmp_path) -> None:
     assert "anchor_offset of cable 2" in found.doubts[0]
     assert found.verdict in (Verdict.IMPLAUSIBLE, Verdict.UNEXPLAINED)
     assert "cannot be" in verdict(found).text
+
+
+def test_an_effect_with_values_that_are_not_plausible_is_never_found(tmp_path) -> None:
+    case = case_in(make(YARD3, {"drum_scale": {"scale": 0.9}}, rows=48), tmp_path)
+    kept = tuple(e for e in case.candidates if e.id in {"drum_scale", "platform_mass"})
+    found = diagnose(replace(case, candidates=kept))
+    assert "drum_scale" not in {f.effect.id for f in found.findings}
+    (gone,) = [one for one in found.withdrawn if one.effect == "drum_scale"]
+    assert gone.reason is Reason.IMPLAUSIBLE
+    assert gone.detail.startswith("scale = 0.9")
+    assert found.verdict is not Verdict.FOUND
+    assert found.verdict is not Verdict.NOTHING
