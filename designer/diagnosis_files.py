@@ -41,6 +41,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     return {
         "format": DIAGNOSIS_FORMAT,
         "name": diagnosis.study.name,
+        "verdict": diagnosis.verdict.value,
         "rows": _rows(diagnosis),
         "effects": [_finding(finding) for finding in diagnosis.findings],
         "withdrawn": [_withdrawn(one) for one in diagnosis.withdrawn],
@@ -50,7 +51,9 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"id": s.effect.id, "cable": s.effect.cable, "values": dict(s.values)}
             for s in diagnosis.given
         ],
+        "not_plausible": list(diagnosis.doubts),
         "unexplained": {**_structure(diagnosis.structure_after), **_where(diagnosis)},
+        "scatter": {"present": diagnosis.is_scattered, **diagnosis.scatter},
         "error": _errors(diagnosis),
         "forward": {
             "before": _foretold(diagnosis.foretold_before),
@@ -238,8 +241,11 @@ def _withdrawn(withdrawn: Withdrawn) -> Json:
     return {
         "id": withdrawn.effect,
         "reason": withdrawn.reason.name.lower(),
+        "detail": withdrawn.detail,
         "covariate": withdrawn.covariate or None,
         "variation": _number(withdrawn.variation),
+        "heldout_gain": _number(withdrawn.gain),
+        "heldout_gain_std": _number(withdrawn.gain_std),
     }
 
 
@@ -255,6 +261,11 @@ def _structure(structure: Structure) -> Json:
         "strongest_covariate": strongest.name if strongest else None,
         "fraction_of_variance": _number(strongest.fraction_of_variance) if strongest else None,
         "chance": _number(strongest.chance) if strongest else None,
+        "events": [
+            {"text": e.text, "fraction_of_variance": _number(e.fraction_of_variance)}
+            for e in structure.events
+        ],
+        "rows_alike": structure.lasting.rows,
     }
 
 
@@ -287,6 +298,7 @@ def _finding(finding: Finding) -> Json:
         "rivals": list(dict.fromkeys(rival.split(" of cable ")[0] for rival in finding.rivals)),
         "rival_keys": list(finding.rivals),
         "heldout_gain": _number(finding.heldout_gain),
+        "heldout_gain_std": _number(finding.heldout_gain_std),
         "warnings": list(finding.warnings),
     }
 

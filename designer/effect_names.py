@@ -8,6 +8,7 @@ from designer.units import Dimension
 
 TIME = Dimension("a time", "s", "10 s")
 PER_LENGTH = Dimension("a change per length", "1/m", "2e-4 /m")
+COMPLIANCE = Dimension("a displacement per force", "m/N", "2e-6 m/N")
 FLEXURAL_RIGIDITY = Dimension("a flexural rigidity", "N*m^2", "12 N*m^2")
 
 

@@ -44,6 +44,8 @@ class Machine:
         EI of the cable, clamped at both ends along its chord [N·m²].
     surroundings : Surroundings
         As the study declares them.
+    late_load_kg, late_load_from_s : float
+        Mass that is on the platform from a time on [kg], [s]; no design has it.
     """
 
     robot: Robot
@@ -51,3 +53,5 @@ class Machine:
     drag_area_m2: float = 0.0
     flexural_rigidity_N_m2: float = 0.0
     surroundings: Surroundings = TEMPERATE
+    late_load_kg: float = 0.0
+    late_load_from_s: float = 0.0

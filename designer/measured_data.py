@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.robot import Poses
 
 
@@ -61,6 +61,15 @@ class Measured:
         """Kinds of surroundings that were recorded: ``time``, ``temperature``, ``wind``."""
         found = {"time": self.time_s, "temperature": self.temperature_C, "wind": self.wind_m_per_s}
         return frozenset(name for name, values in found.items() if values is not None)
+
+    def without_readings(self, rows: BoolArray) -> Measured:
+        """Return the same rows, with no reading in some of them (n_rows,)."""
+        hidden = rows[:, None]
+        return replace(
+            self,
+            length_m=np.where(hidden, np.nan, self.length_m),
+            tension_N=np.where(hidden, np.nan, self.tension_N),
+        )
 
 
 @dataclass(frozen=True, slots=True)

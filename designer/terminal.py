@@ -228,8 +228,6 @@ def _saving(saving_kg: float) -> str:
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
     """Print the short table at the end of ``designer diagnose``."""
-    from designer.diagnosis.whereabouts import in_runs
-
     table = bare_table(title=diagnosis.study.name)
     for finding in diagnosis.findings:
         values = ", ".join(
@@ -240,12 +238,8 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
             table.add_row("  or", escape(", ".join(finding.rivals)))
     if not diagnosis.findings:
         table.add_row("effects", "none found")
-    if diagnosis.is_unexplained:
-        carrier = diagnosis.structure_after.carriers[0]
-        share = f"{carrier.fraction_of_variance:.0%} of its variance"
-        table.add_row("[bold red]unexplained[/]", f"goes with {escape(carrier.name)}, {share}")
-        if place := diagnosis.left_in:
-            table.add_row("  most in", f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
+    for label, text in _against(diagnosis):
+        table.add_row(label, escape(text))
     for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
         before, after = (
             stage.length_m if kind == "length" else stage.tension_N
@@ -271,6 +265,27 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
             table.add_row(label, f"{use.utilisation:.1%} used{too_much}")
     _out.print(table)
     _out.print(f"{folder}: {', '.join(written)}", markup=False)
+
+
+def _against(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
+    """Yield what speaks against the model, and what was withdrawn."""
+    from designer.diagnosis.whereabouts import in_runs
+
+    bad = "[bold red]{}[/]".format
+    for event in diagnosis.structure_after.events:
+        yield bad("unexplained"), f"goes with {event.text}"
+    for carrier in diagnosis.structure_after.present[:1]:
+        share = f"{carrier.fraction_of_variance:.0%} of its variance"
+        yield bad("unexplained"), f"goes with {carrier.name}, {share}"
+        if place := diagnosis.left_in:
+            yield "  most in", f"{place.reading}, rows {', '.join(in_runs(place.rows))}"
+    if diagnosis.is_scattered:
+        times = max(diagnosis.scatter.values())
+        yield bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
+    for doubt in diagnosis.doubts:
+        yield bad("not plausible"), doubt
+    for gone in diagnosis.withdrawn:
+        yield "withdrawn", f"{gone.effect}: {gone.reason.value}"
 
 
 def _terms(asked: Selection | None, efficiency: float) -> str:

@@ -11,14 +11,15 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import Case, check_held
-from designer.diagnosis.errors_of import bootstrap, outliers_of, without_outliers
+from designer.diagnosis.errors_of import bootstrap, outliers_of
 from designer.diagnosis.fit import fit
 from designer.diagnosis.foretell import foretell
+from designer.diagnosis.hold import structure_left
 from designer.diagnosis.noise import noise_of, rough_noise
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold, Interval, Outlier
-from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.diagnosis.structure import Structure
 from designer.effects.effect import Setting
 from designer.measured_data import Measured, Noise
 from designer.study import Measurements, Study
@@ -150,9 +151,7 @@ def check(
         progress("what is unknown, fitted without the effects")
         problems["fitted"] = (without, _fitted(bare, without))
     models = _models(problems, case.fixed, progress)
-    residual = declared.residual(())
     progress("what is left")
-    covariates = covariates_of(measured, declared.surroundings(()))
     return Check(
         study=study,
         measured=measured,
@@ -162,8 +161,8 @@ def check(
         fitted=models.get("fitted"),
         idle=case.idle,
         n_compared=int(_held(problems).sum()),
-        structure=find_structure(without_outliers(residual), covariates, settled=measured.settled),
-        outliers=outliers_of(residual, measured.row_numbers),
+        structure=structure_left(declared, (), np.ones(measured.n_rows, dtype=np.bool_)),
+        outliers=outliers_of(declared.residual(()), measured.row_numbers),
     )
 
 

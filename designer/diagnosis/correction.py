@@ -29,7 +29,7 @@ def smooth_correction(
     covariates, heldout
         As in the diagnosis.
     """
-    if not structure.is_present:
+    if not structure.present:
         return None
     name = structure.carriers[0].name
     z = covariates[name]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,16 +10,17 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.correction import smooth_correction
-from designer.diagnosis.errors_of import outliers_of, rms, stage, without_outliers
+from designer.diagnosis.errors_of import outliers_of, stage, without_outliers
 from designer.diagnosis.fit import Fit, fit
 from designer.diagnosis.foretell import foretell, with_sound_lengths
-from designer.diagnosis.hold import Outcome, search_and_hold
+from designer.diagnosis.hold import Outcome, search_and_hold, structure_left
 from designer.diagnosis.noise import noise_of, rescaled, rough_noise
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
-from designer.diagnosis.structure import Structure, covariates_of, find_structure
+from designer.diagnosis.structure import Structure, covariates_of
+from designer.diagnosis.unseen import Gain, keep_what_helps
 from designer.diagnosis.whereabouts import Whereabouts, whereabouts
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
@@ -29,6 +30,8 @@ from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2
 _NOISE_CHANGE = 0.15
+_UNKNOWN = 10.0
+"""How many times as far as a finding that which is declared unknown may be from the drawing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,17 +79,20 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     _check_size(case, heldout)
     predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
     check_held(case, predict)
-    outcome = _with_settled_noise(case, predict, ~heldout, progress)
+    # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
+    seen = replace(case, measured=measured.without_readings(heldout))
+    outcome = _with_settled_noise(seen, ~heldout, progress)
+    problem = Problem(measured, predict, outcome.problem.noise)
+    outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
     # What is told of the model shall not depend on the path that the search took to it.
-    problem = replace(outcome.problem, predict=predict.at(measured))
-    outcome = replace(outcome, problem=problem)
+    problem = replace(problem, predict=predict.at(measured))
     search = outcome.search
-    base = fit(problem, case.given, ~heldout) if search.found else search.fit
+    base = fit(outcome.problem, case.given, ~heldout) if search.found else search.fit
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
-    findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
+    findings = tuple(_finding(outcome, e, gains[e.key], progress) for e in search.found)
     return Diagnosis(
         study=case.study,
         machine=case.machine,
@@ -98,10 +104,8 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         withdrawn=outcome.withdrawn,
         skipped=case.skipped,
         steps=search.steps,
-        stages=_stages(outcome, base, heldout),
-        structure_before=find_structure(
-            without_outliers(before), covariates, settled=measured.settled
-        ),
+        stages=_stages(outcome, problem, base, heldout),
+        structure_before=structure_left(problem, base.settings, np.ones_like(heldout)),
         structure_after=outcome.structure,
         residual_before=before,
         residual_after=after,
@@ -111,16 +115,16 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         left_in=_left_in(after, outcome.structure, covariates, measured),
         correction=smooth_correction(after, outcome.structure, covariates, heldout),
         proposals=_proposals(case, outcome, findings),
+        doubts=tuple(_doubts(case, search.fit)),
         foretold_before=foretell(problem, base.settings, compared),
         foretold_after=foretell(problem, search.fit.settings, compared),
     )
 
 
-def _with_settled_noise(
-    case: Case, predict: Predictor, rows: BoolArray, progress: Callable[[str], None]
-) -> Outcome:
+def _with_settled_noise(case: Case, rows: BoolArray, progress: Callable[[str], None]) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
+    predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
     rough = Problem(measured, predict, rough_noise(measured))
     left = rough.residual(_given_fit(rough, case, rows)) * rough.sigma
     noise = noise_of(case.measurements, measured, left)
@@ -146,29 +150,19 @@ def _given_fit(rough: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ..
 
 
 def _finding(
-    outcome: Outcome, effect: Effect, rows: BoolArray, progress: Callable[[str], None]
+    outcome: Outcome, effect: Effect, gain: Gain, progress: Callable[[str], None]
 ) -> Finding:
     search, searcher = outcome.search, outcome.searcher
     progress(f"rivals of {effect.key}")
-    rest = [e for e in search.found if e.key != effect.key]
-    without = searcher.fit(rest, search.fit)
-    unseen = ~rows
-    error_with = rms(without_outliers(outcome.problem.residual(search.fit.settings))[unseen])
-    error_without = rms(without_outliers(outcome.problem.residual(without.settings))[unseen])
-    rivals = searcher.rivals(search.found, effect, search.fit)
+    rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
     parameters = _estimates(search.fit)[effect.key]
-    warnings = [
-        f"{p.name} = {parameters[p.name].value:.4g} {p.unit} is outside what is plausible, "
-        f"{p.plausible[0]:.4g} to {p.plausible[1]:.4g}"
-        for p in effect.parameters
-        if not p.plausible[0] <= parameters[p.name].value <= p.plausible[1]
-    ]
     return Finding(
         effect=effect,
         parameters=parameters,
         rivals=tuple(dict.fromkeys(r.key for r in rivals)),
-        heldout_gain=1.0 - (error_with / error_without) ** 2,
-        warnings=tuple(warnings),
+        heldout_gain=gain.share,
+        heldout_gain_std=gain.std,
+        warnings=tuple(_warnings(effect, parameters)),
     )
 
 
@@ -178,9 +172,32 @@ def _left_in(
     covariates: Mapping[str, FloatArray],
     measured: Measured,
 ) -> Whereabouts | None:
-    if not structure.is_present:
+    if not structure.present:
         return None
-    return whereabouts(residual, covariates[structure.carriers[0].name], measured.row_numbers)
+    return whereabouts(residual, covariates[structure.present[0].name], measured.row_numbers)
+
+
+def _warnings(effect: Effect, parameters: Mapping[str, Estimate]) -> Iterator[str]:
+    near = all(
+        abs(parameters[p.name].value - p.neutral) < 2 * parameters[p.name].std
+        for p in effect.parameters
+    )
+    if near:
+        yield "no value of it is further from doing nothing than twice its standard deviation"
+
+
+def _doubts(case: Case, model: Fit) -> Iterator[str]:
+    """Yield values of what was unknown that nobody would believe, even of what is unknown."""
+    estimates = _estimates(model)
+    for effect in case.given:
+        for p in effect.parameters:
+            low, high = (p.neutral + _UNKNOWN * (end - p.neutral) for end in p.plausible)
+            found = estimates[effect.key][p.name]
+            if not low - 2 * found.std <= found.value <= high + 2 * found.std:
+                yield (
+                    f"{effect.key}: {p.name} = {found.value:.4g} {p.unit} is not plausible "
+                    f"({low:.4g} to {high:.4g} would be)"
+                )
 
 
 def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
@@ -194,17 +211,18 @@ def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
     return answer
 
 
-def _stages(outcome: Outcome, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
+def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
     """Errors as declared, then with the found effects one after the other."""
     label = "as declared, unknowns fitted" if base.settings else "as declared"
-    stages = [stage(outcome.problem, label, base.settings, heldout)]
+    sound = ~np.isnan(without_outliers(problem.residual(outcome.search.fit.settings)))
+    stages = [stage(problem, label, base.settings, heldout, sound)]
     added: list[Effect] = []
     near = base
     for effect in outcome.search.found:
         added.append(effect)
         last = len(added) == len(outcome.search.found)
         near = outcome.search.fit if last else outcome.searcher.fit(added, near)
-        stages.append(stage(outcome.problem, f"+ {effect.key}", near.settings, heldout))
+        stages.append(stage(problem, f"+ {effect.key}", near.settings, heldout, sound))
     return tuple(stages)
 
 

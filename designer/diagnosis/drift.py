@@ -52,7 +52,8 @@ def drifting(
         if setting.effect.key not in keys:
             continue
         size = np.sqrt(_gain_of(problem, model, setting.effect, slopes, own, taken))
-        for name, z in _weights(structure, covariates, problem.surroundings(model.settings)):
+        predicted = problem.surroundings(model.settings)
+        for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., own] * z[..., None])[taken]
             drift = _significant_gain(orthonormal, moved, left, model.variance)
             variation = float(np.sqrt(drift) / size)
@@ -64,7 +65,10 @@ def drifting(
 
 
 def _weights(
-    structure: Structure, covariates: Mapping[str, FloatArray], predicted: Readings
+    structure: Structure,
+    covariates: Mapping[str, FloatArray],
+    predicted: Readings,
+    rows: BoolArray,
 ) -> Iterator[tuple[str, FloatArray]]:
     """Yield standardised covariates: of the row (n_rows, 1), or each cable's own (…, 2 n_cables).
 
@@ -73,16 +77,17 @@ def _weights(
     """
     for carrier in structure.carriers[:_MOST_CARRIERS]:
         if carrier.chance < SIGNIFICANCE and not carrier.is_speed:
-            yield carrier.name, _standard(covariates[carrier.name])[:, None]
+            yield carrier.name, _standard(covariates[carrier.name], rows)[:, None]
     for name, own in (
         ("the cable's own tension", predicted.tension_N),
         ("the cable's own length", predicted.length_m),
     ):
-        yield name, np.tile(_standard(own), 2)
+        yield name, np.tile(_standard(own, rows), 2)
 
 
-def _standard(values: FloatArray) -> FloatArray:
-    return np.nan_to_num((values - np.nanmean(values)) / (np.nanstd(values) or 1.0))
+def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:
+    seen = values[rows]
+    return np.nan_to_num((values - np.nanmean(seen)) / (np.nanstd(seen) or 1.0))
 
 
 def _gain_of(

@@ -14,9 +14,19 @@ _DRAWS = 400
 _OUTLYING = 5.0
 
 
-def stage(problem: Problem, label: str, settings: tuple[Setting, ...], heldout: BoolArray) -> Stage:
-    """Return the errors of a model in SI units, outliers left out."""
-    residual = without_outliers(problem.residual(settings)) * problem.sigma
+def stage(
+    problem: Problem,
+    label: str,
+    settings: tuple[Setting, ...],
+    heldout: BoolArray,
+    sound: BoolArray,
+) -> Stage:
+    """Return the errors of a model in SI units over readings that are ``sound``.
+
+    The latter (n_rows, 2 n_cables) are the same at every stage, so that no model looks better for
+    having dropped more.
+    """
+    residual = np.where(sound, problem.residual(settings), np.nan) * problem.sigma
     n = residual.shape[1] // 2
     return Stage(
         label,
@@ -74,15 +84,18 @@ def bootstrap(unseen: FloatArray, block: IntArray) -> Interval:
     """
     square = np.nansum(unseen**2, axis=1)
     count = np.sum(~np.isnan(unseen), axis=1)
-    names = np.unique(block)
-    # Few blocks would leave the interval to chance: split each in three.
-    third = (np.arange(len(block)) * 3 * len(names)) // max(len(block), 1)
+    third = thirds_of(block)
     sums = np.array([[square[third == k].sum(), count[third == k].sum()] for k in np.unique(third)])
     rng = np.random.default_rng(0)
     draw = rng.integers(len(sums), size=(_DRAWS, len(sums)))
     total = sums[draw].sum(axis=1)
     low, high = np.quantile(np.sqrt(total[:, 0] / np.maximum(total[:, 1], 1)), [0.025, 0.975])
     return Interval(rms(unseen), float(low), float(high))
+
+
+def thirds_of(block: IntArray) -> IntArray:
+    """Split each of the blocks (n_rows,) in three: few would leave an interval to chance."""
+    return np.asarray((np.arange(len(block)) * 3 * len(np.unique(block))) // max(len(block), 1))
 
 
 def _median(residual: FloatArray) -> FloatArray:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.clusters import score_covariances
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Setting, Values
 
@@ -29,11 +30,15 @@ class Fit:
     vector : array (n_parameters,)
         All values in that order.
     std : array (n_parameters,)
-        Standard deviations, scaled up where the residual exceeds the noise.
+        Standard deviations, scaled up where the residual exceeds the noise, or where readings of
+        one row, of neighbouring rows or of one block are alike.
     loss : float
         Robust sum of squares over the fitted rows, in units of noise.
     n_data : int
         Number of readings fitted, less those that internal forces took.
+    inflation : mapping of str to float
+        For each effect, by how much the readings that tell of it are fewer than they look, at
+        least 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
     """
 
     settings: tuple[Setting, ...]
@@ -41,6 +46,7 @@ class Fit:
     std: FloatArray
     loss: float
     n_data: int
+    inflation: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def variance(self) -> float:
@@ -110,25 +116,38 @@ def fit(
     if not effects:
         loss = float(huber(problem.residual(())[taken]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(taken))
-    anew = anew and any(effect.starts for effect in effects)
+    anew = anew and any(effect.starts or effect.starts_from for effect in effects)
     turns = _ALL_TURNS if thorough or anew or not known else _TRIAL_TURNS
     tolerance = _TOLERANCE if thorough else _TRIAL_TOLERANCE
     fits = [
         _fit_from(problem, effects, taken, start, turns, tolerance)
-        for start in _starts(effects, known, anew=anew)
+        for start in _starts(problem, effects, known, anew=anew)
     ]
     return min(fits, key=lambda one: one.loss)
 
 
-def _starts(effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool) -> list[FloatArray]:
+def _starts(
+    problem: Problem, effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool
+) -> list[FloatArray]:
     keys = {s.effect.key for s in known}
-    fresh = [e for e in effects if e.starts and (anew or e.key not in keys)]
+    several = [e for e in effects if e.starts or e.starts_from]
+    fresh = [e for e in several if anew or e.key not in keys]
     near = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
     return near + [
         starting_vector(effects, [s for s in known if s.effect.key != e.key], values)
         for e in fresh
-        for values in e.starts
+        for values in (*e.starts, *_starts_from(problem, e, effects, known))
     ]
+
+
+def _starts_from(
+    problem: Problem, effect: Effect, effects: Sequence[Effect], known: Sequence[Setting]
+) -> Sequence[Values]:
+    if effect.starts_from is None:
+        return ()
+    keys = {one.key for one in effects} - {effect.key}
+    rest = tuple(s for s in known if s.effect.key in keys)
+    return effect.starts_from(problem.measured, problem.residual(rest))
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
@@ -175,16 +194,34 @@ def _fit_from(
         inside = answer.x
     loss, count = 2.0 * float(answer.cost), problem.free_readings(taken)
     variance = max(1.0, loss / max(count - len(start), 1))
-    slopes = answer.jac  # scaled by Huber's weights, so that outliers add no certainty
-    scale = np.linalg.norm(slopes, axis=0)
+    # Slopes are scaled by Huber's weights, so that outliers add no certainty.
+    slopes = np.zeros((*taken.shape, len(start)))
+    slopes[taken] = answer.jac
+    residual = np.full(taken.shape, np.nan)
+    limit = _HUBER * np.sqrt(variance)
+    residual[taken] = np.clip(answer.fun, -limit, limit)
+    settings = settings_at(effects, answer.x)
+    std, inflation = _doubts(settings, slopes, residual, variance)
+    return Fit(settings, answer.x, std, loss, count, inflation)
+
+
+def _doubts(
+    settings: Sequence[Setting], slopes: FloatArray, residual: FloatArray, variance: float
+) -> tuple[FloatArray, dict[str, float]]:
+    """Return standard deviations, and the inflation of each effect; see `Fit`."""
+    scale = np.sqrt(np.sum(slopes**2, axis=(0, 1)))
     is_unseen = scale == 0.0
     scale[is_unseen] = 1.0
-    covariance = np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-12)
-    spread = np.maximum(np.diag(covariance), 0.0)  # rounding may make it negative
-    return Fit(
-        settings=settings_at(effects, answer.x),
-        vector=answer.x,
-        std=np.where(is_unseen, np.inf, np.sqrt(variance * spread) / scale),
-        loss=loss,
-        n_data=count,
-    )
+    unit = slopes / scale
+    bread = np.linalg.pinv(np.einsum("rcp,rcq->pq", unit, unit), rcond=1e-12)
+    plain = variance * bread
+    clustered = [bread @ one @ bread for one in score_covariances(unit, residual)]
+    spread = np.max([np.diag(one) for one in (plain, *clustered)], axis=0)
+    inflation, at = {}, 0
+    for setting in settings:
+        own = slice(at, at + len(setting.values))
+        at = own.stop
+        inverse = np.linalg.pinv(plain[own, own], rcond=1e-9, hermitian=True)
+        ratios = [np.sum(inverse * one[own, own]) / len(setting.values) for one in clustered]
+        inflation[setting.effect.key] = float(max(1.0, *ratios))
+    return np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale), inflation

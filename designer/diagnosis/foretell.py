@@ -13,7 +13,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.errors_of import bootstrap, without_outliers
-from designer.diagnosis.physical import wind_force_N
+from designer.diagnosis.physical import added_force_N
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold
 from designer.effects.effect import Setting
@@ -44,7 +44,7 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     if not rows.size:
         return None
     built = problem.predict.built(settings)
-    force = wind_force_N(built, measured)
+    force = added_force_N(built, measured)
     there = _rows_of(measured.poses, rows)
     found = solve_forward(
         built.robot, built.cable, true.length_m[rows], there, None if force is None else force[rows]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.diagnosis.physical import straightened_m, wind_force_N
+from designer.diagnosis.physical import added_force_N, straightened_m
 from designer.effects.effect import Readings, Setting
 from designer.machine import Machine
 from designer.measured_data import Measured, Noise
@@ -142,7 +142,7 @@ def _balanced(
         measured.length_m - guess.added[0],
         measured.tension_N - guess.added[1],
         (noise.length_m * guess.distrust[0], noise.tension_N * guess.distrust[1]),
-        wind_force_N(machine, measured),
+        added_force_N(machine, measured),
     )
     length, tension = statics.length_m, statics.exit_tension_N
     span = statics.geometry().horizontal_distance_m

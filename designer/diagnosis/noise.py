@@ -80,7 +80,10 @@ def _second_differences(kind: FloatArray, measured: Measured) -> float:
 def _neighbours(kind: FloatArray, measured: Measured) -> float:
     from scipy.spatial import cKDTree
 
-    position = measured.poses.position_m
+    seen = ~np.isnan(kind).all(axis=1)
+    if seen.sum() < 2:
+        return 1.0
+    position, kind = measured.poses.position_m[seen], kind[seen]
     _, nearest = cKDTree(position).query(position, k=2)
     return _robust_std(kind - kind[nearest[:, 1]]) / math.sqrt(2.0)
 

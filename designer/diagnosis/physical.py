@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.effects.effect import Readings
 from designer.machine import Machine
 from designer.measured_data import Measured
@@ -22,7 +23,7 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     Robots with as many cables as degrees of freedom are solved exactly. With fewer cables the
     tensions nearest to balance are taken, see `designer.statics.nearest`.
     """
-    force = None if measured is None else wind_force_N(machine, measured)
+    force = None if measured is None else added_force_N(machine, measured)
     if machine.robot.is_square:
         statics = solve_sagging(machine.robot, poses, machine.cable, force)
         length, tension = statics.length_m, statics.exit_tension_N
@@ -30,6 +31,17 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     else:
         length, tension, span = solve_nearest(machine.robot, poses, machine.cable, force)
     return Readings(length - straightened_m(machine, tension, span), tension)
+
+
+def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
+    """Return wind and late load on the platform, base frame (n_rows, 3) [N]; None without."""
+    wind_N = wind_force_N(machine, measured)
+    if machine.late_load_kg == 0.0 or measured.time_s is None:
+        return wind_N
+    down = -machine.robot.upright[2]
+    weight_N = STANDARD_GRAVITY_M_PER_S2 * machine.late_load_kg * down
+    load_N = (measured.time_s >= machine.late_load_from_s)[:, None] * weight_N
+    return np.asarray(load_N if wind_N is None else wind_N + load_N)
 
 
 def wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:

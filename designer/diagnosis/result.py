@@ -19,6 +19,9 @@ from designer.study import Study
 if TYPE_CHECKING:
     from designer.diagnosis.whereabouts import Whereabouts
 
+MOST_SCATTER = 1.5
+"""Times the declared noise beyond which sensors do not explain what is left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
@@ -40,16 +43,18 @@ class Finding:
         Its numbers.
     rivals : tuple of str
         Effects that this data cannot tell from it.
-    heldout_gain : float
-        Share of the held-out mean square that goes when it is added to the others.
+    heldout_gain, heldout_gain_std : float
+        Share of the held-out mean square that goes when it is added to the others, and how far
+        that is in doubt.
     warnings : tuple of str
-        Values that an engineer would not believe.
+        What speaks against its values.
     """
 
     effect: Effect
     parameters: Mapping[str, Estimate]
     rivals: tuple[str, ...]
     heldout_gain: float
+    heldout_gain_std: float
     warnings: tuple[str, ...]
 
 
@@ -58,12 +63,13 @@ class Reason(Enum):
 
     DRIFTS = "it fits as a constant, but would have to change with a covariate"
     SMALL = "it explains less than half of what stays unexplained, which it may be bent to fit"
-    IMPLAUSIBLE = "it needs values that are not plausible, and leaves structure even so"
+    IMPLAUSIBLE = "it needs values that are not plausible"
+    UNSEEN = "it does not help on rows that no fit has seen"
 
 
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """An effect that fits, but does not hold where structure is left.
+    """An effect that fits, but does not hold.
 
     Parameters
     ----------
@@ -75,12 +81,31 @@ class Withdrawn:
         By how much of itself, for each standard deviation of the covariate; NaN if not tried.
     reason : Reason
         Why it was not kept.
+    detail : str
+        The values that are not plausible; else empty.
+    gain, gain_std : float
+        Share of the held-out mean square that goes with it, and how far that is in doubt; NaN if
+        not tried.
     """
 
     effect: str
     covariate: str = ""
     variation: float = float("nan")
     reason: Reason = Reason.DRIFTS
+    detail: str = ""
+    gain: float = float("nan")
+    gain_std: float = float("nan")
+
+
+class Verdict(Enum):
+    """The answer, by what was found, by the shape of what is left, and by its size."""
+
+    FOUND = "found"
+    IN_PART = "found_in_part"
+    UNEXPLAINED = "unexplained"
+    SCATTER = "scatter"
+    IMPLAUSIBLE = "implausible"
+    NOTHING = "nothing_to_find"
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,6 +302,8 @@ class Diagnosis:
         Where structure is left.
     proposals : tuple of Proposal
         For each pair of rivals.
+    doubts : tuple of str
+        Values of what was unknown from the start that an engineer would not believe.
     foretold_before, foretold_after : Foretold or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
@@ -310,6 +337,7 @@ class Diagnosis:
     outliers: tuple[Outlier, ...]
     correction: Correction | None
     proposals: tuple[Proposal, ...]
+    doubts: tuple[str, ...] = ()
     foretold_before: Foretold | None = None
     foretold_after: Foretold | None = None
     design_before: Choice | None = None
@@ -334,3 +362,41 @@ class Diagnosis:
     def is_unexplained(self) -> bool:
         """Whether structure is left that no effect explains."""
         return self.structure_after.is_present
+
+    @property
+    def scatter(self) -> dict[str, float]:
+        """Error on held-out rows over the noise, for each kind of reading that has one.
+
+        Of noise that was estimated from what is left, it tells nothing.
+        """
+        kinds = (
+            ("length", self.final.length_m, self.noise.length_m),
+            ("tension", self.final.tension_N, self.noise.tension_N),
+        )
+        return {
+            name: error.heldout.value / noise
+            for name, error, noise in kinds
+            if error is not None and math.isfinite(error.heldout.value)
+        }
+
+    @property
+    def is_scattered(self) -> bool:
+        """Whether more is left than the sensors explain: over 1.5 times the declared noise."""
+        given = self.study.measurements
+        declared = {
+            "length": given is not None and given.length_noise_m is not None,
+            "tension": given is not None and given.tension_noise_N is not None,
+        }
+        return any(x > MOST_SCATTER for name, x in self.scatter.items() if declared[name])
+
+    @property
+    def verdict(self) -> Verdict:
+        """The answer."""
+        if self.findings:
+            whole = not (self.is_unexplained or self.is_scattered or self.doubts)
+            return Verdict.FOUND if whole else Verdict.IN_PART
+        if self.is_unexplained:
+            return Verdict.UNEXPLAINED
+        if self.doubts:
+            return Verdict.IMPLAUSIBLE
+        return Verdict.SCATTER if self.is_scattered else Verdict.NOTHING

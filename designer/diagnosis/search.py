@@ -32,7 +32,8 @@ class Trial:
     fit : Fit
         The model with it.
     gain : float
-        What it takes off the robust loss over the rows for fitting, in units of the variance left.
+        What it takes off the robust loss over the rows for fitting, in units of the variance left,
+        and for as many independent readings as there are.
     chance : float
         Probability of such a gain by chance in any of the candidates of this round.
     heldout_gain : float
@@ -56,6 +57,11 @@ class Trial:
     def earns_its_place(self) -> bool:
         """Whether it is no accident, and foretells rows that it has not seen."""
         return self.chance < SIGNIFICANCE and self.heldout_gain > 0.0
+
+    @property
+    def may_be_added(self) -> bool:
+        """Whether it earns its place with values that an engineer would believe."""
+        return self.earns_its_place and is_plausible(self.fit, self.effect)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,10 +104,29 @@ Progress = Callable[[str], None]
 
 def _simplest(trials: Sequence[Trial]) -> Trial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
-    good = [t for t in trials if t.earns_its_place]
+    good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
-    near = [t for t, score in zip(good, scores, strict=True) if score > max(scores) - RIVAL_MARGIN]
+    near = [
+        t
+        for t, score in zip(good, scores, strict=True)
+        if score > max(scores) - RIVAL_MARGIN * t.fit.inflation[t.effect.key]
+    ]
     return min(near, key=lambda t: len(t.effect.parameters), default=None)
+
+
+def _half_as_good(effect: Effect, steps: Sequence[Step]) -> set[str]:
+    """Return what foretold unseen rows at least half as well when an effect was added."""
+    added = [step for step in steps if step.added is not None and step.added.key == effect.key]
+    if not added:
+        return set()
+    gains = {t.effect.key: t.heldout_gain for t in added[-1].trials}
+    return {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
+
+
+def is_plausible(model: Fit, effect: Effect) -> bool:
+    """Tell whether a model has an effect with values that an engineer would believe."""
+    values = next(s.values for s in model.settings if s.effect.key == effect.key)
+    return all(p.plausible[0] <= values[p.name] <= p.plausible[1] for p in effect.parameters)
 
 
 def _best_variance(trials: Sequence[Trial]) -> float:
@@ -180,26 +205,54 @@ class Searcher:
         tried.sort(key=lambda trial: -trial.score(variance))
         return self._validated_best(found, tried)
 
-    def rivals(self, found: Sequence[Effect], effect: Effect, present: Fit) -> list[Effect]:
-        """Return the effects that explain the data as well in place of one that was found."""
+    def rivals(
+        self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step] = ()
+    ) -> list[Effect]:
+        """Return the effects that the data cannot reject in place of one that was found.
+
+        Each is fitted from the present model, and from where each round of the search left it. It
+        stays a rival if the fitted rows suit it about as well, with a penalty for its parameters or
+        without one; or if it foretold unseen rows at least half as well when ``effect`` was added,
+        and foretells them about as well in its place.
+        """
         rest = [e for e in found if e.key != effect.key]
         taken = {e.key for e in (*found, *self._given)}
-        loss = self._penalised(present)
+        scale = present.variance * present.inflation[effect.key]
+        good = _half_as_good(effect, steps)
         answer = []
         for other in self._candidates:
             if other.key in taken:
                 continue
-            swapped = self.fit([*rest, other], present, anew=True)
-            if (self._penalised(swapped) - loss) / present.variance < RIVAL_MARGIN:
+            swapped = self._in_place([*rest, other], present, other, steps)
+            if not is_plausible(swapped, other):
+                continue
+            gaps = (
+                swapped.loss - present.loss,
+                self._penalised(swapped) - self._penalised(present),
+            )
+            suits = min(gaps) / scale < RIVAL_MARGIN
+            if not suits and other.key in good:
+                gap = self._unseen_loss([*rest, other], swapped) - self._unseen_loss(found, present)
+                suits = gap / scale < RIVAL_MARGIN
+            if suits:
                 answer.append(other)
         return answer
+
+    def _in_place(
+        self, effects: Sequence[Effect], present: Fit, other: Effect, steps: Sequence[Step]
+    ) -> Fit:
+        """Fit from the present model and from every trial of ``other``, and return the best."""
+        trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
+        fits = [self.fit(effects, present, anew=True)]
+        fits += [self.fit(effects, near) for near in trials]
+        return min(fits, key=lambda one: one.loss)
 
     def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
         from scipy.stats import chi2
 
         self._progress(effect.key)
         model = self.fit([*found, effect], present, anew=True)
-        gain = (present.loss - model.loss) / model.variance
+        gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
         chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
         return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
 
@@ -207,7 +260,7 @@ class Searcher:
         """Cross-validate from the best down, the first few and then until one earns its place."""
         answer: list[Trial] = []
         for trial in tried:
-            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.earns_its_place for t in answer)
+            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.may_be_added for t in answer)
             answer.append(trial if settled else self._validated(found, trial))
         return answer
 
@@ -255,7 +308,8 @@ class Searcher:
                 break
             rest = [e for e in found if e.key != effect.key]
             without = self.fit(rest, present)
-            loss = max((without.loss - present.loss) / present.variance, 0.0)
+            scale = present.variance * present.inflation[effect.key]
+            loss = max((without.loss - present.loss) / scale, 0.0)
             chance = float(chi2.sf(loss, len(effect.parameters))) * len(self._candidates)
             if chance > SIGNIFICANCE:
                 found, present = rest, without

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
-from designer.diagnosis.blocks import block_of
+from designer.arrays import FloatArray
+from designer.diagnosis.clusters import INDEPENDENT, Lasting, lasting
 from designer.effects.effect import Readings
 from designer.measured_data import Measured
 
-SIGNIFICANCE = 0.01
-_PERMUTATIONS = 999
+SIGNIFICANCE = 0.001
+_DRAWS = 999
 _CUT = 4.0
+_LARGE = 1.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,25 @@ class Carrier:
 
 
 @dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened to the readings: a step at a row, a sensor at the end of its range.
+
+    Parameters
+    ----------
+    text : str
+        What it is, to be read after "goes with".
+    fraction_of_variance : float
+        Share of the variance of the reading in which it shows most.
+    chance : float
+        Probability of as much by accident.
+    """
+
+    text: str
+    fraction_of_variance: float
+    chance: float
+
+
+@dataclass(frozen=True, slots=True)
 class Structure:
     """Result of the test.
 
@@ -52,15 +72,26 @@ class Structure:
         All covariates, strongest first.
     excess : float
         Robust mean square of the residual about its median, in units of noise; 1 is noise alone.
+    lasting : Lasting
+        How far neighbouring rows are alike.
+    events : tuple of Event
+        What explains more than any covariate does, and more than accident would.
     """
 
     carriers: tuple[Carrier, ...]
     excess: float
+    lasting: Lasting = INDEPENDENT
+    events: tuple[Event, ...] = ()
+
+    @property
+    def present(self) -> tuple[Carrier, ...]:
+        """Covariates that explain more than accident would."""
+        return tuple(c for c in self.carriers if c.chance < SIGNIFICANCE)
 
     @property
     def is_present(self) -> bool:
-        """Whether the strongest covariate explains more than accident would."""
-        return bool(self.carriers) and self.carriers[0].chance < SIGNIFICANCE
+        """Whether anything explains more than accident would."""
+        return bool(self.events or self.present)
 
     @property
     def may_bend(self) -> bool:
@@ -102,12 +133,13 @@ def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArr
 def find_structure(
     residual: FloatArray, covariates: Mapping[str, FloatArray], *, settled: bool, seed: int = 0
 ) -> Structure:
-    """Test the residual against every covariate, by permutation of rows.
+    """Test the residual against every covariate.
 
     For each covariate a parabola is fitted to each channel and to the mean over cables of each
-    kind of reading; the largest share of variance is what counts. Rows are
-    then permuted, all covariates at once, to learn how large the best of all gets by accident.
-    Samples of a motion are permuted in blocks, since neighbours are alike.
+    kind of reading; the largest share of variance is what counts. How large the best of all gets by
+    accident is learnt from rows in another order or, where neighbouring rows are alike, from noise
+    that lasts as long: any two things that drift go with each other. A drift much larger than the
+    noise goes with the order of the rows, whatever else it goes with.
 
     Parameters
     ----------
@@ -116,29 +148,65 @@ def find_structure(
     covariates : mapping
         From `covariates_of`.
     settled : bool
-        Whether rows are independent.
+        Whether rows are poses at rest.
     """
-    channels = _channels(residual)
+    channels = channels_of(residual)
     if channels.shape[1] == 0 or not covariates:
         return Structure((), float("nan"))
     bases = np.stack([_basis(column) for column in covariates.values()])
     observed = _largest_share(bases, channels)
+    # What a covariate explains does not last of itself.
+    lasts = lasting(_without(bases[int(np.argmax(observed))], channels))
     rng = np.random.default_rng(seed)
-    best = np.array(
-        [
-            _largest_share(bases, channels[_permutation(rng, len(channels), settled)]).max()
-            for _ in range(_PERMUTATIONS)
-        ]
+    chances = chances_of(
+        observed, [_largest_share(bases, one).max() for one in draws(channels, lasts, rng)]
     )
+    excess = float(np.mean(channels**2))
+    if settled and lasts.share and excess > _LARGE**2:
+        best = [_largest_share(bases, one).max() for one in draws(channels, INDEPENDENT, rng)]
+        of_order = np.isin(list(covariates), ("time_s", "row"))
+        chances = np.where(of_order, chances_of(observed, best), chances)
     carriers = [
-        Carrier(name, float(share), (1 + int(np.sum(best >= share))) / (1 + len(best)))
-        for name, share in zip(covariates, observed, strict=True)
+        Carrier(name, float(share), float(chance))
+        for name, share, chance in zip(covariates, observed, chances, strict=True)
     ]
-    carriers.sort(key=lambda c: (c.chance, -c.fraction_of_variance))
-    return Structure(tuple(carriers), float(np.mean(channels**2)))
+    carriers.sort(key=lambda c: (c.chance >= SIGNIFICANCE, -c.fraction_of_variance))
+    return Structure(tuple(carriers), excess, lasts)
 
 
-def _channels(residual: FloatArray) -> FloatArray:
+def draws(
+    channels: FloatArray, lasts: Lasting, rng: np.random.Generator, count: int = _DRAWS
+) -> Iterator[FloatArray]:
+    """Yield what channels (n_rows, n_channels) might be by accident; see `find_structure`."""
+    n_rows = len(channels)
+    if lasts.share == 0.0:
+        for _ in range(count):
+            yield channels[rng.permutation(n_rows)]
+        return
+    values, vectors = np.linalg.eigh(lasts.correlation(n_rows))
+    along = vectors * np.sqrt(np.maximum(values, 0.0))
+    values, vectors = np.linalg.eigh(channels.T @ channels / n_rows)
+    across = vectors * np.sqrt(np.maximum(values, 0.0))
+    for _ in range(count):
+        drawn = along @ rng.normal(size=channels.shape) @ across.T
+        yield drawn - drawn.mean(axis=0)
+
+
+def chances_of(observed: FloatArray, best: Sequence[float]) -> FloatArray:
+    """Return how probable shares (n,) are by accident, of which the best were drawn.
+
+    Beyond the largest that was drawn, by Gumbel's law of the largest.
+    """
+    from scipy.stats import gumbel_r
+
+    drawn = np.sort(best)
+    counted = (1.0 + len(drawn) - np.searchsorted(drawn, observed)) / (1.0 + len(drawn))
+    scale = max(float(np.std(drawn)) * np.sqrt(6.0) / np.pi, 1e-12)
+    beyond = gumbel_r.sf(observed, float(np.mean(drawn)) - np.euler_gamma * scale, scale)
+    return np.where(observed > drawn[-1], np.minimum(beyond, counted), counted)
+
+
+def channels_of(residual: FloatArray) -> FloatArray:
     """Clip outliers, fill gaps with zero, and append the mean over cables of each kind."""
     n = residual.shape[1] // 2
     kinds = []
@@ -154,6 +222,10 @@ def _channels(residual: FloatArray) -> FloatArray:
         kinds += [filled, mean]
     channels = np.hstack(kinds) if kinds else np.empty((len(residual), 0))
     return np.asarray(channels[:, channels.any(axis=0)])
+
+
+def _without(basis: FloatArray, channels: FloatArray) -> FloatArray:
+    return np.asarray(channels - basis @ (basis.T @ channels))
 
 
 def _basis(column: FloatArray) -> FloatArray:
@@ -174,15 +246,6 @@ def _largest_share(bases: FloatArray, channels: FloatArray) -> FloatArray:
     parts = bases.transpose(0, 2, 1).reshape(-1, rows) @ channels
     explained = np.sum(parts.reshape(count, width, -1) ** 2, axis=1)
     return np.asarray((explained / np.sum(channels**2, axis=0)).max(axis=1))
-
-
-def _permutation(rng: np.random.Generator, count: int, settled: bool) -> IntArray:
-    if settled:
-        return np.asarray(rng.permutation(count))
-    block = block_of(count, 20)
-    order = rng.permutation(int(block.max()) + 1)
-    shift = int(rng.integers(count))
-    return np.asarray(np.roll(np.concatenate([np.flatnonzero(block == k) for k in order]), shift))
 
 
 def _varies(column: FloatArray) -> bool:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from designer.effect_names import FLEXURAL_RIGIDITY, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.kind import EffectKind
 from designer.machine import Machine
+
+_LIGHTEST_KG_PER_M3 = 1000.0
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -16,7 +19,11 @@ def _change(machine: Machine, values: Values) -> Machine:
 
 def build(machine: Machine) -> list[Effect]:
     """Return the effect."""
-    rigidity = Parameter("flexural_rigidity_N_m2", "N·m²", 0.0, 10.0, (0.0, 1e6), (0.0, 5e3))
+    cable = machine.cable
+    # That of a solid bar, EA · A/(4π), of the lightest material: no rope is stiffer.
+    area_m2 = cable.linear_density_kg_per_m / _LIGHTEST_KG_PER_M3
+    stiffest = cable.axial_stiffness_N * area_m2 / (4.0 * math.pi)
+    rigidity = Parameter("flexural_rigidity_N_m2", "N·m²", 0.0, 10.0, (0.0, 1e6), (0.0, stiffest))
     return [
         Effect(
             id="bending_stiffness",

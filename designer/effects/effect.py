@@ -65,6 +65,7 @@ NEEDS: Mapping[str, str] = {
 
 MachineChange = Callable[[Machine, Values], Machine]
 ReadingChange = Callable[[Readings, Values, Measured], Readings]
+StartsFrom = Callable[[Measured, FloatArray], Sequence[Values]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,6 +92,8 @@ class Effect:
         The one cable it concerns, from 1; None for all.
     starts : tuple of mapping
         Values to start a fit from, beside the typical ones.
+    starts_from : callable or None
+        From the data and the residual without it (n_rows, 2 n_cables): values to start from.
     reaches_design : bool
         Whether it changes what cable the machine needs.
     """
@@ -105,6 +108,7 @@ class Effect:
     needs: frozenset[str] = frozenset()
     cable: int | None = None
     starts: tuple[Values, ...] = ()
+    starts_from: StartsFrom | None = None
     reaches_design: bool = False
 
     @property

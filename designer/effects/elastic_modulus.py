@@ -19,7 +19,7 @@ def _change(machine: Machine, values: Values) -> Machine:
 
 def build(machine: Machine) -> list[Effect]:
     """Return the effect."""
-    scale = Parameter("scale", "", 1.0, 0.05, (0.02, 50.0), (0.5, 1.6))
+    scale = Parameter("scale", "", 1.0, 0.05, (0.02, 50.0), (0.2, 5.0))
     return [
         Effect(
             id="elastic_modulus",

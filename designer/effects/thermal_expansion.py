@@ -28,7 +28,7 @@ def build(machine: Machine) -> list[Effect]:
             law="unstrained length times 1 + α (T - 20 °C)",
             source="definition; steel 12.5e-6 /K",
             parameters=(
-                Parameter("coefficient_per_K", "1/K", 0.0, 1e-5, (-1e-3, 1e-3), (-2e-5, 1e-4)),
+                Parameter("coefficient_per_K", "1/K", 0.0, 1e-5, (-1e-3, 1e-3), (-5e-5, 2e-4)),
             ),
             on_readings=_change,
             needs=frozenset({"temperature", "length"}),

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.structure import SIGNIFICANCE
 from designer.report import format as fmt
 from designer.report.drawings import chart
 from designer.report.parts import Picture
@@ -57,8 +56,7 @@ def draw(diagnosis: Diagnosis) -> DiagnosisPictures:
     when = ", before (grey) and after (blue)" if has_change else ""
     first = before
     if diagnosis.is_unexplained:
-        carriers = diagnosis.structure_after.carriers
-        first = [c.name for c in carriers if c.chance < SIGNIFICANCE]
+        first = [c.name for c in diagnosis.structure_after.present] or after
     return DiagnosisPictures(
         strongest=_against(
             diagnosis, first[:_FIRST_CARRIERS], "first", "overlaid" if has_change else "after",

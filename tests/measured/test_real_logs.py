@@ -56,7 +56,7 @@ def test_scampi_names_the_clock_and_halves_the_error(tmp_path: Path) -> None:
     assert set(ids) <= {"clock_offset", "anchor_offset"}
     offset = found.findings[0].parameters["offset_s"]
     assert offset.value == pytest.approx(-0.0345, abs=1e-3)
-    assert offset.std < 1e-3
+    assert offset.std < 3e-3  # clustered by blocks of a motion
     assert found.findings[0].rivals == ()
     before, after = found.stages[0].length_m, found.final.length_m
     assert before is not None

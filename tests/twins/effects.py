@@ -142,7 +142,7 @@ def _tower_settles(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, exit_m=exit_m)
 
 
-def _mast_bending(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+def _mast_compliance(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, mast_m_per_N=_each(machine, p["compliance_m_per_N"]))
 
 
@@ -154,7 +154,7 @@ def _cable_mass_drift(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, linear_mass=machine.linear_mass * (1 + p["gain"] * share[:, None]))
 
 
-def _nonlinear_stiffness(machine: Machine, scene: Scene, p: Parameters) -> Machine:
+def _stiffening(machine: Machine, scene: Scene, p: Parameters) -> Machine:
     return replace(machine, toe_strain=p["toe_strain"], toe_tension_N=p["toe_tension_N"])
 
 
@@ -169,9 +169,9 @@ MACHINE: dict[str, Callable[[Machine, Scene, Parameters], Machine]] = {
     "base_tilt": _base_tilt,
     "bending_stiffness": _bending_stiffness,
     "tower_settles": _tower_settles,
-    "mast_bending": _mast_bending,
+    "mast_compliance": _mast_compliance,
     "cable_mass_drift": _cable_mass_drift,
-    "nonlinear_stiffness": _nonlinear_stiffness,
+    "stiffening": _stiffening,
 }
 
 
@@ -208,6 +208,11 @@ def _drum_layering(readings: Readings, scene: Scene, p: Parameters) -> Readings:
 
 def _drum_scale(readings: Readings, scene: Scene, p: Parameters) -> Readings:
     return replace(readings, length_m=readings.length_m * p["scale"])
+
+
+def _tension_length(readings: Readings, scene: Scene, p: Parameters) -> Readings:
+    change = p["compliance_m_per_N"] * readings.tension_N
+    return replace(readings, length_m=readings.length_m + change)
 
 
 def _length_offset(readings: Readings, scene: Scene, p: Parameters) -> Readings:
@@ -251,6 +256,7 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
     "creep": _creep,
     "drum_layering": _drum_layering,
     "drum_scale": _drum_scale,
+    "tension_length": _tension_length,
     "length_offset": _length_offset,
     "encoder_backlash": _encoder_backlash,
     "pulley_friction": _pulley_friction,
@@ -260,9 +266,7 @@ READING: dict[str, Callable[[Readings, Scene, Parameters], Readings]] = {
 
 UNLISTED = (
     "tower_settles",
-    "mast_bending",
     "cable_mass_drift",
-    "nonlinear_stiffness",
     "encoder_backlash",
 )
 """Effects that the contract does not know."""

@@ -105,6 +105,7 @@ class TwinRobot:
             "drum_layering": lambda: {"radius_gain_per_m": size},
             "creep": lambda: {"strain_per_decade": size, "onset_s": 600.0},
             "pulley_friction": lambda: {"coefficient": size},
+            "tension_length": lambda: {"compliance_m_per_N": float(sign * size)},
             "tension_gain": lambda: {"cable": cable, "gain": float(np.exp(sign * size))},
             "tension_bias": lambda: {f"offset_{k}_N": v for k, v in enumerate(offsets, 1)},
             "wind_drag": lambda: {"drag_area_m2": size},
@@ -114,9 +115,9 @@ class TwinRobot:
             "tower_settles": lambda: {
                 "cable": cable, "depth_m": size, "relaxation": 0.2 if sign > 0 else 0.0,
             },
-            "mast_bending": lambda: {"compliance_m_per_N": size},
+            "mast_compliance": lambda: {"compliance_m_per_N": size},
             "cable_mass_drift": lambda: {"gain": size},
-            "nonlinear_stiffness": lambda: {"toe_strain": size, "toe_tension_N": middle_N},
+            "stiffening": lambda: {"toe_strain": size, "toe_tension_N": middle_N},
             "encoder_backlash": lambda: {"width_m": size},
         }[effect]()  # fmt: skip
 
@@ -159,9 +160,10 @@ YARD3 = TwinRobot(
         "wind_drag": (0.2, 4.0),
         "bending_stiffness": (1.0, 100.0),
         "tower_settles": (0.005, 0.2),
-        "mast_bending": (1e-6, 5e-5),
+        "mast_compliance": (1e-6, 5e-5),
+        "tension_length": (3e-7, 1e-5),
         "cable_mass_drift": (0.2, 1.5),
-        "nonlinear_stiffness": (1e-4, 3e-3),
+        "stiffening": (1e-4, 3e-3),
         "encoder_backlash": (0.004, 0.05),
     },
 )
@@ -191,9 +193,10 @@ FAST3 = TwinRobot(
         "base_tilt": (1e-4, 1e-2),
         "bending_stiffness": (100.0, 30000.0),
         "tower_settles": (0.02, 1.0),
-        "mast_bending": (1e-7, 5e-6),
+        "mast_compliance": (1e-7, 5e-6),
+        "tension_length": (1e-7, 5e-6),
         "cable_mass_drift": (0.002, 0.3),
-        "nonlinear_stiffness": (1e-5, 1e-3),
+        "stiffening": (1e-5, 1e-3),
         "encoder_backlash": (0.02, 0.3),
     },
 )
@@ -231,9 +234,10 @@ HALL6 = TwinRobot(
         "wind_drag": (0.1, 2.0),
         "bending_stiffness": (0.3, 30.0),
         "tower_settles": (0.003, 0.1),
-        "mast_bending": (2e-6, 5e-5),
+        "mast_compliance": (2e-6, 5e-5),
+        "tension_length": (5e-7, 1e-5),
         "cable_mass_drift": (0.4, 2.0),
-        "nonlinear_stiffness": (1e-4, 3e-3),
+        "stiffening": (1e-4, 3e-3),
         "encoder_backlash": (0.002, 0.02),
     },
 )  # fmt: skip

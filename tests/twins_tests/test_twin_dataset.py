@@ -68,7 +68,7 @@ def test_size_of_an_effect_among_others() -> None:
 
 
 @pytest.mark.parametrize(
-    "effect", ["pulley_radius", "elastic_modulus", "wind_drag", "mast_bending"]
+    "effect", ["pulley_radius", "elastic_modulus", "wind_drag", "mast_compliance"]
 )
 def test_an_effect_can_be_had_at_a_multiple_of_the_noise(effect) -> None:
     size = size_for(HALL6, effect, 3.0, seed=4, rows=40)

@@ -16,7 +16,7 @@ CONTRACT = {
     "pulley_radius", "thermal_expansion", "elastic_modulus", "linear_mass", "platform_mass",
     "centre_of_mass_offset", "anchor_offset", "length_offset", "drum_scale", "drum_layering",
     "creep", "pulley_friction", "tension_gain", "tension_bias", "wind_drag", "base_tilt",
-    "clock_offset", "bending_stiffness",
+    "clock_offset", "bending_stiffness", "mast_compliance", "stiffening", "tension_length",
 }  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Error, Finding
+from designer.diagnosis.result import Diagnosis, Error, Finding, Verdict
 from designer.diagnosis.whereabouts import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -66,29 +66,38 @@ def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
 def verdict(diagnosis: Diagnosis) -> Statement:
     """Return the answer: what was found, that there is nothing to find, or what is unexplained."""
     found = [words.plain_group(group) for group in words.grouped(diagnosis.findings)]
-    left = _left(diagnosis)
+    against = f"{_left(diagnosis)}{_scatter(diagnosis)}{_doubts(diagnosis)}".strip()
+    answer = diagnosis.verdict
     if found:
         text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
-        if left:
-            return Statement("Found in part", f"{text} {left}", "doubt")
+        if answer is Verdict.IN_PART:
+            return Statement("Found in part", f"{text} {against}", "doubt")
         doubtful = any(f.rivals or f.warnings for f in diagnosis.findings)
         return Statement("Found", text, "doubt" if doubtful else "good")
-    if left:
-        return Statement("Unexplained", f"{left} No known effect accounts for it.", "bad")
+    if answer is Verdict.UNEXPLAINED:
+        return Statement("Unexplained", f"{against} No known effect accounts for it.", "bad")
+    if answer is Verdict.IMPLAUSIBLE:
+        return Statement("Not plausible", f"{against} {_drop(diagnosis)}", "bad")
+    if answer is Verdict.SCATTER:
+        more = "It goes with nothing that was recorded: poses may be measured worse than declared."
+        title = "Scatter larger than the sensors explain"
+        return Statement(title, f"{against} {more} {_drop(diagnosis)}", "bad")
     return Statement(
         "Nothing to find",
         "The data agree with the model. What is left of the readings goes with nothing that was "
         f"recorded. {_drop(diagnosis)}",
-        "good",
+        "doubt" if diagnosis.structure_after.lasting.share else "good",
     )
 
 
 def _left(diagnosis: Diagnosis) -> str:
-    if not diagnosis.is_unexplained:
+    structure = diagnosis.structure_after
+    if not structure.is_present:
         return ""
-    carrier = diagnosis.structure_after.carriers[0]
     what = "What is left" if diagnosis.findings else "The residual"
-    place = diagnosis.left_in
+    if structure.events:
+        return f"{what} goes with {fmt.listing(e.text for e in structure.events)}."
+    carrier, place = structure.present[0], diagnosis.left_in
     where = f" ({place.reading}, rows {fmt.listing(in_runs(place.rows))})" if place else ""
     return (
         f"{what} goes with {words.covariate(carrier.name)}, which accounts for "
@@ -97,17 +106,42 @@ def _left(diagnosis: Diagnosis) -> str:
     )
 
 
+def _scatter(diagnosis: Diagnosis) -> str:
+    if not diagnosis.is_scattered:
+        return ""
+    kind, times = max(diagnosis.scatter.items(), key=lambda item: item[1])
+    return (
+        f" The {kind}s scatter by {fmt.number(times, 2)} times their declared noise, more than "
+        "their sensors explain."
+    )
+
+
+def _doubts(diagnosis: Diagnosis) -> str:
+    if not diagnosis.doubts:
+        return ""
+    return (
+        f" What was unknown came out where it cannot be: {fmt.listing(diagnosis.doubts)}. Check "
+        "units, scales and numbers of cables in the config."
+    )
+
+
 def _drop(diagnosis: Diagnosis) -> str:
-    """Say how far the error on held-out rows falls, or what it is where nothing was found."""
+    """Say how far the error on held-out rows falls or rises, or what it is without findings."""
     parts: list[str] = []
     for quantity, before, after in quantities(diagnosis):
         last = quantity.with_unit(after.heldout.value)
         first = quantity.with_unit(before.heldout.value)
-        falls = "" if parts else "falls "
-        change = f"{falls}from {first} to {last}" if diagnosis.findings else f"is {last}"
+        change = _moves(first, last, before, after) if diagnosis.findings else f"is {last}"
         noise = f"{quantity.in_noise(after.heldout.value)} times the noise"
         parts.append(f"of {quantity.name} {change} ({noise})")
     return f"On rows that no fit has seen, the error {fmt.listing(parts, 'and that')}."
+
+
+def _moves(first: str, last: str, before: Error, after: Error) -> str:
+    if first == last:
+        return f"stays {last}"
+    verb = "falls" if after.heldout.value < before.heldout.value else "rises"
+    return f"{verb} from {first} to {last}"
 
 
 def _foretold(diagnosis: Diagnosis) -> str:

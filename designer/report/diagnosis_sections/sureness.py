@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from designer.diagnosis.result import Diagnosis, Finding, Reason, Withdrawn
+from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding, Reason, Withdrawn
 from designer.diagnosis.search import Trial
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -40,14 +40,23 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
     for gone in diagnosis.withdrawn:
         yield Statement(f"{gone.effect} withdrawn", withdrawal(gone), "doubt")
+    for doubt in diagnosis.doubts:
+        yield Statement("Not plausible", f"{words.capital(doubt)}.", "bad")
     yield _left(diagnosis)
+    yield from _lasting(diagnosis)
     yield _noise(diagnosis)
 
 
 def withdrawal(gone: Withdrawn) -> str:
     """Say why an effect that fits was not kept."""
+    if gone.reason is Reason.UNSEEN:
+        return (
+            f"{words.capital(gone.reason.value)}: with it, their mean square changes by "
+            f"{fmt.signed_percent(-gone.gain)} ± {fmt.percent(gone.gain_std, 2)}, and a finding "
+            "has to lower it by more than twice that doubt, or by 5 % and in each block."
+        )
     if gone.reason is not Reason.DRIFTS:
-        return f"{words.capital(gone.reason.value)}."
+        return f"{words.capital(gone.reason.value)}{': ' if gone.detail else ''}{gone.detail}."
     size = f"{fmt.percent(gone.variation, 2)} of itself"
     if gone.variation > _MUCH:
         size = f"{fmt.number(gone.variation, 2)} times itself"
@@ -65,13 +74,17 @@ def _significance(diagnosis: Diagnosis, group: Sequence[Finding]) -> Statement:
     if chances:
         each = "" if len(group) == 1 else " at most"
         accident = f"The chance of such a gain by accident is{each} {words.chance(max(chances))}."
-    gains = sorted(f.heldout_gain for f in group if math.isfinite(f.heldout_gain))
-    times = [fmt.number(1.0 / max(1.0 - gain, 1e-9), 3) for gain in gains]
     gain = ""
-    if times:
-        without = "Without it" if len(group) == 1 else "Without one of them"
-        span = " to ".join(dict.fromkeys((times[0], times[-1])))
-        gain = f" {without}, the mean square on held-out rows would be {span} times as large."
+    gains = [f for f in group if math.isfinite(f.heldout_gain)]
+    if gains:
+        shares = fmt.listing(
+            f"{fmt.percent(f.heldout_gain, 3)} ± {fmt.percent(f.heldout_gain_std, 2)}"
+            for f in gains
+        )
+        takes = "they take" if each else "it takes"
+        gain = (
+            f" On held-out rows, {takes} {shares} off the mean square{each and ', each by itself'}."
+        )
     return Statement(f"Significance of {words.key_of(group)}", accident + gain)
 
 
@@ -92,6 +105,9 @@ def _rivals(finding: Finding) -> Statement:
 
 def _left(diagnosis: Diagnosis) -> Statement:
     structure = diagnosis.structure_after
+    if structure.events:
+        named = fmt.listing(event.text for event in structure.events)
+        return Statement("Structure is left", f"What is left goes with {named}.", "bad")
     if not structure.carriers:
         return Statement("Not tested", "There is nothing that the residual could go with.", "doubt")
     strongest = structure.carriers[0]
@@ -106,13 +122,26 @@ def _left(diagnosis: Diagnosis) -> Statement:
     return Statement("No structure is left", text, "good")
 
 
+def _lasting(diagnosis: Diagnosis) -> Iterator[Statement]:
+    lasts = diagnosis.structure_after.lasting
+    if lasts.share:
+        yield Statement(
+            "Rows are alike",
+            "What is left of a row is like that of the row before, with a correlation of "
+            f"{fmt.number(lasts.share * lasts.decay, 2)}: something drifts, or the sensors' noise "
+            f"lasts. {fmt.number(lasts.rows, 2)} rows tell as much as one; deviations and chances "
+            "count them so.",
+            "doubt",
+        )
+
+
 def _noise(diagnosis: Diagnosis) -> Statement:
     noise = diagnosis.noise
     kinds = list(quantities(diagnosis))
     shown = fmt.listing(f"{q.with_unit(q.noise)} of a {q.name}" for q, _, _ in kinds)
-    scatter = max(after.heldout.value / q.noise for q, _, after in kinds)
+    scatter = max(diagnosis.scatter.values(), default=0.0)
     more = ""
-    if scatter > _MUCH:
+    if scatter > MOST_SCATTER:
         more = f" On held-out rows, what is left is up to {fmt.number(scatter, 2)} times that."
     if noise.source == "declared":
         return Statement("Noise as declared", f"{shown}.{more}", "doubt" if more else "")

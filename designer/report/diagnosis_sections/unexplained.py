@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.structure import SIGNIFICANCE
 from designer.diagnosis.whereabouts import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -38,15 +37,21 @@ def unexplained_section(diagnosis: Diagnosis, picture: Picture | None) -> Unexpl
     """Return what is left unexplained; None where nothing is."""
     if not diagnosis.is_unexplained:
         return None
-    carriers = [c for c in diagnosis.structure_after.carriers if c.chance < SIGNIFICANCE]
+    structure = diagnosis.structure_after
+    carriers, events = structure.present, structure.events
+    named = events[0].text if events else words.covariate(carriers[0].name)
     return UnexplainedSection(
         statement=Statement(
-            f"Goes with {words.covariate(carriers[0].name)}",
+            f"Goes with {named}",
             "No effect that the program knows accounts for it. Covariates that vary together share "
             f"the blame: the cause need not be the first of them.{_where(diagnosis)}",
             "bad",
         ),
         facts=tuple(
+            Fact(words.capital(e.text), f"{fmt.percent(e.fraction_of_variance, 2)} of it")
+            for e in events
+        )
+        + tuple(
             Fact(
                 words.capital(words.covariate(c.name)),
                 f"{fmt.percent(c.fraction_of_variance, 2)} of the variance",

@@ -11,7 +11,7 @@ from designer.effects.effect import Effect, Parameter
 from designer.report import format as fmt
 
 NO_BREAK = "\u00a0"
-_UNIT_SUFFIX = re.compile(r"_(N_m2|m2|per_K|per_m|rad|kg|m|N|s)$")
+_UNIT_SUFFIX = re.compile(r"_(N_m2|m_per_N|m2|per_K|per_m|rad|kg|m|N|s)$")
 _OF_A_CABLE = re.compile(r"(length|tension|direction|speed)_(\d+)(?:_(m|N|m_per_s))?")
 _OURS = {
     **{f"{axis}_m": (axis, "m") for axis in "xyz"},

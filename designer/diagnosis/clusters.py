@@ -1,0 +1,113 @@
+r"""How much less readings tell than as many independent ones would.
+
+Channels of one row share the error of its pose; rows that follow one another share what drifts. A
+fit that takes all readings for independent states deviations that are too small, and takes chance
+for a gain. With slopes J and residual r, the covariance of the parameters is the sandwich
+A⁻¹ V A⁻¹, A = JᵀJ, V the covariance of Jᵀr, for which there are three estimates:
+
+- by rows and by blocks, Σ s sᵀ over their sums s of Jᵀr (Liang and Zeger, Biometrika 73, 1986);
+- with noise that is correlated between channels and lasts over rows, the latter as c φᵏ over k
+  rows, both taken from the residual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.diagnosis.blocks import block_of
+
+_LAGS = 8
+_LONGEST = 0.98
+_DISTINCT = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Lasting:
+    """Correlation of a residual between rows that follow one another: ``share · decay**k``.
+
+    Parameters
+    ----------
+    share : float
+        Share of the variance that lasts; 0 where rows are independent.
+    decay : float
+        What of it is left one row later.
+    """
+
+    share: float
+    decay: float
+
+    @property
+    def rows(self) -> float:
+        """How many rows tell as much as one independent row would, of a mean over all."""
+        return 1.0 + 2.0 * self.share * self.decay / (1.0 - self.decay)
+
+    def correlation(self, n_rows: int) -> FloatArray:
+        """Return the correlation between rows (n_rows, n_rows)."""
+        apart = np.abs(np.subtract.outer(np.arange(n_rows), np.arange(n_rows)))
+        return np.where(apart == 0, 1.0, self.share * self.decay**apart)
+
+
+INDEPENDENT = Lasting(0.0, 0.0)
+"""Rows that have nothing in common."""
+
+
+def lasting(residual: FloatArray) -> Lasting:
+    """Return how the residual (n_rows, n_channels) lasts, over all its channels; gaps are NaN."""
+    known = ~np.isnan(residual)
+    centred = np.where(known, residual - _mean(residual), 0.0)
+    lags = range(1, min(_LAGS, len(residual) - 2) + 1)
+    square = float(np.sum(centred**2)) / max(int(known.sum()), 1)
+    if square == 0.0 or len(lags) < 2:
+        return INDEPENDENT
+    pairs = np.array([np.sum(known[k:] & known[:-k]) for k in lags])
+    sums = np.array([np.sum(centred[k:] * centred[:-k]) for k in lags])
+    found = sums / np.maximum(pairs, 1) / square
+    # Channels of a row that share its errors count as one.
+    alike = centred.T @ centred
+    channels = np.trace(alike) ** 2 / np.sum(alike**2)
+    doubt = 1.0 / np.sqrt(max(pairs[0] / known.shape[1] * channels, 1.0))
+    found = found + doubt**2  # a mean that is taken from the rows makes them look less alike
+    if found[0] < _DISTINCT * doubt:
+        return INDEPENDENT
+    earlier, later = np.maximum(found[:-1], 0.0), np.maximum(found[1:], 0.0)
+    decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
+    powers = decay ** np.array(lags)
+    share = float(np.clip(powers @ found / max(powers @ powers, 1e-12), 0.0, 1.0))
+    return Lasting(share, decay)
+
+
+def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[FloatArray]:
+    """Yield the three estimates of the covariance of Jᵀr (n_parameters, n_parameters).
+
+    Parameters
+    ----------
+    slopes : array (n_rows, n_channels, n_parameters)
+        0 where nothing was fitted.
+    residual : array (n_rows, n_channels)
+        NaN where nothing was fitted.
+    """
+    filled = np.nan_to_num(residual)
+    rows = np.einsum("rcp,rc->rp", slopes, filled)
+    yield rows.T @ rows
+    blocks = _sums(rows, block_of(len(rows)))
+    used = int(blocks.any(axis=1).sum())
+    yield blocks.T @ blocks * (used / max(used - 1, 1))
+    count = np.maximum((~np.isnan(residual)).T.astype(float) @ ~np.isnan(residual), 1.0)
+    values, vectors = np.linalg.eigh(filled.T @ filled / count)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    spread = np.einsum("rcp,cd->rdp", slopes, root)
+    mixed = lasting(residual).correlation(len(rows)) @ spread.reshape(len(rows), -1)
+    yield np.einsum("rdp,rdq->pq", spread, mixed.reshape(spread.shape))
+
+
+def _sums(rows: FloatArray, block: IntArray) -> FloatArray:
+    return np.stack([rows[block == k].sum(axis=0) for k in np.unique(block)])
+
+
+def _mean(residual: FloatArray) -> FloatArray:
+    known = ~np.isnan(residual)
+    return np.asarray(np.nan_to_num(residual).sum(axis=0) / np.maximum(known.sum(axis=0), 1))

@@ -1,0 +1,121 @@
+"""What was found must help on rows that no fit has seen: the only use that is made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.blocks import block_of
+from designer.diagnosis.errors_of import thirds_of, without_outliers
+from designer.diagnosis.hold import Outcome, implausible, structure_left, without
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.result import Reason, Withdrawn
+from designer.diagnosis.search import Search
+
+_CLEAR = 2.0
+_LEAST, _MUCH = 0.01, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Gain:
+    """Share of the held-out mean square that goes with an effect.
+
+    Parameters
+    ----------
+    share, std : float
+        The share, and its standard deviation.
+    everywhere : bool
+        Whether it gains in each of the held-out blocks.
+    """
+
+    share: float
+    std: float
+    everywhere: bool = False
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether it is at least 1 % and two standard deviations, or 5 % and in every block."""
+        if self.everywhere and self.share >= _MUCH:
+            return True
+        return self.share >= max(_LEAST, _CLEAR * self.std)
+
+
+def keep_what_helps(
+    outcome: Outcome, whole: Problem, heldout: BoolArray, progress: Callable[[str], None]
+) -> tuple[Outcome, dict[str, Gain]]:
+    """Withdraw what has no clear gain on held-out rows, least clear first; fit the rest anew.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a search to which the readings of held-out rows were not shown.
+    whole : Problem
+        The same problem with all readings.
+    heldout : array (n_rows,) of bool
+        The rows to foretell.
+
+    Returns
+    -------
+    Outcome
+        With what is kept; its structure is that of all rows.
+    dict of str to Gain
+        Gain of each effect that is kept.
+    """
+    found, model, searcher = list(outcome.search.found), outcome.search.fit, outcome.searcher
+    withdrawn = list(outcome.withdrawn)
+    gains: dict[str, Gain] = {}
+    while found:
+        wild = implausible(model, found)
+        if wild is not None:
+            withdrawn.append(wild)
+            found = without(found, [wild.effect])
+            model = searcher.fit(found, model, thorough=True)
+            continue
+        gains = {}
+        left = whole.residual(model.settings)[heldout]
+        for effect in found:
+            rest = searcher.fit(without(found, [effect.key]), model)
+            before = whole.residual(rest.settings)[heldout]
+            gains[effect.key] = _gain(before, left, heldout)
+        if all(gain.is_clear for gain in gains.values()):
+            break
+        least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
+        progress(f"{least} withdrawn")
+        gain = gains.pop(least)
+        withdrawn.append(Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std))
+        found = without(found, [least])
+        model = searcher.fit(found, model, thorough=True)
+    search = Search(outcome.search.steps, model, tuple(found))
+    everywhere = np.ones_like(heldout)
+    structure = structure_left(whole, model.settings, everywhere)
+    return (
+        replace(outcome, search=search, withdrawn=tuple(withdrawn), structure=structure),
+        gains,
+    )
+
+
+def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
+    """Return the gain between two residuals of held-out rows, readings that suit neither left out.
+
+    With δ = before - after, before² - after² = δ² + 2 δ · after: the first term is what the effect
+    does, the second is in doubt by the scatter that is left, over blocks and over their thirds.
+    """
+    suits = ~(np.isnan(without_outliers(before)) & np.isnan(without_outliers(after)))
+    before, after = (np.where(suits, one, 0.0) for one in (before, after))
+    total = float(np.sum(before**2))
+    if total == 0.0:
+        return Gain(0.0, 0.0)
+    change = before - after
+    cross = 2.0 * np.sum(change * after, axis=1)
+    block = block_of(len(heldout))[heldout]
+    doubts = []
+    for part in (block, thirds_of(block)):
+        sums = np.array([cross[part == k].sum() for k in np.unique(part)])
+        doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
+    share = 1.0 - float(np.sum(after**2)) / total
+    gains = np.sum(before**2 - after**2, axis=1)
+    everywhere = all(gains[block == k].sum() > 0.0 for k in np.unique(block))
+    return Gain(share, float(np.sqrt(max(doubts))) / total, everywhere)

@@ -1,0 +1,66 @@
+"""A load that is put on the platform, or taken off, during the measurements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.effect_names import TIME, EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.kind import EffectKind
+from designer.machine import Machine
+from designer.measured_data import Measured
+from designer.units import MASS
+
+_LEAST_ROWS = 5
+
+
+def _change(machine: Machine, values: Values) -> Machine:
+    return replace(machine, late_load_kg=values["offset_kg"], late_load_from_s=values["time_s"])
+
+
+def _starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, float], ...]:
+    """Start where the mean of all tensions, or else of all lengths, steps most."""
+    assert measured.time_s is not None
+    n = residual.shape[1] // 2
+    for kind in (residual[:, n:], residual[:, :n]):
+        known = ~np.isnan(kind)
+        rows = np.flatnonzero(known.any(axis=1))
+        if len(rows) < 2 * _LEAST_ROWS:
+            continue
+        mean = np.nan_to_num(kind).sum(axis=1)[rows] / known.sum(axis=1)[rows]
+        at = np.arange(_LEAST_ROWS, len(rows) - _LEAST_ROWS + 1)
+        gap = np.cumsum(mean - mean.mean())[at - 1] ** 2 / (at * (len(rows) - at))
+        row = rows[at[int(np.argmax(gap))]]
+        middle = 0.5 * (measured.time_s[row - 1] + measured.time_s[row])
+        return ({"time_s": float(middle)},)
+    return ()
+
+
+def build(machine: Machine) -> list[Effect]:
+    """Return the effect; as much as the platform weighs is believed."""
+    mass = machine.robot.platform.mass_kg
+    offset = Parameter(
+        "offset_kg", "kg", 0.0, 0.02 * mass, (-0.95 * mass, 20 * mass), (-mass, mass)
+    )
+    time = Parameter("time_s", "s", 0.0, 1.0, (-1e9, 1e9), (-1e9, 1e9))
+    return [
+        Effect(
+            id="load_step",
+            summary="the load on the platform changes at a time",
+            law="platform mass plus offset from that time on, at the origin of the body's frame",
+            source="definition",
+            parameters=(offset, time),
+            on_machine=_change,
+            needs=frozenset({"time"}),
+            starts_from=_starts,
+        )
+    ]
+
+
+KIND = EffectKind(
+    EffectName("load_step", (ParameterName("offset_kg", MASS), ParameterName("time_s", TIME))),
+    build,
+)

@@ -1,0 +1,49 @@
+"""Readings that are alike tell less than as many independent ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from designer.diagnosis.clusters import lasting, score_covariances
+
+ROWS, CHANNELS = 120, 6
+
+
+def serial(rng: np.random.Generator, decay: float) -> np.ndarray:
+    white = np.sqrt(1 - decay**2) * rng.normal(size=(ROWS + 100, CHANNELS))
+    return np.asarray(lfilter([1.0], [1.0, -decay], white, axis=0))[100:]
+
+
+def test_noise_that_lasts_is_told_from_noise_that_does_not() -> None:
+    rng = np.random.default_rng(0)
+    white = [lasting(rng.normal(size=(ROWS, CHANNELS))).share for _ in range(40)]
+    assert sum(share > 0.0 for share in white) <= 2
+    found = [lasting(serial(rng, 0.9)) for _ in range(20)]
+    assert np.median([one.share * one.decay for one in found]) == pytest.approx(0.9, abs=0.05)
+    # A mean over rows with correlation 0.9ᵏ tells as little as one of 19 rows.
+    assert np.median([one.rows for one in found]) == pytest.approx(19.0, rel=0.4)
+
+
+def test_channels_that_share_an_error_count_once() -> None:
+    rng = np.random.default_rng(1)
+    shared = np.repeat(rng.normal(size=(ROWS, 1)), CHANNELS, axis=1)
+    of_rows, _, of_both = score_covariances(np.ones((ROWS, CHANNELS, 1)), shared)
+    for found in (of_rows, of_both):
+        assert found[0, 0] == pytest.approx(ROWS * CHANNELS**2, rel=0.35)
+
+
+def test_deviation_of_an_offset_under_lasting_noise() -> None:
+    """The offset of one channel, estimated by its mean over many sets, against what is stated."""
+    rng = np.random.default_rng(2)
+    slopes = np.zeros((ROWS, CHANNELS, 1))
+    slopes[:, 0, 0] = 1.0
+    means, stated = [], []
+    for _ in range(60):
+        noise = serial(rng, 0.9)
+        means.append(noise[:, 0].mean())
+        left = noise - noise.mean(axis=0)
+        stated.append(np.sqrt(max(one[0, 0] for one in score_covariances(slopes, left))) / ROWS)
+    assert np.median(stated) == pytest.approx(np.std(means), rel=0.35)
+    assert np.std(means) > 3.0 / np.sqrt(ROWS)  # three times what independent rows would have

@@ -1,0 +1,79 @@
+"""Steps, sensors at the end of their range, exchanged sensors, and outliers with a cause."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.diagnosis.dropped import find_common
+from designer.diagnosis.events import find_events
+from designer.diagnosis.structure import find_structure
+from designer.diagnosis.swapped import find_swapped
+
+ROWS, CABLES = 100, 3
+NUMBERS = np.arange(1, ROWS + 1)
+
+
+def readings(seed: int = 0) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Residual and prediction in units of noise, and covariates."""
+    rng = np.random.default_rng(seed)
+    predicted = rng.uniform(-50.0, 50.0, (ROWS, 2 * CABLES))
+    covariates = {f"tension_{k + 1}_N": predicted[:, CABLES + k] for k in range(CABLES)}
+    covariates |= {"row": NUMBERS.astype(float), "x_m": rng.uniform(0.0, 1.0, ROWS)}
+    return rng.normal(size=(ROWS, 2 * CABLES)), predicted, covariates
+
+
+def events_in(residual: np.ndarray, predicted: np.ndarray, covariates) -> list[str]:
+    structure = find_structure(residual, covariates, settled=True)
+    return [e.text for e in find_events(residual, predicted, structure, NUMBERS)]
+
+
+def test_noise_has_no_events() -> None:
+    for seed in range(6):
+        residual, predicted, covariates = readings(seed)
+        assert events_in(residual, predicted, covariates) == []
+        assert find_swapped(residual, predicted) is None
+        assert find_common(residual, covariates, NUMBERS) is None
+
+
+def test_a_step_is_told_with_its_row() -> None:
+    residual, predicted, covariates = readings()
+    residual[60:, 1] += 8.0
+    assert events_in(residual, predicted, covariates) == ["a step at row 61"]
+
+
+def test_a_trend_is_no_step() -> None:
+    residual, predicted, covariates = readings()
+    residual[:, 1] += np.linspace(-8.0, 8.0, ROWS)
+    assert events_in(residual, predicted, covariates) == []
+
+
+def test_a_sensor_at_the_end_of_its_range_is_told_and_a_gain_is_not() -> None:
+    residual, predicted, covariates = readings()
+    gain = residual.copy()
+    gain[:, 4] -= 0.1 * predicted[:, 4]
+    assert events_in(gain, predicted, covariates) == []
+    residual[:, 4] -= np.maximum(predicted[:, 4] - 30.0, 0.0)
+    assert events_in(residual, predicted, covariates) == ["the upper end of the range of tension 2"]
+
+
+def test_exchanged_sensors_are_told() -> None:
+    residual, predicted, _ = readings()
+    read = predicted + residual
+    read[:, [3, 5]] = read[:, [5, 3]]
+    found = find_swapped(read - predicted, predicted)
+    assert found is not None
+    assert found.text == "tension 1 and tension 3 exchanged with each other"
+    biased = residual + 40.0
+    assert find_swapped(biased, predicted) is None
+
+
+def test_readings_that_stand_off_together_have_something_in_common() -> None:
+    residual, _, covariates = readings()
+    rng = np.random.default_rng(1)
+    scattered = residual + np.where(rng.random(residual.shape) < 0.03, 40.0, 0.0)
+    assert find_common(scattered, covariates, NUMBERS) is None
+    residual[70:90, 2] += 25.0
+    found = find_common(residual, covariates, NUMBERS)
+    assert found is not None
+    assert found.text.startswith("the 20 readings that stand off: 20 are of length 3, ")
+    assert "20 of 20 rows from 71 to 90" in found.text
