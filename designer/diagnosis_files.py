@@ -53,6 +53,10 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"label": s.label, "length_m": _error(s.length_m), "tension_N": _error(s.tension_N)}
             for s in diagnosis.stages
         ],
+        "search": {
+            "is_complete": not diagnosis.not_tried,
+            "not_tried": list(diagnosis.not_tried),
+        },
         "proposals": [_proposal(one) for one in diagnosis.proposals],
         "design": {
             "before": _choice(diagnosis.design_before),

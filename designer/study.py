@@ -215,6 +215,8 @@ class Measurements:
         Standard deviation of a measured tension [N]; None where not given.
     diameter_m : float or None
         Diameter of the cable, which only effects of plugins may ask for [m].
+    search_time_s : float
+        What the search for effects may take [s].
     """
 
     file: Path
@@ -226,6 +228,7 @@ class Measurements:
     length_noise_m: float | None = None
     tension_noise_N: float | None = None
     diameter_m: float | None = None
+    search_time_s: float = 600.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -151,4 +151,5 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         unknown=section.unknown,
         length_noise_m=section.noise.length,
         tension_noise_N=section.noise.tension,
+        search_time_s=section.search_time,
     )

@@ -15,6 +15,7 @@ from designer.diagnosis.fit import Fit, fit
 from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.hold import Outcome, search_and_hold
 from designer.diagnosis.noise import noise_of, rescaled, rough_noise
+from designer.diagnosis.pace import Pace
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
@@ -67,6 +68,15 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         If there are fewer readings than the unknowns ask for, or the robot as declared cannot
         hold most of the poses.
     """
+    from threadpoolctl import threadpool_limits
+
+    # Systems of this size are solved in less time than it takes to wake threads: a hundred times
+    # less where other programs keep the processors busy.
+    with threadpool_limits(1, user_api="blas"):
+        return _diagnose(case, Pace(progress, case.measurements.search_time_s))
+
+
+def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
     _check_size(case, heldout)
@@ -79,7 +89,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     predicted = problem.predicted(search.fit.settings)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
-    findings = tuple(_finding(outcome, effect, ~heldout, progress) for effect in search.found)
+    findings = tuple(_finding(outcome, effect, ~heldout) for effect in search.found)
     return Diagnosis(
         study=case.study,
         machine=case.machine,
@@ -105,20 +115,22 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         proposals=_proposals(case, outcome, findings),
         foretold_before=foretell(problem, case.machine, base.settings, compared),
         foretold_after=foretell(problem, case.machine, search.fit.settings, compared),
+        not_tried=progress.left_out,
     )
 
 
-def _with_settled_noise(
-    case: Case, predict: Predictor, rows: BoolArray, progress: Callable[[str], None]
-) -> Outcome:
+def _with_settled_noise(case: Case, predict: Predictor, rows: BoolArray, progress: Pace) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
     rough = Problem(measured, predict, rough_noise(measured))
     left = rough.residual(_given_fit(rough, case, rows)) * rough.sigma
     noise = noise_of(case.measurements, measured, left)
+    outcome: Outcome | None = None
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
-        outcome = search_and_hold(problem, case.candidates, case.given, rows, progress)
+        found = search_and_hold(problem, case.candidates, case.given, rows, progress)
+        # A search that came to its end is better than a later one that did not.
+        outcome = outcome if outcome and progress.is_over else found
         # The fast part of a motion's residual is the sensors' own; that of poses at rest still
         # holds what neighbours do not share, and is taken again from the better model.
         if noise.source == "declared" or not measured.settled:
@@ -130,6 +142,10 @@ def _with_settled_noise(
         noise = better
         if change < _NOISE_CHANGE:
             break
+        if progress.is_over:
+            progress.leave_out("the search again, with the noise that the found effects leave")
+            break
+    assert outcome is not None
     return outcome
 
 
@@ -137,11 +153,8 @@ def _given_fit(rough: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ..
     return fit(rough, case.given, rows).settings if case.given else ()
 
 
-def _finding(
-    outcome: Outcome, effect: Effect, rows: BoolArray, progress: Callable[[str], None]
-) -> Finding:
+def _finding(outcome: Outcome, effect: Effect, rows: BoolArray) -> Finding:
     search, searcher = outcome.search, outcome.searcher
-    progress(f"rivals of {effect.key}")
     rest = [e for e in search.found if e.key != effect.key]
     without = searcher.fit(rest, search.fit)
     unseen = ~rows

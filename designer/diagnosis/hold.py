@@ -7,13 +7,14 @@ shape. Those are withdrawn, weakest first, and the rest is fitted anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from designer.arrays import BoolArray
 from designer.diagnosis.drift import drifting
 from designer.diagnosis.errors_of import without_outliers
 from designer.diagnosis.fit import Fit
+from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search, Searcher
@@ -51,7 +52,7 @@ def search_and_hold(
     candidates: Sequence[Effect],
     given: Sequence[Effect],
     rows: BoolArray,
-    progress: Callable[[str], None],
+    progress: Pace,
 ) -> Outcome:
     """Search; while structure is left, withdraw what does not hold and fit the rest anew.
 
@@ -59,8 +60,8 @@ def search_and_hold(
     ----------
     problem, candidates, given, rows
         As for `Searcher`.
-    progress : callable
-        Told in a few words what is being done.
+    progress : Pace
+        Told in a few words what is being done; ends the search where its time is spent.
     """
     searcher = Searcher(problem, candidates, given, rows, progress)
     search = searcher.run()

@@ -7,11 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.arrays import FloatArray
 from designer.diagnosis.internal_forces import InternalForces
 from designer.diagnosis.physical import readings_of
 from designer.effects.effect import Readings, Setting, as_built
 from designer.machine import Machine
 from designer.measured_data import EVEN, Measured, Noise
+
+_SLOPES_KEPT = 8
 
 
 class Predictor:
@@ -38,6 +41,7 @@ class Predictor:
         self._fixed = tuple(fixed)
         self._forces = InternalForces(machine, measured, self._shown)
         self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
+        self._slopes: dict[tuple[object, ...], FloatArray] = {}
 
     @property
     def spare_cables(self) -> int:
@@ -89,6 +93,16 @@ class Predictor:
             self._known[key] = solve(settings, noise)
         return self._known[key]
 
+    def remembered_slopes(
+        self, key: tuple[object, ...], compute: Callable[[], FloatArray]
+    ) -> FloatArray:
+        """Return slopes that were computed lately: fits of parts of the rows start at one place."""
+        if key not in self._slopes:
+            if len(self._slopes) >= _SLOPES_KEPT:
+                del self._slopes[next(iter(self._slopes))]
+            self._slopes[key] = compute()
+        return self._slopes[key]
+
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
         machine = as_built(self._machine, settings)
         readings = readings_of(machine, self._measured.poses, self._measured)
@@ -99,6 +113,7 @@ class Predictor:
         if not self.spare_cables or not self._forces.trust_anew(settings, noise):
             return False
         self._known.clear()
+        self._slopes.clear()
         return True
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:

@@ -253,6 +253,8 @@ class Diagnosis:
         Where structure is left.
     proposals : tuple of Proposal
         For each pair of rivals.
+    not_tried : tuple of str
+        What the search left out for lack of time.
     foretold_before, foretold_after : Foretold or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
@@ -280,6 +282,7 @@ class Diagnosis:
     outliers: tuple[Outlier, ...]
     correction: Correction | None
     proposals: tuple[Proposal, ...]
+    not_tried: tuple[str, ...] = ()
     foretold_before: Foretold | None = None
     foretold_after: Foretold | None = None
     design_before: Choice | None = None

@@ -61,7 +61,7 @@ class TwinRobot:
     @property
     def free(self) -> tuple[int, ...]:
         """Directions in which the platform sways, of 0 … 5; none where cables hold them all."""
-        return (3, 4, 5)[: 6 - self.cables] if self.attachment_m else ()
+        return (3, 4, 5)[: max(6 - self.cables, 0)] if self.attachment_m else ()
 
     def machine(self) -> Machine:
         """Return the machine as the drawing has it."""
