@@ -8,7 +8,7 @@ from dataclasses import replace
 from designer.catalogue.grade import Grade
 from designer.declared import as_built_by
 from designer.diagnosis.result import Choice, Diagnosis
-from designer.selection.select import select
+from designer.selection.select import best_product
 from designer.study import DeclaredEffect, Study
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
@@ -43,7 +43,7 @@ def choice(study: Study, grades: Sequence[Grade]) -> Choice:
     built = as_built_by(study)
     built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
     worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
-    chosen = select(built.robot, study.workspace, study.selection, grades, built=built).chosen
+    chosen = best_product(built.robot, study.workspace, study.selection, grades, built=built)
     return Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
