@@ -9,6 +9,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from designer import __version__
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import (
@@ -57,6 +59,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             "is_complete": not diagnosis.not_tried,
             "not_tried": list(diagnosis.not_tried),
         },
+        "balance": _balance(diagnosis),
         "proposals": [_proposal(one) for one in diagnosis.proposals],
         "design": {
             "before": _choice(diagnosis.design_before),
@@ -121,6 +124,19 @@ def _rows(diagnosis: Diagnosis) -> Json:
             for o in diagnosis.outliers
         ],
         "notes": list(diagnosis.measured.notes),
+    }
+
+
+def _balance(diagnosis: Diagnosis) -> Json | None:
+    """Return how far poses are from balance, over the weight, where cables let them sway."""
+    left = diagnosis.imbalance
+    if left is None:
+        return None
+    held = left[~np.isnan(left)]
+    return {
+        "left_median": _number(float(np.median(held))) if held.size else None,
+        "left_largest": _number(float(held.max())) if held.size else None,
+        "rows_not_held": int(left.size - held.size),
     }
 
 

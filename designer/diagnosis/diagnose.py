@@ -16,12 +16,13 @@ from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.hold import Outcome, search_and_hold
 from designer.diagnosis.noise import noise_of, rescaled, rough_noise
 from designer.diagnosis.pace import Pace
+from designer.diagnosis.physical import imbalance_of
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
 from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
 from designer.diagnosis.structure import covariates_of, find_structure
-from designer.effects.effect import Effect, Setting
+from designer.effects.effect import Effect, Setting, as_built
 from designer.errors import Fault, InputError
 from designer.machine import Machine
 from designer.measured_data import Measured
@@ -116,6 +117,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         foretold_before=foretell(problem, case.machine, base.settings, compared),
         foretold_after=foretell(problem, case.machine, search.fit.settings, compared),
         not_tried=progress.left_out,
+        imbalance=imbalance_of(as_built(case.machine, search.fit.settings), measured),
     )
 
 

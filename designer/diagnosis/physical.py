@@ -11,7 +11,7 @@ from designer.measured_data import Measured
 from designer.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.nearest import solve_nearest
-from designer.statics.underactuated import solve_underactuated
+from designer.statics.underactuated import imbalance, solve_underactuated
 
 AIR_DENSITY_KG_PER_M3 = 1.225
 """Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
@@ -35,6 +35,17 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
         span = statics.geometry().horizontal_distance_m
         length = length - straightened_m(machine, tension, span)
     return Readings(length, tension)
+
+
+def imbalance_of(machine: Machine, measured: Measured) -> FloatArray | None:
+    """Return what is out of balance in each row, over the weight (n_rows,).
+
+    None where there are enough cables to balance every pose; see `designer.statics.underactuated`.
+    """
+    if machine.robot.has_enough_cables:
+        return None
+    force = wind_force_N(machine, measured)
+    return imbalance(solve_underactuated(machine.robot, measured.poses, machine.cable, force))
 
 
 def wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
