@@ -54,7 +54,8 @@ _ROWS = CABLE_ROWS + 3
 _MOST_TURNS = 80
 _PATIENCE = 15
 """Turns after which steps are made shorter."""
-_SMALL_STEP = 1e-10
+_SMALL_STEP = 1e-8
+"""Relative step at which pulls rest; lengths, which move less by far, are then at rounding."""
 _REGULAR_START, _LEAST_REGULAR = 1e-4, 1e-12
 
 
