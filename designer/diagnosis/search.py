@@ -216,9 +216,9 @@ class Searcher:
         answer: list[Trial] = []
         for trial in tried:
             settled = len(answer) >= _ALWAYS_VALIDATED and any(t.earns_its_place for t in answer)
-            if self._progress.is_over and not settled:
-                self._progress.leave_out(f"{trial.effect.key} on unseen rows")
-                settled = True
+            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
+                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
+                return answer + tried[len(answer) :]
             answer.append(trial if settled else self._validated(found, trial))
         return answer
 

@@ -102,6 +102,22 @@ def test_time_may_end_between_two_rounds(tmp_path, monkeypatch) -> None:
     assert "No rivals" not in {statement.title for statement in sureness(found)}
 
 
+def test_what_is_not_tested_on_unseen_rows_is_no_finding(tmp_path, monkeypatch) -> None:
+    clock = Clock()
+    began = Pace.each
+
+    def each(self, part, steps):
+        yield from began(self, part, steps)
+        clock.now_s += 1000.0
+
+    monkeypatch.setattr(Pace, "each", each)
+    monkeypatch.setattr(Pace.__init__, "__defaults__", (lambda _: None, 0.0, clock))
+    found = diagnose(case_with(600.0, tmp_path))
+    assert found.findings == ()
+    assert found.not_tried == ("platform_mass and below on rows not seen",)
+    assert not found.steps[0].is_complete
+
+
 def test_lines_of_progress_where_nobody_looks(monkeypatch) -> None:
     clock, written = Clock(), io.StringIO()
     monkeypatch.setattr(terminal, "_notes", Console(file=written, force_terminal=False))
