@@ -64,6 +64,11 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             {"label": s.label, "length_m": _error(s.length_m), "tension_N": _error(s.tension_N)}
             for s in diagnosis.stages
         ],
+        "search": {
+            "is_complete": not diagnosis.not_tried,
+            "not_tried": list(diagnosis.not_tried),
+        },
+        "balance": _balance(diagnosis),
         "proposals": [_proposal(one) for one in diagnosis.proposals],
         "design": {
             "before": _choice(diagnosis.design_before),
@@ -235,6 +240,19 @@ def _rows(diagnosis: Diagnosis) -> Json:
 
 def _outlier(outlier: Outlier) -> Json:
     return {"row": outlier.row, "reading": outlier.channel, "size": _number(outlier.size)}
+
+
+def _balance(diagnosis: Diagnosis) -> Json | None:
+    """Return how far poses are from balance, over the weight, where cables let them sway."""
+    left = diagnosis.imbalance
+    if left is None:
+        return None
+    held = left[~np.isnan(left)]
+    return {
+        "left_median": _number(float(np.median(held))) if held.size else None,
+        "left_largest": _number(float(held.max())) if held.size else None,
+        "rows_not_held": int(left.size - held.size),
+    }
 
 
 def _withdrawn(withdrawn: Withdrawn) -> Json:

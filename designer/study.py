@@ -220,6 +220,8 @@ class Measurements:
         Of the cable on the machine [N]; None where not given.
     estimated_noise : tuple of str
         Readings whose noise a diagnosis has estimated; the next one estimates it anew.
+    search_time_s : float
+        What the search for effects may take [s].
     """
 
     file: Path
@@ -233,6 +235,7 @@ class Measurements:
     diameter_m: float | None = None
     minimum_breaking_load_N: float | None = None
     estimated_noise: tuple[Reading, ...] = ()
+    search_time_s: float = 600.0
 
 
 @dataclass(frozen=True, slots=True)

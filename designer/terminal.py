@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,6 +44,8 @@ _SMALLEST_SAVING_KG = 1e-6
 _MOST_TURNS = 12
 """Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
 _WIDEST = 1e9
+_TOLD_EVERY_S = 5.0
+"""Time between lines of progress where output goes to a file."""
 
 
 class ProgressBars:
@@ -74,21 +77,32 @@ class ProgressBars:
 
 
 class Spinner:
-    """Context manager that shows what is being tried; call it with a new text."""
+    """Context manager that shows what is being tried; call it with a new text.
+
+    Where nobody reads on a screen, a line is written from time to time.
+    """
 
     def __init__(self, text: str) -> None:
-        self._status = _notes.status(Text(text))
+        self._status = _notes.status(Text(text)) if _notes.is_terminal else None
+        self._began_s = self._told_s = time.monotonic()
 
     def __enter__(self) -> Spinner:
-        self._status.start()
+        if self._status is not None:
+            self._status.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._status.stop()
+        if self._status is not None:
+            self._status.stop()
 
     def __call__(self, text: str) -> None:
         """Show another text."""
-        self._status.update(Text(text))
+        now_s = time.monotonic()
+        if self._status is not None:
+            self._status.update(Text(text))
+        elif now_s - self._told_s >= _TOLD_EVERY_S:
+            self._told_s = now_s
+            _notes.print(f"{now_s - self._began_s:.0f} s: {text}", markup=False, soft_wrap=True)
 
 
 def bare_table(*headings: str, title: str | None = None) -> Table:
@@ -272,6 +286,8 @@ def _against(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
     from designer.diagnosis.whereabouts import in_runs
 
     bad = "[bold red]{}[/]".format
+    for what in diagnosis.not_tried:
+        yield bad("no time for"), what
     for event in diagnosis.structure_after.events:
         yield bad("unexplained"), f"goes with {event.text}"
     for carrier in diagnosis.structure_after.present[:1]:

@@ -153,4 +153,5 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         length_noise_m=section.noise.length,
         tension_noise_N=section.noise.tension,
         estimated_noise=section.noise.estimated,
+        search_time_s=section.search_time,
     )

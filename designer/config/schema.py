@@ -46,6 +46,7 @@ from designer.config.fields import (
     RopeDiameter,
     Rotation,
     SafetyFactor,
+    SearchTime,
     SheaveDiameter,
     Stress,
     Temperature,
@@ -330,6 +331,7 @@ class MeasurementsSection(Section):
     unknown: Names = ()  # checked by designer.config.measured_checks
     cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
     noise: NoiseSection = NoiseSection()
+    search_time: SearchTime = 600.0
 
 
 class SurroundingsSection(Section):

@@ -10,9 +10,10 @@ from designer.cable import Cable
 from designer.catalogue.grade import Grade
 from designer.declared import as_built_by
 from designer.diagnosis.result import Choice, Diagnosis, Use
-from designer.selection.efficiency import bending_efficiency
-from designer.selection.result import SelectionResult
-from designer.selection.select import select
+from designer.effects.design import AsBuilt
+from designer.selection.compare import Entry
+from designer.selection.efficiency import Allowance, bending_efficiency
+from designer.selection.select import best_product
 from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study
 from designer.workspace.section import section_of_workspace
@@ -49,7 +50,7 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
         diagnosis,
         design_before=first.choice,
         design_after=last.choice,
-        kept=_kept(first, last),
+        kept=_kept(study, first, last),
         mounted_before=mounted,
         mounted_after=mounted_use(better) if reaches else mounted,
     )
@@ -62,10 +63,11 @@ def choice(study: Study, grades: Sequence[Grade]) -> Choice:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Selected:
-    """A choice, and the selection that led to it."""
+    """A choice, the product behind it, and the machine that it was chosen for."""
 
     choice: Choice
-    selection: SelectionResult
+    product: Entry | None
+    built: AsBuilt
 
 
 def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
@@ -74,8 +76,7 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
     built = as_built_by(study)
     built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
     worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
-    selection = select(built.robot, study.workspace, study.selection, grades, built=built)
-    chosen = selection.chosen
+    chosen = best_product(built.robot, study.workspace, study.selection, grades, built=built)
     found = Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
@@ -85,18 +86,19 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
         optimum_tension_N=worst.max_tension_N if worst else _NONE,
         utilisation=chosen.verification.utilisation if chosen else _NONE,
     )
-    return _Selected(found, selection)
+    return _Selected(found, chosen, built)
 
 
-def _kept(first: _Selected, last: _Selected) -> Use | None:
+def _kept(study: Study, first: _Selected, last: _Selected) -> Use | None:
     """Return what the product of the first choice meets in the last; None where that is as good."""
-    before, after = first.selection.chosen, last.selection.chosen
+    before, after = first.product, last.product
+    assert study.workspace is not None
+    assert study.selection is not None
     if before is None or (after is not None and after.name == before.name):
         return None
-    again = next((c for c in last.selection.candidates if c.name == before.name), None)
-    if again is None:
-        return None
-    return Use(again.verification.max_tension_N, again.verification.utilisation)
+    cable = Allowance.of(study.selection).cable(before.grade, before.size)
+    found = verify(last.built.robot, study.workspace, last.built.cable(cable))
+    return Use(found.max_tension_N, found.utilisation)
 
 
 def mounted_use(study: Study) -> Use | None:

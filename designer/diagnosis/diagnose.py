@@ -15,6 +15,8 @@ from designer.diagnosis.fit import Fit, fit
 from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.hold import Outcome, search_and_hold, structure_left
 from designer.diagnosis.noise import noise_of, rescaled, rough_noise
+from designer.diagnosis.pace import Pace
+from designer.diagnosis.physical import imbalance_of
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import propose
@@ -74,6 +76,15 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         If there are fewer readings than the unknowns ask for, or the robot as declared cannot
         hold most of the poses.
     """
+    from threadpoolctl import threadpool_limits
+
+    # Systems of this size are solved in less time than it takes to wake threads: a hundred times
+    # less where other programs keep the processors busy.
+    with threadpool_limits(1, user_api="blas"):
+        return _diagnose(case, Pace(progress, case.measurements.search_time_s))
+
+
+def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
     _check_size(case, heldout)
@@ -92,7 +103,7 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
     predicted = problem.predicted(search.fit.settings)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
-    findings = tuple(_finding(outcome, e, gains[e.key], progress) for e in search.found)
+    findings = tuple(_finding(outcome, e, gains[e.key]) for e in search.found)
     return Diagnosis(
         study=case.study,
         machine=case.machine,
@@ -118,19 +129,24 @@ def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Di
         doubts=tuple(_doubts(case, search.fit)),
         foretold_before=foretell(problem, base.settings, compared),
         foretold_after=foretell(problem, search.fit.settings, compared),
+        not_tried=progress.left_out,
+        imbalance=imbalance_of(problem.predict.built(search.fit.settings), measured),
     )
 
 
-def _with_settled_noise(case: Case, rows: BoolArray, progress: Callable[[str], None]) -> Outcome:
+def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
     measured = case.measured
     predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
     rough = Problem(measured, predict, rough_noise(measured))
     left = rough.residual(_given_fit(rough, case, rows)) * rough.sigma
     noise = noise_of(case.measurements, measured, left)
+    outcome: Outcome | None = None
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
-        outcome = search_and_hold(problem, case.candidates, case.given, rows, progress)
+        found = search_and_hold(problem, case.candidates, case.given, rows, progress)
+        # A search that came to its end is better than a later one that did not.
+        outcome = outcome if outcome and progress.is_over else found
         # The fast part of a motion's residual is the sensors' own; that of poses at rest still
         # holds what neighbours do not share, and is taken again from the better model.
         if noise.source == "declared" or not measured.settled:
@@ -142,6 +158,10 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Callable[[str], N
         noise = better
         if change < _NOISE_CHANGE:
             break
+        if progress.is_over:
+            progress.leave_out("the search again, with the noise that the found effects leave")
+            break
+    assert outcome is not None
     return outcome
 
 
@@ -149,11 +169,8 @@ def _given_fit(rough: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ..
     return fit(rough, case.given, rows).settings if case.given else ()
 
 
-def _finding(
-    outcome: Outcome, effect: Effect, gain: Gain, progress: Callable[[str], None]
-) -> Finding:
+def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
     search, searcher = outcome.search, outcome.searcher
-    progress(f"rivals of {effect.key}")
     rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
     parameters = _estimates(search.fit)[effect.key]
     return Finding(

@@ -93,8 +93,9 @@ def fit(
 ) -> Fit:
     """Fit all parameters of the effects to the readings of some rows.
 
-    Huber's loss, bounds, and as many starts as the effects ask for. The slopes are central
-    differences of the compiled model over steps that each parameter's typical size sets.
+    Huber's loss, bounds, and as many starts as the effects ask for. The slopes are differences of
+    the compiled model over steps that each parameter's typical size sets, so short that one side
+    will do.
 
     Parameters
     ----------
@@ -152,15 +153,22 @@ def _starts_from(
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
     """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
+    return problem.predict.remembered_slopes(
+        (problem.noise, *(effect.key for effect in effects), vector.tobytes()),
+        lambda: _jacobian(problem, effects, vector),
+    )
+
+
+def _jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
+    here = problem.residual(settings_at(effects, vector))
     parameters = [p for effect in effects for p in effect.parameters]
-    columns = []
+    slopes = np.empty((*here.shape, len(parameters)))
     for k, p in enumerate(parameters):
-        step = np.zeros_like(vector)
-        step[k] = _STEP * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
-        ahead = problem.residual(settings_at(effects, vector + step))
-        behind = problem.residual(settings_at(effects, vector - step))
-        columns.append((ahead - behind) / (2.0 * step[k]))
-    return np.stack(columns, axis=-1)
+        moved = vector.copy()
+        moved[k] += _STEP * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+        there = problem.residual(settings_at(effects, moved))
+        slopes[..., k] = (there - here) / (moved[k] - vector[k])
+    return slopes
 
 
 def _fit_from(

@@ -8,7 +8,7 @@ and the rest is fitted anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from designer.diagnosis.drift import drifting
 from designer.diagnosis.dropped import find_common
 from designer.diagnosis.events import find_events
 from designer.diagnosis.fit import Fit
+from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search, Searcher
@@ -56,7 +57,7 @@ def search_and_hold(
     candidates: Sequence[Effect],
     given: Sequence[Effect],
     rows: BoolArray,
-    progress: Callable[[str], None],
+    progress: Pace,
 ) -> Outcome:
     """Search; withdraw what does not hold, and fit the rest anew.
 
@@ -66,8 +67,8 @@ def search_and_hold(
     ----------
     problem, candidates, given, rows
         As for `Searcher`.
-    progress : callable
-        Told in a few words what is being done.
+    progress : Pace
+        Told in a few words what is being done; ends the search where its time is spent.
     """
     searcher = Searcher(problem, candidates, given, rows, progress)
     unsearched = searcher.fit([], thorough=True)

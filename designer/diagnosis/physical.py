@@ -12,6 +12,7 @@ from designer.measured_data import Measured
 from designer.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.nearest import solve_nearest
+from designer.statics.underactuated import imbalance, solve_underactuated
 
 AIR_DENSITY_KG_PER_M3 = 1.225
 """Dry air at 15 °C and sea level, ISO 2533 [kg/m³]."""
@@ -20,17 +21,32 @@ AIR_DENSITY_KG_PER_M3 = 1.225
 def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None) -> Readings:
     """Return unstrained lengths and winch-side tensions of a machine in poses (n_rows,).
 
-    Robots with as many cables as degrees of freedom are solved exactly. With fewer cables the
-    tensions nearest to balance are taken, see `designer.statics.nearest`.
+    Robots with as many cables as degrees of freedom are solved exactly, those with fewer as
+    `designer.statics.underactuated` has it. With more, the tensions nearest to balance are taken,
+    see `designer.statics.nearest`.
     """
     force = None if measured is None else added_force_N(machine, measured)
-    if machine.robot.is_square:
-        statics = solve_sagging(machine.robot, poses, machine.cable, force)
-        length, tension = statics.length_m, statics.exit_tension_N
-        span = statics.geometry().horizontal_distance_m
-    else:
+    if machine.robot.is_redundant:
         length, tension, span = solve_nearest(machine.robot, poses, machine.cable, force)
-    return Readings(length - straightened_m(machine, tension, span), tension)
+        return Readings(length - straightened_m(machine, tension, span), tension)
+    solve = solve_sagging if machine.robot.is_square else solve_underactuated
+    statics = solve(machine.robot, poses, machine.cable, force)
+    length, tension = statics.length_m, statics.exit_tension_N
+    if machine.flexural_rigidity_N_m2:
+        span = statics.geometry().horizontal_distance_m
+        length = length - straightened_m(machine, tension, span)
+    return Readings(length, tension)
+
+
+def imbalance_of(machine: Machine, measured: Measured) -> FloatArray | None:
+    """Return what is out of balance in each row, over the weight (n_rows,).
+
+    None where there are enough cables to balance every pose; see `designer.statics.underactuated`.
+    """
+    if machine.robot.has_enough_cables:
+        return None
+    force = added_force_N(machine, measured)
+    return imbalance(solve_underactuated(machine.robot, measured.poses, machine.cable, force))
 
 
 def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from designer.arrays import FloatArray
 from designer.diagnosis.internal_forces import InternalForces
 from designer.diagnosis.physical import readings_of
 from designer.effects.effect import Readings, Setting, as_built
@@ -14,6 +15,8 @@ from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.machine import Machine
 from designer.measured_data import EVEN, Measured, Noise
+
+_SLOPES_KEPT = 8
 
 
 class Predictor:
@@ -49,6 +52,7 @@ class Predictor:
         self._effects = known
         self._forces = InternalForces(self.built, measured, self._shown)
         self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
+        self._slopes: dict[tuple[object, ...], FloatArray] = {}
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
@@ -112,6 +116,16 @@ class Predictor:
             self._known[key] = solve(settings, noise)
         return self._known[key]
 
+    def remembered_slopes(
+        self, key: tuple[object, ...], compute: Callable[[], FloatArray]
+    ) -> FloatArray:
+        """Return slopes that were computed lately: fits of parts of the rows start at one place."""
+        if key not in self._slopes:
+            if len(self._slopes) >= _SLOPES_KEPT:
+                del self._slopes[next(iter(self._slopes))]
+            self._slopes[key] = compute()
+        return self._slopes[key]
+
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
         machine = self.built(settings)
         readings = readings_of(machine, self._measured.poses, self._measured)
@@ -122,6 +136,7 @@ class Predictor:
         if not self.spare_cables or not self._forces.trust_anew(settings, noise):
             return False
         self._known.clear()
+        self._slopes.clear()
         return True
 
     def _shown(self, readings: Readings, settings: Sequence[Setting]) -> Readings:

@@ -64,12 +64,19 @@ class Problem:
 
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
-        predicted = self.predicted(settings)
-        model = np.hstack([predicted.length_m, predicted.tension_N])
-        residual = (self.readings - model) / self.sigma
-        unheld = np.isnan(model) & ~np.isnan(self.readings)
-        worst = _UNHELD + _TIMES_OFF * np.abs(self.readings) / self.sigma
-        return np.where(unheld, worst, residual)
+        predicted, n = self.predicted(settings), self.measured.length_m.shape[1]
+        residual = np.empty((self.measured.n_rows, 2 * n))
+        residual[:, :n] = _off(self.measured.length_m, predicted.length_m, self.noise.length_m)
+        residual[:, n:] = _off(self.measured.tension_N, predicted.tension_N, self.noise.tension_N)
+        return residual
+
+
+def _off(read: FloatArray, model: FloatArray, sigma: float) -> FloatArray:
+    unheld = np.isnan(model)
+    if not unheld.any():
+        return (read - model) / sigma
+    worst = _UNHELD + _TIMES_OFF * np.abs(read) / sigma
+    return np.where(unheld & ~np.isnan(read), worst, (read - model) / sigma)
 
 
 def channel_names(n_cables: int) -> list[str]:

@@ -304,6 +304,11 @@ class Diagnosis:
         For each pair of rivals.
     doubts : tuple of str
         Values of what was unknown from the start that an engineer would not believe.
+    not_tried : tuple of str
+        What the search left out for lack of time.
+    imbalance : array (n_rows,) or None
+        What the final model leaves out of balance, over the platform's weight; None where there are
+        as many cables as degrees of freedom.
     foretold_before, foretold_after : Foretold or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
@@ -338,6 +343,8 @@ class Diagnosis:
     correction: Correction | None
     proposals: tuple[Proposal, ...]
     doubts: tuple[str, ...] = ()
+    not_tried: tuple[str, ...] = ()
+    imbalance: FloatArray | None = None
     foretold_before: Foretold | None = None
     foretold_after: Foretold | None = None
     design_before: Choice | None = None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from designer.arrays import BoolArray
 from designer.diagnosis.blocks import folds
 from designer.diagnosis.fit import Fit, fit, huber
+from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect
 
@@ -74,10 +75,13 @@ class Step:
         All candidates, best first.
     added : Effect or None
         The one that earned its place.
+    is_complete : bool
+        Whether there was time to try all.
     """
 
     trials: tuple[Trial, ...]
     added: Effect | None
+    is_complete: bool = True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,9 +101,6 @@ class Search:
     steps: tuple[Step, ...]
     fit: Fit
     found: tuple[Effect, ...]
-
-
-Progress = Callable[[str], None]
 
 
 def _simplest(trials: Sequence[Trial]) -> Trial | None:
@@ -146,6 +147,8 @@ class Searcher:
         Unknown from the start: always fitted, and never a finding.
     rows : array (n_rows,) of bool
         Rows for fitting.
+    progress : Pace, optional
+        Told what is being tried; where the time is spent, the search ends.
     """
 
     def __init__(
@@ -154,13 +157,13 @@ class Searcher:
         candidates: Sequence[Effect],
         given: Sequence[Effect],
         rows: BoolArray,
-        progress: Progress = lambda _: None,
+        progress: Pace | None = None,
     ) -> None:
         self._problem = problem
         self._candidates = tuple(candidates)
         self._given = tuple(given)
         self._rows = rows
-        self._progress = progress
+        self._progress = progress or Pace()
 
     def run(self) -> Search:
         """Add, exchange and prune until nothing changes, or a set of effects comes again."""
@@ -170,9 +173,11 @@ class Searcher:
         tried: list[set[Effect]] = []
         while set(found) not in tried:
             tried.append(set(found))
-            trials = self.trials(found, present)
-            best = _simplest(trials)
-            steps.append(Step(tuple(trials), best.effect if best else None))
+            trials = self.trials(found, present, f"round {len(steps) + 1}")
+            is_over = self._progress.is_over
+            best = None if is_over else _simplest(trials)
+            if trials:
+                steps.append(Step(tuple(trials), best.effect if best else None, not is_over))
             if best is None or len(found) == _MOST_EFFECTS:
                 break
             self._progress(f"found {best.effect.key}")
@@ -196,11 +201,16 @@ class Searcher:
         known = near.settings if near else ()
         return fit(self._problem, effects, self._rows, known, thorough=thorough, anew=anew)
 
-    def trials(self, found: Sequence[Effect], present: Fit) -> list[Trial]:
+    def trials(
+        self, found: Sequence[Effect], present: Fit, part: str = "candidates"
+    ) -> list[Trial]:
         """Try every other candidate in addition, best first."""
         taken = {e.key for e in (*found, *self._given)}
         others = [e for e in self._candidates if e.key not in taken]
-        tried = [self._trial(found, present, effect, len(others)) for effect in others]
+        tried = [
+            self._trial(found, present, effect, len(others))
+            for effect in self._progress.each(part, others)
+        ]
         variance = _best_variance(tried)
         tried.sort(key=lambda trial: -trial.score(variance))
         return self._validated_best(found, tried)
@@ -220,9 +230,8 @@ class Searcher:
         scale = present.variance * present.inflation[effect.key]
         good = _half_as_good(effect, steps)
         answer = []
-        for other in self._candidates:
-            if other.key in taken:
-                continue
+        others = [e for e in self._candidates if e.key not in taken]
+        for other in self._progress.each(f"rivals of {effect.key}", others):
             swapped = self._in_place([*rest, other], present, other, steps)
             if not is_plausible(swapped, other):
                 continue
@@ -250,7 +259,6 @@ class Searcher:
     def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
         from scipy.stats import chi2
 
-        self._progress(effect.key)
         model = self.fit([*found, effect], present, anew=True)
         gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
         chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
@@ -261,6 +269,9 @@ class Searcher:
         answer: list[Trial] = []
         for trial in tried:
             settled = len(answer) >= _ALWAYS_VALIDATED and any(t.may_be_added for t in answer)
+            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
+                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
+                return answer + tried[len(answer) :]
             answer.append(trial if settled else self._validated(found, trial))
         return answer
 
@@ -289,7 +300,8 @@ class Searcher:
         present = self.fit(found, near)
         for k in range(len(found) - 1):  # the newest was chosen among all
             for other in outsiders:
-                if other.key in {e.key for e in (*found, *self._given)}:
+                taken = {e.key for e in (*found, *self._given)}
+                if other.key in taken or self._progress.is_over:
                     continue
                 swapped = [*found[:k], other, *found[k + 1 :]]
                 model = self.fit(swapped, present)

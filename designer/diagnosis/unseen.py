@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +10,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.errors_of import thirds_of, without_outliers
 from designer.diagnosis.hold import Outcome, implausible, structure_left, without
+from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search
@@ -44,7 +44,7 @@ class Gain:
 
 
 def keep_what_helps(
-    outcome: Outcome, whole: Problem, heldout: BoolArray, progress: Callable[[str], None]
+    outcome: Outcome, whole: Problem, heldout: BoolArray, progress: Pace
 ) -> tuple[Outcome, dict[str, Gain]]:
     """Withdraw what has no clear gain on held-out rows, least clear first; fit the rest anew.
 

@@ -82,6 +82,25 @@ def select(
     )
 
 
+def best_product(
+    robot: Robot,
+    workspace: Workspace,
+    selection: Selection,
+    grades: Sequence[Grade],
+    *,
+    built: AsBuilt | None = None,
+) -> Entry | None:
+    """Return the product that `select` would choose, without what becomes of the others.
+
+    Searched between the samples is the best, until it stays the best: the search can only raise
+    what candidates are compared by. None where nothing holds.
+    """
+    allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    currency = common_currency(allowed)
+    trial = _Trial(robot, workspace, selection, built or AsBuilt(robot), Silent(), currency)
+    return best_of(trial.sampled(allowed)[0], selection.objectives, trial.searched)
+
+
 def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
     """Tell whether a study that names these grades, or none, considers a grade."""
     return grade.why_only_by_name is None if named is None else grade.id in named
@@ -100,18 +119,15 @@ class _Trial:
 
     def outcomes(self, grades: Sequence[Grade]) -> tuple[list[GradeOutcome], list[NotTried]]:
         """Try all sizes of these grades."""
-        entries, not_tried = self._sampled(grades)
-        objectives = self.selection.objectives
+        entries, not_tried = self.sampled(grades)
         n_sizes = len(entries)
         with self.reporter.task("search", n_sizes) as advance:
 
             def search(entry: Entry) -> Verification:
                 advance(1)
-                if "stiffness" in objectives:
-                    self._add_stiffness(entry, searched=True)
-                return refined(self.robot, self.workspace, entry.cable, entry.sampled)
+                return self.searched(entry)
 
-            front = settle(entries, objectives, search)
+            front = settle(entries, self.selection.objectives, search)
         found = []
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
@@ -121,7 +137,13 @@ class _Trial:
                 advance(1)
         return found, not_tried
 
-    def _sampled(self, grades: Sequence[Grade]) -> tuple[list[Entry], list[NotTried]]:
+    def searched(self, entry: Entry) -> Verification:
+        """Search for the extremes of a candidate between the samples."""
+        if "stiffness" in self.selection.objectives:
+            self._add_stiffness(entry, searched=True)
+        return refined(self.robot, self.workspace, entry.cable, entry.sampled)
+
+    def sampled(self, grades: Sequence[Grade]) -> tuple[list[Entry], list[NotTried]]:
         """Solve all samples with all sizes."""
         allowance = Allowance.of(self.selection)
         products, not_tried = [], []

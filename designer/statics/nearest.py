@@ -1,9 +1,10 @@
-"""Lengths and tensions where cables and degrees of freedom differ in number.
+"""Lengths and tensions of taut cables, nearest to balance, whatever the number of cables.
 
-With more degrees of freedom than cables a measured pose is not quite in balance, as the platform
-sways; with fewer, the tensions are not unique. Here the tensions are those of straight cables that
-pull and come nearest to balance, the smallest of them where there is a choice; lengths follow with
-sag and elasticity. Good for taut cables; the full answer for redundant robots is an optimisation.
+With more cables than degrees of freedom the tensions are not unique. Here they are those of
+straight cables that pull and come nearest to balance, the smallest of them where there is a choice;
+lengths follow with sag and elasticity. Good for taut cables, and as a start; the full answer for
+redundant robots is an optimisation, and for those with fewer cables than degrees of freedom
+`designer.statics.underactuated`.
 """
 
 from __future__ import annotations

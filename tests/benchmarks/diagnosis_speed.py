@@ -1,10 +1,12 @@
-"""The whole diagnosis against the same search with SciPy pose by pose, in the same run.
+"""The parts of a diagnosis, each against a baseline in the same run.
 
-    python tests/benchmarks/diagnosis_speed.py [--rows 120]
+    python tests/benchmarks/diagnosis_speed.py [--rows 120] [--log STUDY]
 
-The baseline solves each pose by `scipy.optimize.root` and lets `least_squares` take its own
-finite-difference Jacobians. Where a trial has pulleys, tilt or wind, the baseline keeps our solver,
-which flatters it.
+The search against the same with SciPy pose by pose: each pose by `scipy.optimize.root`, and slopes
+by `least_squares` itself. Where a trial has pulleys, tilt or wind, the baseline keeps our solver,
+which flatters it. Then poses of a platform on four heavy cables against SciPy pose by pose; the
+design before and after against one that proves every product; and a search with linear algebra on
+one thread against one with as many as it likes, for a study of one's own where ``--log`` names it.
 """
 
 from __future__ import annotations
@@ -13,25 +15,32 @@ import argparse
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
 import scipy.optimize
+import threadpoolctl
 from scipy.optimize import root
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from twins.dataset import make, size_for
-from twins.robots import YARD3
+from twins.robots import FIELD4, YARD3
 
+from designer.catalogue.registry import load_catalogue
 from designer.config import read_study
+from designer.diagnosis import design as diagnosis_design
 from designer.diagnosis import predict
 from designer.diagnosis.case import case_of
+from designer.diagnosis.design import with_design
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.effects.effect import Readings
 from designer.measured.read import read_measured
+from designer.physics import catenary
 from designer.robot import Poses
+from designer.selection.select import select
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless
 
@@ -85,10 +94,80 @@ def own_differences(*arguments, **options):
     return LEAST_SQUARES(*arguments, **{**options, "jac": "2-point"})
 
 
+def four_cables(rows: int) -> None:
+    """Compare readings of a swaying platform with SciPy's least squares pose by pose."""
+    with tempfile.TemporaryDirectory() as folder:
+        make(FIELD4, {}, rows=rows, noise=0.0).write(Path(folder))
+        study = read_study(Path(folder) / "config.yaml")
+        measured = read_measured(study)
+    machine = case_of(study, study.measurements, measured).machine
+    OURS(machine, measured.poses)
+    start = time.perf_counter()
+    ours = OURS(machine, measured.poses)
+    middle = time.perf_counter()
+    theirs = np.array([least_left(machine, measured.poses, k) for k in range(rows)])
+    end = time.perf_counter()
+    print(f"four cables: lengths differ by {np.abs(ours.length_m - theirs).max():.1e} m")
+    tell("four cables", middle - start, end - middle)
+
+
+def least_left(machine, poses, k: int):
+    """Return the lengths of one pose, by the pulls that leave the least out of balance."""
+    robot, w, EA = machine.robot, machine.cable.weight_N_per_m, machine.cable.axial_stiffness_N
+    pose = Poses(poses.position_m[k], poses.rotation[k])
+    geometry, load = cable_geometry(robot, pose), load_wrench_N(robot, pose)
+    W, X, D = structure_matrix(robot, geometry), geometry.horizontal_distance_m, geometry.drop_m
+
+    def cables(logarithm):
+        density = np.exp(logarithm)
+        return density, *catenary.length_and_force_z(density, X, D, EA, w)
+
+    def left(logarithm):
+        density, _, force_z = cables(logarithm)
+        return W @ np.stack([density * X, force_z], axis=-1).ravel() - load
+
+    start = np.log(np.full(robot.n_cables, robot.weight_N / robot.n_cables) / geometry.chord_m)
+    return cables(LEAST_SQUARES(left, start, xtol=1e-12, ftol=1e-12, gtol=1e-12).x)[1]
+
+
+def design(found, grades) -> None:
+    """Compare the design before and after with one that proves every product."""
+
+    def every(*arguments, **named):
+        return select(*arguments, **named).chosen
+
+    with_design(found, grades)
+    start = time.perf_counter()
+    ours = with_design(found, grades)
+    middle = time.perf_counter()
+    with patch.object(diagnosis_design, "best_product", every):
+        theirs = with_design(found, grades)
+    end = time.perf_counter()
+    assert (ours.design_before, ours.design_after) == (theirs.design_before, theirs.design_after)
+    tell("design", middle - start, end - middle)
+
+
+def threads(problem: Case) -> None:
+    """Compare linear algebra on one thread with as many as it likes."""
+    start = time.perf_counter()
+    diagnose(problem)
+    middle = time.perf_counter()
+    with patch.object(threadpoolctl, "threadpool_limits", lambda *_, **__: nullcontext()):
+        diagnose(problem)
+    end = time.perf_counter()
+    tell("threads", middle - start, end - middle)
+
+
+def tell(what: str, fast: float, slow: float) -> None:
+    print(f"{what}: {fast:.3g} s against {slow:.3g} s: ratio {slow / fast:.3g}", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--rows", type=int, default=120)
-    problem = case(parser.parse_args().rows)
+    parser.add_argument("--log", type=Path)
+    given = parser.parse_args()
+    problem = case(given.rows)
     diagnose(problem)  # compiled or loaded before the clock starts
     start = time.perf_counter()
     ours = diagnose(problem)
@@ -103,8 +182,14 @@ def main() -> None:
         for finding in found.findings:
             values = {key: round(one.value, 5) for key, one in finding.parameters.items()}
             print(f"{name}: {finding.effect.key} {values}")
-    fast, slow = middle - start, end - middle
-    print(f"{fast:.2f} s against {slow:.1f} s: ratio {slow / fast:.0f}")
+    tell("search", middle - start, end - middle)
+    four_cables(given.rows)
+    design(ours, load_catalogue(with_plugins=False).grades)
+    if given.log:
+        study = read_study(given.log)
+        assert study.measurements is not None
+        problem = case_of(study, study.measurements, read_measured(study))
+    threads(problem)
 
 
 OURS = predict.readings_of

@@ -27,6 +27,7 @@ measurements:
   columns: {L1: {to: length_1_m, unit: mm}}
   cable: {linear_mass: 0.142 kg/m, axial_stiffness: 3.3 MN}
   noise: {length: 1 mm}
+  search_time: 2 min
 """
 
 
@@ -130,6 +131,7 @@ def test_measurements(valid: str, study_of: StudyOf, tmp_path: Path) -> None:
     assert measurements.columns == (LogColumn("L1", "length_1_m", 1e-3, 0.0),)
     assert measurements.length_noise_m == pytest.approx(0.001)
     assert measurements.tension_noise_N is None
+    assert measurements.search_time_s == 120.0
 
 
 def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: StudyOf) -> None:

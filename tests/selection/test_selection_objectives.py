@@ -15,7 +15,7 @@ from designer.cable import Cable
 from designer.region import PointList, Prism
 from designer.selection.objectives import common_currency, smallest_stiffness_N_per_m
 from designer.selection.pareto import dominator_of, is_undominated
-from designer.selection.select import select
+from designer.selection.select import best_product, select
 from designer.study import Selection, Workspace
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
@@ -81,6 +81,12 @@ def test_first_objective_decides(objectives, grade: str, fast_robot, workspace) 
     comparable = [c for c in found.candidates if c.verification.holds]
     assert best == min(c.figures.burden(objectives[0]) for c in comparable)
     assert found.front[0] is found.chosen
+    alone = best_product(fast_robot, workspace, Selection(None, 2.0, objectives), grades())
+    assert alone is not None
+    assert (alone.grade.id, alone.size.id) == (grade, found.chosen.size.id)
+    for objective in objectives:
+        assert alone.figures.burden(objective) == found.chosen.figures.burden(objective)
+    assert alone.verification.max_tension_N == found.chosen.verification.max_tension_N
 
 
 def test_front_is_mutually_undominated_and_beats_the_rest(fast_robot, workspace) -> None:
@@ -127,6 +133,7 @@ def test_without_a_price_nothing_can_be_the_cheapest(fast_robot, workspace) -> N
     none = select(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [unpriced])
     assert none.chosen is None
     assert "price" in (none.reason or "")
+    assert best_product(fast_robot, workspace, Selection(None, 2.0, ("cost",)), [unpriced]) is None
 
 
 def test_prices_in_another_currency_do_not_count(fast_robot, workspace) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from twins.effects import Effects, Parameters, Scene, predict
+from twins.effects import Effects, Parameters, Scene, predict, swayed
 from twins.robots import TwinRobot
 
 ROWS_PER_PASS = 30
@@ -76,6 +76,7 @@ class DataSet:
         platform: dict = {"mass": f"{robot.mass_kg} kg"}
         if robot.attachment_m:
             platform["attachments"] = [list(point) for point in robot.attachment_m]
+            platform["centre_of_mass"] = list(robot.centre_m)
         scale = self.noise or 1.0
         return {
             "name": robot.name,
@@ -155,6 +156,8 @@ def make(
     present = {name: dict(given[name]) for name in names}
     rng = np.random.default_rng(seed)
     scene = _settled(robot, rows, rng, repeats, order) if settled else _moving(robot, rows, rng)
+    if robot.free:
+        scene = swayed(robot, present, swayed(robot, {}, scene, chords=True))
     length, tension = predict(robot, present, scene)
     read_m, wild_m = _spoil(length, noise * robot.noise_m, missing, outliers, rng)
     read_N, wild_N = _spoil(tension, noise * robot.noise_N, missing, outliers, rng)

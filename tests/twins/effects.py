@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from twins.hanging import hang
 from twins.physics import Equilibrium, Machine, least_tensions_N, solve
 from twins.robots import TwinRobot
 
@@ -69,15 +70,35 @@ def predict(robot: TwinRobot, effects: Effects, scene: Scene) -> tuple[np.ndarra
     return readings.length_m, readings.tension_N
 
 
+def swayed(robot: TwinRobot, effects: Effects, scene: Scene, *, chords: bool = False) -> Scene:
+    """Return the scene with the platform turned as it hangs; given ``chords``, moved as well.
+
+    With ``chords`` the winches have paid out the straight distances, so that all poses are such as
+    taut cables hold.
+    """
+    turn = Rotation.from_rotvec(scene.rotation_vector_rad).as_matrix()
+    free = tuple(range(6)) if chords else robot.free
+    position, turn, _ = hang(_machine(robot, effects, scene), scene.position_m, turn, free)
+    vector = Rotation.from_matrix(turn).as_rotvec()
+    return replace(scene, position_m=position, rotation_vector_rad=vector)
+
+
 def _equilibrium(robot: TwinRobot, effects: Effects, scene: Scene) -> Equilibrium:
+    machine = _machine(robot, effects, scene)
+    turn = Rotation.from_rotvec(scene.rotation_vector_rad).as_matrix()
+    if robot.free:
+        return hang(machine, scene.position_m, turn, robot.free)[2]
+    if robot.set_cables:
+        machine = replace(machine, set_N=_set_N(robot, scene, turn))
+    return solve(machine, scene.position_m, turn)
+
+
+def _machine(robot: TwinRobot, effects: Effects, scene: Scene) -> Machine:
     machine = robot.machine()
     for name, change in MACHINE.items():
         if name in effects:
             machine = change(machine, scene, effects[name])
-    turn = Rotation.from_rotvec(scene.rotation_vector_rad).as_matrix()
-    if robot.set_cables:
-        machine = replace(machine, set_N=_set_N(robot, scene, turn))
-    return solve(machine, scene.position_m, turn)
+    return machine
 
 
 def _set_N(robot: TwinRobot, scene: Scene, turn: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from twins.hanging import hang
 from twins.physics import Machine, least_tensions_N, solve
 
 
@@ -22,8 +23,8 @@ class TwinRobot:
         Platform mass [kg], cable mass per length [kg/m], EA [N].
     pose_m, box_m : tuple
         Middle pose, where the winches were homed, and box of the poses ((min, max), …) [m].
-    attachment_m : tuple of points
-        Body frame [m]; empty for a point mass.
+    attachment_m, centre_m : tuple of points, point
+        Body frame [m]; empty for a point mass. Centre of mass.
     turn_rad : float
         Standard deviation of the rotation vector's components [rad].
     set_cables : tuple of int
@@ -48,6 +49,7 @@ class TwinRobot:
     period_s: float
     sizes: dict[str, tuple[float, float]]
     attachment_m: tuple[tuple[float, float, float], ...] = ()
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     turn_rad: float = 0.0
     set_cables: tuple[int, ...] = ()
 
@@ -55,6 +57,11 @@ class TwinRobot:
     def cables(self) -> int:
         """Number of cables."""
         return len(self.exit_m)
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Directions in which the platform sways, of 0 … 5; none where cables hold them all."""
+        return (3, 4, 5)[: max(6 - self.cables, 0)] if self.attachment_m else ()
 
     def machine(self) -> Machine:
         """Return the machine as the drawing has it."""
@@ -66,6 +73,7 @@ class TwinRobot:
             linear_mass=np.full((1, self.cables), self.linear_mass),
             stiffness_N=np.full((1, self.cables), self.stiffness_N),
             has_moments=bool(self.attachment_m),
+            centre_m=np.array(self.centre_m),
             set_cables=self.set_cables,
         )
 
@@ -73,6 +81,8 @@ class TwinRobot:
     def reference_length_m(self) -> np.ndarray:
         """Lengths at the homing pose (cables,) [m]."""
         pose, turn = np.array([self.pose_m]), np.eye(3)[None]
+        if self.free:
+            return hang(self.machine(), pose, turn, tuple(range(6)))[2].length_m[0]
         set_N = least_tensions_N(self.machine(), pose, turn)[:, list(self.set_cables)]
         return solve(replace(self.machine(), set_N=set_N), pose, turn).length_m[0]
 
@@ -259,6 +269,23 @@ HALL8 = replace(
     set_cables=(1, 4),
 )  # fmt: skip
 """Eight cables: six winches follow lengths, two a tension."""
+
+FIELD4 = TwinRobot(
+    name="field4",
+    exit_m=((0, 0, 60), (250, 0, 62), (248, 200, 58), (2, 203, 61)),
+    attachment_m=((-0.8, -0.6, 0.5), (0.8, -0.6, 0.5), (0.8, 0.6, 0.5), (-0.8, 0.6, 0.5)),
+    centre_m=(0.05, -0.02, -0.3),
+    mass_kg=34.0,
+    linear_mass=0.041,
+    stiffness_N=3e5,
+    pose_m=(125.0, 100.0, 20.0),
+    box_m=((80, 170), (65, 135), (5, 35)),
+    noise_m=0.01,
+    noise_N=2.0,
+    period_s=600.0,
+    sizes=_COMMON | {"platform_mass": (0.2, 10.0), "length_offset": (0.005, 0.5)},
+)  # fmt: skip
+"""Four long cables that weigh nearly as much as the platform, which may sway."""
 
 FAST3_WIDE = replace(FAST3, box_m=((150, 350), (80, 260), (-180, -60)))
 """With poses at the very edge, where a cable hangs slack and a few rows carry any effect."""

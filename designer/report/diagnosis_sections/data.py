@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from designer.diagnosis.result import Diagnosis, Estimate
 from designer.report import format as fmt
 from designer.report.diagnosis_sections import words
@@ -66,6 +68,11 @@ def _facts(diagnosis: Diagnosis) -> list[Fact]:
         Fact("Held out", fmt.count(heldout), "contiguous blocks that no fit has seen"),
         Fact("Robot", f"{diagnosis.machine.robot.n_cables} cables", _degrees(diagnosis)),
     ]
+    left = diagnosis.imbalance
+    if left is not None and not np.isnan(left).all():
+        shown = f"{fmt.percent(float(np.nanmedian(left)), 2)} of the platform's weight"
+        most = f"median; {fmt.percent(float(np.nanmax(left)), 2)} at most, as it sways"
+        facts.append(Fact("Out of balance", shown, most))
     for quantity, _, _ in quantities(diagnosis):
         noise = quantity.with_unit(quantity.noise)
         facts.append(Fact(f"Noise of a {quantity.name}", noise, diagnosis.noise.source))

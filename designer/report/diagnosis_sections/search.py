@@ -46,7 +46,8 @@ def search_section(diagnosis: Diagnosis) -> SearchSection:
 def _group(diagnosis: Diagnosis, number: int, step: Step) -> Group:
     added = step.added.key if step.added else ""
     remark = f"{fmt.plural(len(step.trials), 'candidate')}; "
-    remark += f"added {added}{_later(diagnosis, added)}" if added else "nothing earned its place"
+    none = "nothing earned its place" if step.is_complete else "the time for the search was over"
+    remark += f"added {added}{_later(diagnosis, added)}" if added else none
     rows = tuple(_row(trial, trial.effect.key == added) for trial in step.trials[:_MOST])
     return Group(rows, f"Round {number}", remark, "good" if added else "")
 

@@ -30,9 +30,14 @@ def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
 
 
 def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
+    if diagnosis.not_tried:
+        left_out = "; ".join(diagnosis.not_tried)
+        yield Statement("Out of time", f"The search ended early. Not tried: {left_out}.", "bad")
     for group in words.grouped(diagnosis.findings):
         yield _significance(diagnosis, group)
-    yield from _without_rivals([f for f in diagnosis.findings if not f.rivals])
+    yield from _without_rivals(
+        [f for f in diagnosis.findings if not f.rivals and not _is_left_open(diagnosis, f)]
+    )
     for finding in diagnosis.findings:
         if finding.rivals:
             yield _rivals(finding)
@@ -45,6 +50,11 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
     yield _left(diagnosis)
     yield from _lasting(diagnosis)
     yield _noise(diagnosis)
+
+
+def _is_left_open(diagnosis: Diagnosis, finding: Finding) -> bool:
+    """Tell whether there was no time to try all rivals."""
+    return any(what.startswith(f"rivals of {finding.effect.key}:") for what in diagnosis.not_tried)
 
 
 def withdrawal(gone: Withdrawn) -> str:

@@ -1,0 +1,156 @@
+r"""From pose to lengths and tensions, where cables are fewer than degrees of freedom.
+
+Such a platform hangs in balance in some poses only: the others it passes as it sways, or they are
+in balance but for errors of the measurement. In any pose each cable is an elastic catenary between
+its two ends, with one number free, its pull. As many equations as cables ask that the platform be
+in balance in the directions in which pulls act on it; what is left is its acceleration:
+
+.. math::
+
+    \min_p \; |F(p)|^2 + |M(p)|^2 / ρ^2
+
+with F and M, about the centre of mass, what is left of force and moment, and the radius of gyration
+ρ. This is Gauss's principle of least constraint (J. reine angew. Math. 4, 1829, p. 232): a free
+body accelerates by F/m and M/(m ρ²), and pulls leave the least of it. The platform's inertia is not
+known; for ρ the attachments' root mean square distance from the centre of mass is taken, which does
+not matter where the pose is in balance. There nothing is left, and this is the exact equilibrium.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.cable import Cable
+from designer.kernel.calling import plain
+from designer.robot import Poses, Robot
+from designer.statics.geometry import upright_poses
+from designer.statics.inverse import Statics
+from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
+from designer.verdict import Verdict
+
+_SMALLEST_SHARE = 1e-3
+_STILL = 1e-7
+_MOST_LEFT = 0.9
+_LONGEST = 8.0
+
+
+def solve_underactuated(
+    robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
+) -> Statics:
+    """Return lengths and tensions of poses (n_poses,) with the least of balance left.
+
+    Parameters
+    ----------
+    robot, poses, cable
+        A robot with fewer cables than degrees of freedom, its poses (n_poses,), and its cables.
+    force_N : array (n_poses, 3), optional
+        Force on the platform beside its weight, base frame [N].
+
+    Returns
+    -------
+    Statics
+        ``not converged`` where no least is found; ``not found`` where nine tenths of the load are
+        left, or a cable would hang eight times as long as its chord. No tension along a chord falls
+        below a thousandth of the platform's weight. `imbalance` tells what is left.
+    """
+    from designer.kernel.underactuated import LONGEST, STEP_LEFT, WRENCH_LEFT
+
+    weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
+    n_poses = len(poses.position_m)
+    told = np.empty((n_poses, 3))
+    load_N = _load_about_centre_N(robot, poses, force_N)
+
+    def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+        found = _least_left(robot, poses, run, cable, load_N, told)
+        free, force_x, force_z = found
+        downward = weight * free - force_z
+        return found, np.arctan2(downward, force_x), np.hypot(force_x, downward) / stiffness
+
+    found, run, gap_rad = over_pulleys(robot, poses, solve)
+    load = np.linalg.norm(load_N[:, :3], axis=1)
+    held = (told[:, WRENCH_LEFT] <= _MOST_LEFT * load) & (told[:, LONGEST] <= _LONGEST)
+    verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND)
+    verdict[~((told[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = Verdict.NOT_CONVERGED
+    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], found, np.nan)
+    ones = np.ones((n_poses, 1))
+    return Statics(
+        robot=robot,
+        poses=poses,
+        verdict=verdict.astype(np.int8),
+        weight_N_per_m=weight * ones,
+        axial_stiffness_N=stiffness * ones,
+        length_m=free + run.wrap_m,
+        force_x_N=force_x,
+        force_z_N=force_z,
+        run=run,
+        force_N=force_N,
+    )
+
+
+def imbalance(statics: Statics) -> FloatArray:
+    """Return what is left of force and moment over the platform's weight (...).
+
+    The square root of the module's sum: the platform's acceleration over that of gravity. NaN where
+    the pose is not solved.
+    """
+    robot = statics.robot
+    wrench = np.zeros((*statics.verdict.shape, 6))
+    wrench[..., robot.balance_rows] = statics.equilibrium_residual_N()
+    force, moment = wrench[..., :3], wrench[..., 3:]
+    moment = moment - np.cross(_arm_m(robot, statics.poses), force)
+    wrench[..., 3:] = moment
+    left = np.linalg.norm(wrench[..., robot.balance_rows] * _scale(robot), axis=-1)
+    return np.asarray(left / robot.weight_N)
+
+
+def _least_left(
+    robot: Robot,
+    poses: Poses,
+    run: PulleyRun,
+    cable: Cable,
+    load_N: FloatArray,
+    told: FloatArray,
+) -> FloatArray:
+    """Return free lengths and forces x and z (3, n_poses, n_cables), and fill what is told."""
+    from designer.kernel.underactuated import solve_underactuated_poses
+
+    upright, each = upright_poses(robot, poses), np.ones(robot.n_cables)
+    out = np.empty((len(told), robot.n_cables, 3))
+    solve_underactuated_poses(
+        plain(run.exit_points_m).reshape(-1, robot.n_cables, 3),
+        plain(robot.attachments_m - robot.platform.centre_of_mass_m),
+        plain(load_N),
+        plain(upright.position_m + _arm_m(robot, poses)),
+        plain(upright.rotation).reshape(-1, 3, 3),
+        plain(cable.weight_N_per_m * each),
+        plain(cable.weight_N_per_m / cable.axial_stiffness_N * each),
+        robot.balance_rows,
+        plain(_scale(robot)),
+        _SMALLEST_SHARE * robot.weight_N,
+        out,
+        told,
+    )
+    return np.moveaxis(out, -1, 0)
+
+
+def _load_about_centre_N(robot: Robot, poses: Poses, force_N: FloatArray | None) -> FloatArray:
+    """Return what is to be held, about the centre of mass, upright frame (1 or n_poses, 6)."""
+    load = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
+    beside_weight = load[:, :3] - np.array([0.0, 0.0, robot.weight_N])
+    if not beside_weight.any():
+        return load
+    moment = load[:, 3:] - np.cross(_arm_m(robot, poses), beside_weight)
+    return np.hstack([np.broadcast_to(load[:, :3], moment.shape), moment])
+
+
+def _arm_m(robot: Robot, poses: Poses) -> FloatArray:
+    """Return the centre of mass from the body's origin, upright frame (..., 3)."""
+    return np.asarray(upright_poses(robot, poses).rotation @ robot.platform.centre_of_mass_m)
+
+
+def _scale(robot: Robot) -> FloatArray:
+    """Return what makes forces of moments (dof,): 1/ρ."""
+    apart = robot.attachments_m - robot.platform.centre_of_mass_m
+    gyration = float(np.sqrt((apart**2).sum(axis=1).mean()))
+    return np.where(robot.balance_rows < 3, 1.0, 1.0 / (gyration or 1.0))
