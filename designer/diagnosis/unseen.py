@@ -16,30 +16,19 @@ from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search
 
 _CLEAR = 2.0
-_LEAST, _MUCH = 0.01, 0.05
+_LEAST = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Gain:
-    """Share of the held-out mean square that goes with an effect.
-
-    Parameters
-    ----------
-    share, std : float
-        The share, and its standard deviation.
-    everywhere : bool
-        Whether it gains in each of the held-out blocks.
-    """
+    """Share of the held-out mean square that goes with an effect, and its standard deviation."""
 
     share: float
     std: float
-    everywhere: bool = False
 
     @property
     def is_clear(self) -> bool:
-        """Whether it is at least 1 % and two standard deviations, or 5 % and in every block."""
-        if self.everywhere and self.share >= _MUCH:
-            return True
+        """Whether it is at least 1 %, and two standard deviations above zero."""
         return self.share >= max(_LEAST, _CLEAR * self.std)
 
 
@@ -116,6 +105,4 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
         sums = np.array([cross[part == k].sum() for k in np.unique(part)])
         doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
     share = 1.0 - float(np.sum(after**2)) / total
-    gains = np.sum(before**2 - after**2, axis=1)
-    everywhere = all(gains[block == k].sum() > 0.0 for k in np.unique(block))
-    return Gain(share, float(np.sqrt(max(doubts))) / total, everywhere)
+    return Gain(share, float(np.sqrt(max(doubts))) / total)
