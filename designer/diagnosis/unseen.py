@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,10 +10,12 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.errors_of import thirds_of, without_outliers
+from designer.diagnosis.fit import Fit
 from designer.diagnosis.hold import Outcome, implausible, structure_left, without
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search
+from designer.effects.effect import Effect
 
 _CLEAR = 2.0
 _LEAST = 0.01
@@ -57,7 +59,7 @@ def keep_what_helps(
     withdrawn = list(outcome.withdrawn)
     gains: dict[str, Gain] = {}
     while found:
-        wild = implausible(model, found)
+        wild = implausible(model, found) or _faint(model, found)
         if wild is not None:
             withdrawn.append(wild)
             found = without(found, [wild.effect])
@@ -84,6 +86,18 @@ def keep_what_helps(
         replace(outcome, search=search, withdrawn=tuple(withdrawn), structure=structure),
         gains,
     )
+
+
+def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+    """Return the first effect that may as well do nothing, by its clustered deviations."""
+    keys, at = {effect.key for effect in found}, 0
+    for setting in model.settings:
+        own = slice(at, at + len(setting.values))
+        at = own.stop
+        away = np.abs(model.vector[own] - [p.neutral for p in setting.effect.parameters])
+        if setting.effect.key in keys and np.all(away < _CLEAR * model.std[own]):
+            return Withdrawn(setting.effect.key, reason=Reason.FAINT)
+    return None
 
 
 def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
