@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,37 +10,28 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.errors_of import thirds_of, without_outliers
+from designer.diagnosis.fit import Fit
 from designer.diagnosis.hold import Outcome, implausible, structure_left, without
 from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import Search
+from designer.effects.effect import Effect
 
 _CLEAR = 2.0
-_LEAST, _MUCH = 0.01, 0.05
+_LEAST = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Gain:
-    """Share of the held-out mean square that goes with an effect.
-
-    Parameters
-    ----------
-    share, std : float
-        The share, and its standard deviation.
-    everywhere : bool
-        Whether it gains in each of the held-out blocks.
-    """
+    """Share of the held-out mean square that goes with an effect, and its standard deviation."""
 
     share: float
     std: float
-    everywhere: bool = False
 
     @property
     def is_clear(self) -> bool:
-        """Whether it is at least 1 % and two standard deviations, or 5 % and in every block."""
-        if self.everywhere and self.share >= _MUCH:
-            return True
+        """Whether it is at least 1 %, and two standard deviations above zero."""
         return self.share >= max(_LEAST, _CLEAR * self.std)
 
 
@@ -68,7 +60,7 @@ def keep_what_helps(
     withdrawn = list(outcome.withdrawn)
     gains: dict[str, Gain] = {}
     while found:
-        wild = implausible(model, found)
+        wild = implausible(model, found) or _faint(model, found)
         if wild is not None:
             withdrawn.append(wild)
             found = without(found, [wild.effect])
@@ -97,6 +89,18 @@ def keep_what_helps(
     )
 
 
+def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+    """Return the first effect that may as well do nothing, by its clustered deviations."""
+    keys, at = {effect.key for effect in found}, 0
+    for setting in model.settings:
+        own = slice(at, at + len(setting.values))
+        at = own.stop
+        away = np.abs(model.vector[own] - [p.neutral for p in setting.effect.parameters])
+        if setting.effect.key in keys and np.all(away < _CLEAR * model.std[own]):
+            return Withdrawn(setting.effect.key, reason=Reason.FAINT)
+    return None
+
+
 def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     """Return the gain between two residuals of held-out rows, readings that suit neither left out.
 
@@ -116,6 +120,4 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
         sums = np.array([cross[part == k].sum() for k in np.unique(part)])
         doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
     share = 1.0 - float(np.sum(after**2)) / total
-    gains = np.sum(before**2 - after**2, axis=1)
-    everywhere = all(gains[block == k].sum() > 0.0 for k in np.unique(block))
-    return Gain(share, float(np.sqrt(max(doubts))) / total, everywhere)
+    return Gain(share, float(np.sqrt(max(doubts))) / total)

@@ -12,7 +12,7 @@ from shared_data import needs_shared, shared
 from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.result import Diagnosis, Verdict
 from designer.measured.read import read_measured
 
 pytestmark = pytest.mark.slow
@@ -63,7 +63,8 @@ def test_scampi_names_the_clock_and_halves_the_error(tmp_path: Path) -> None:
     assert after is not None
     assert after.heldout.value < 0.5 * before.heldout.value
     assert after.heldout.high < before.heldout.low
-    assert not found.is_unexplained
+    # Half the rows do not show every moved exit point clearly; what is left is said.
+    assert found.verdict in (Verdict.FOUND, Verdict.IN_PART)
     tried = {trial.effect.id for step in found.steps for trial in step.trials}
     assert {"pulley_radius", "drum_scale", "drum_layering", "creep", "elastic_modulus"} <= tried
     skipped = dict(found.skipped)

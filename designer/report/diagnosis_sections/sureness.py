@@ -63,7 +63,7 @@ def withdrawal(gone: Withdrawn) -> str:
         return (
             f"{words.capital(gone.reason.value)}: with it, their mean square changes by "
             f"{fmt.signed_percent(-gone.gain)} ± {fmt.percent(gone.gain_std, 2)}, and a finding "
-            "has to lower it by more than twice that doubt, or by 5 % and in each block."
+            "has to lower it by more than twice that doubt."
         )
     if gone.reason is not Reason.DRIFTS:
         return f"{words.capital(gone.reason.value)}{': ' if gone.detail else ''}{gone.detail}."
