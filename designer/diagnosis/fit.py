@@ -39,6 +39,9 @@ class Fit:
     inflation : mapping of str to float
         For each effect, by how much the readings that tell of it are fewer than they look, at
         least 1: mean ratio of variances (Rao and Scott, Ann. Statist. 12, 1984).
+    wald : mapping of str to float
+        For each effect, how far all its values together are from doing nothing, squared, in units
+        of their covariance: the smallest over the estimates of it that ``std`` is the largest of.
     """
 
     settings: tuple[Setting, ...]
@@ -47,6 +50,7 @@ class Fit:
     loss: float
     n_data: int
     inflation: Mapping[str, float] = field(default_factory=dict)
+    wald: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def variance(self) -> float:
@@ -209,14 +213,14 @@ def _fit_from(
     limit = _HUBER * np.sqrt(variance)
     residual[taken] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
-    std, inflation = _doubts(settings, slopes, residual, variance)
-    return Fit(settings, answer.x, std, loss, count, inflation)
+    std, inflation, wald = _doubts(settings, slopes, residual, variance)
+    return Fit(settings, answer.x, std, loss, count, inflation, wald)
 
 
 def _doubts(
     settings: Sequence[Setting], slopes: FloatArray, residual: FloatArray, variance: float
-) -> tuple[FloatArray, dict[str, float]]:
-    """Return standard deviations, and the inflation of each effect; see `Fit`."""
+) -> tuple[FloatArray, dict[str, float], dict[str, float]]:
+    """Return standard deviations, and inflation and Wald statistic of each effect; see `Fit`."""
     scale = np.sqrt(np.sum(slopes**2, axis=(0, 1)))
     is_unseen = scale == 0.0
     scale[is_unseen] = 1.0
@@ -225,11 +229,17 @@ def _doubts(
     plain = variance * bread
     clustered = [bread @ one @ bread for one in score_covariances(unit, residual)]
     spread = np.max([np.diag(one) for one in (plain, *clustered)], axis=0)
-    inflation, at = {}, 0
+    inflation, wald, at = {}, {}, 0
     for setting in settings:
         own = slice(at, at + len(setting.values))
         at = own.stop
+        away = [setting.values[p.name] - p.neutral for p in setting.effect.parameters] * scale[own]
+        wald[setting.effect.key] = min(
+            float(away @ np.linalg.pinv(one[own, own], rcond=1e-9, hermitian=True) @ away)
+            for one in (plain, *clustered)
+        )
         inverse = np.linalg.pinv(plain[own, own], rcond=1e-9, hermitian=True)
         ratios = [np.sum(inverse * one[own, own]) / len(setting.values) for one in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
-    return np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale), inflation
+    std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
+    return std, inflation, wald

@@ -64,7 +64,7 @@ class Reason(Enum):
     DRIFTS = "it fits as a constant, but would have to change with a covariate"
     SMALL = "it explains less than half of what stays unexplained, which it may be bent to fit"
     IMPLAUSIBLE = "it needs values that are not plausible"
-    FAINT = "no value of it is further from doing nothing than twice its standard deviation"
+    FAINT = "its values may be chance where neighbouring rows are counted as alike"
     UNSEEN = "it does not help on rows that no fit has seen"
 
 

@@ -15,7 +15,7 @@ from designer.diagnosis.hold import Outcome, implausible, structure_left, withou
 from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
-from designer.diagnosis.search import Search
+from designer.diagnosis.search import SIGNIFICANCE, Search
 from designer.effects.effect import Effect
 
 _CLEAR = 2.0
@@ -90,14 +90,15 @@ def keep_what_helps(
 
 
 def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
-    """Return the first effect that may as well do nothing, by its clustered deviations."""
-    keys, at = {effect.key for effect in found}, 0
-    for setting in model.settings:
-        own = slice(at, at + len(setting.values))
-        at = own.stop
-        away = np.abs(model.vector[own] - [p.neutral for p in setting.effect.parameters])
-        if setting.effect.key in keys and np.all(away < _CLEAR * model.std[own]):
-            return Withdrawn(setting.effect.key, reason=Reason.FAINT)
+    """Return the first effect that may as well do nothing, by its clustered covariance.
+
+    All its values together: those of a moved exit point are each in doubt through the others.
+    """
+    from scipy.stats import chi2
+
+    for effect in found:
+        if chi2.sf(model.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
+            return Withdrawn(effect.key, reason=Reason.FAINT)
     return None
 
 

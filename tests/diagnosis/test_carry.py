@@ -52,7 +52,7 @@ def drawn(robot, *effects):
         (YARD3, ("platform_mass",), ("anchors",), True),
         (YARD3, ("tension_gain", "tension_bias"), ("tension_bias",), False),
         (HALL6, ("drum_scale", "centre_of_mass_offset"), ("drum_scale",), True),
-        (HALL8, ("drum_scale", "tension_gain"), ("drum_scale",), True),
+        (HALL8, ("drum_scale", "platform_mass"), ("drum_scale",), True),
     ],
     ids=["point", "exit points", "noise estimated", "platform", "redundant"],
 )

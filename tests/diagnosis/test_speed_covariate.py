@@ -40,16 +40,17 @@ def test_poses_at_rest_have_no_speed(tmp_path) -> None:
 
 
 def test_no_effect_drifts_with_a_speed() -> None:
-    carriers = (Carrier("speed_1_m_per_s", 0.5, 0.001), Carrier("z_m", 0.4, 0.001))
+    carriers = (Carrier("speed_1_m_per_s", 0.5, 0.0005), Carrier("z_m", 0.4, 0.0005))
     values = np.random.default_rng(0).normal(size=(20, 3))
     covariates = {carrier.name: values[:, 0] for carrier in carriers}
-    told = _weights(Structure(carriers, 2.0), covariates, Readings(values, values))
+    rows = np.ones(20, dtype=np.bool_)
+    told = _weights(Structure(carriers, 2.0), covariates, Readings(values, values), rows)
     names = [name for name, _ in told]
     assert names == ["z_m", "the cable's own tension", "the cable's own length"]
 
 
 def test_what_goes_with_speeds_alone_casts_no_doubt_on_constants() -> None:
-    speed, height = Carrier("speed_1_m_per_s", 0.5, 0.001), Carrier("z_m", 0.4, 0.001)
+    speed, height = Carrier("speed_1_m_per_s", 0.5, 0.0005), Carrier("z_m", 0.4, 0.0005)
     assert Structure((speed, Carrier("z_m", 0.1, 0.4)), 2.0).is_present
     assert not Structure((speed, Carrier("z_m", 0.1, 0.4)), 2.0).may_bend
     assert Structure((speed, height), 2.0).may_bend

@@ -91,10 +91,8 @@ def _significance(diagnosis: Diagnosis, group: Sequence[Finding]) -> Statement:
             f"{fmt.percent(f.heldout_gain, 3)} ± {fmt.percent(f.heldout_gain_std, 2)}"
             for f in gains
         )
-        takes = "they take" if each else "it takes"
-        gain = (
-            f" On held-out rows, {takes} {shares} off the mean square{each and ', each by itself'}."
-        )
+        takes = "they take, each by itself," if len(gains) > 1 else "it takes"
+        gain = f" On held-out rows, {takes} {shares} off the mean square."
     return Statement(f"Significance of {words.key_of(group)}", accident + gain)
 
 
