@@ -18,7 +18,7 @@ from designer.diagnosis.result import Reason, Withdrawn
 from designer.diagnosis.search import SIGNIFICANCE, Search
 from designer.effects.effect import Effect
 
-_CLEAR = 2.0
+_CLEAR, _ENOUGH = 2.0, 6
 _LEAST = 0.01
 
 
@@ -107,6 +107,7 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
 
     With δ = before - after, before² - after² = δ² + 2 δ · after: the first term is what the effect
     does, the second is in doubt by the scatter that is left, over blocks and over their thirds.
+    Where there are enough blocks, the scatter of their gains is a measure of the doubt as well.
     """
     suits = ~(np.isnan(without_outliers(before)) & np.isnan(without_outliers(after)))
     before, after = (np.where(suits, one, 0.0) for one in (before, after))
@@ -120,5 +121,8 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     for part in (block, thirds_of(block)):
         sums = np.array([cross[part == k].sum() for k in np.unique(part)])
         doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
-    share = 1.0 - float(np.sum(after**2)) / total
-    return Gain(share, float(np.sqrt(max(doubts))) / total)
+    share, doubt = 1.0 - float(np.sum(after**2)) / total, max(doubts)
+    gains = np.array([np.sum((before**2 - after**2)[block == k]) for k in np.unique(block)])
+    if len(gains) >= _ENOUGH:
+        doubt = min(doubt, len(gains) * float(np.var(gains, ddof=1)))
+    return Gain(share, float(np.sqrt(doubt)) / total)

@@ -139,11 +139,14 @@ def refine_over_branches(
         As for `refine_each`.
     """
     plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
-    if np.array_equal(plain(starts), thorough(starts)):
+
+    def changes(places: FloatArray) -> bool:
+        return len(places) > 0 and not np.array_equal(plain(places), thorough(places))
+
+    if not changes(starts):
         found = refine_each(space, plain, starts, effort)
         places = np.array([worst.place for worst in found])
-        places = places[np.isfinite(places).all(axis=1)]
-        if np.array_equal(plain(places), thorough(places)):
+        if not changes(places[np.isfinite(places).all(axis=1)]):
             return found
     return refine_each(space, thorough, starts, effort)
 

@@ -168,7 +168,7 @@ def test_names_carry_the_unit_that_a_bare_number_has() -> None:
     for effect in EFFECTS.values():
         for parameter in effect.parameters_for(2):
             unit = parameter.dimension.unit.replace("*", "_").replace("^", "")
-            ending = f"_per_{unit[2:]}" if unit.startswith("1/") else f"_{unit}"
+            ending = f"_{unit}".replace("_1/", "_per_").replace("/", "_per_")
             assert not unit or re.search(f"{ending}$", parameter.name)
 
 
