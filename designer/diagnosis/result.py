@@ -65,6 +65,7 @@ class Reason(Enum):
     SMALL = "it explains less than half of what stays unexplained, which it may be bent to fit"
     IMPLAUSIBLE = "it needs values that are not plausible"
     FAINT = "its values may be chance where neighbouring rows are counted as alike"
+    NO_STEP = "what is left still goes with time, so that it was no step"
     UNSEEN = "it does not help on rows that no fit has seen"
 
 

@@ -73,7 +73,13 @@ def keep_what_helps(
             before = whole.residual(rest.settings)[heldout]
             gains[effect.key] = _gain(before, left, heldout)
         if all(gain.is_clear for gain in gains.values()):
-            break
+            slow = _no_step(whole, model, found)
+            if slow is None:
+                break
+            withdrawn.append(slow)
+            found = without(found, [slow.effect])
+            model = searcher.fit(found, model, thorough=True)
+            continue
         least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
         progress(f"{least} withdrawn")
         gain = gains.pop(least)
@@ -100,6 +106,17 @@ def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
         if chi2.sf(model.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
             return Withdrawn(effect.key, reason=Reason.FAINT)
     return None
+
+
+def _no_step(whole: Problem, model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+    """Return an effect that begins at a time, if what is left goes with time all the same."""
+    steps = [effect for effect in found if effect.starts_from is not None]
+    if not steps:
+        return None
+    left = structure_left(whole, model.settings, np.ones(whole.measured.n_rows, dtype=np.bool_))
+    if not any(carrier.name in ("time_s", "row") for carrier in left.present):
+        return None
+    return Withdrawn(steps[0].key, reason=Reason.NO_STEP)
 
 
 def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
