@@ -33,6 +33,8 @@ from designer.sizing.newton import size_poses
 from designer.study import DeclaredEffect
 from designer.verdict import Verdict
 
+pytestmark = pytest.mark.slow
+
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 
 
