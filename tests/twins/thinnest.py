@@ -68,7 +68,9 @@ class Problem:
         return both[:, self.rows].T
 
     def cables(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Upward pull, both tensions and length, then the slopes of the first three in log h."""
+        """Upward pull, both end tensions, length, the slopes of the first three in log h, and the
+        least tension anywhere in the cable with its slope.
+        """
         if self.last[0] == u.tobytes():
             return self.last[1]
         h = np.exp(u)
@@ -97,7 +99,12 @@ class Problem:
         a, b = mu - delta, mu + delta
         up, low, top = h * np.sinh(a), h * np.cosh(a), h * np.cosh(b)
         slopes = up + low * (m_h - d_h), low + up * (m_h - d_h), top + h * np.sinh(b) * (m_h + d_h)
-        self.last = (u.tobytes(), (up, low, top, length, *slopes))
+        # The lowest point of the cable has the least; without one, the end that is lower.
+        ends = [(a >= 0, low, slopes[1]), (b <= 0, top, slopes[2])]
+        least, least_slope = (
+            np.select([end[0] for end in ends], [end[k] for end in ends], h) for k in (1, 2)
+        )
+        self.last = (u.tobytes(), (up, low, top, length, *slopes, least, least_slope))
         return self.last[1]
 
     def balance(self, z: np.ndarray) -> np.ndarray:
@@ -110,21 +117,20 @@ class Problem:
         return np.column_stack([columns, -self.load])
 
     def room(self, z: np.ndarray) -> np.ndarray:
-        _, low, top, *_ = self.cables(z[:-1])
+        _, low, top, *_, least, _ = self.cables(z[:-1])
         found = [1 - low / self.strength, 1 - top / self.strength]
         if self.least > 0:
-            found.append(np.exp(z[:-1]) * self.L / self.X / self.strength - z[-1] * self.least)
+            found.append(least / self.strength - z[-1] * self.least)
         return np.concatenate(found)
 
     def room_slope(self, z: np.ndarray) -> np.ndarray:
-        *_, low, top = self.cables(z[:-1])
+        *_, low, top, _, least = self.cables(z[:-1])
         n = len(low)
         zero = np.zeros((n, 1))
         found = [np.hstack([np.diag(-low / self.strength), zero])]
         found.append(np.hstack([np.diag(-top / self.strength), zero]))
         if self.least > 0:
-            along = np.exp(z[:-1]) * self.L / self.X / self.strength
-            found.append(np.hstack([np.diag(along), zero - self.least]))
+            found.append(np.hstack([np.diag(least / self.strength), zero - self.least]))
         return np.vstack(found)
 
     def straight(self) -> tuple[np.ndarray, float]:
