@@ -142,7 +142,8 @@ def check(
     check_held(case, everything)
     noise = _noise(measurements, measured, everything)
     declared = Problem(measured, everything, noise)
-    without = Problem(measured, Predictor(case.machine, measured), noise)
+    bare_predict = Predictor(case.machine, measured, (), study.known_effects)
+    without = Problem(measured, bare_predict, noise)
     problems: dict[str, tuple[Problem, tuple[Setting, ...]]] = {
         "declared": (declared, ()),
         "without": (without, ()),

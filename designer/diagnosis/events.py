@@ -41,9 +41,9 @@ def find_events(
     """Return what explains more of the residual than accident would, and than any covariate does.
 
     A step: the mean of a reading, or of all of a kind, differs before and after a row, more sharply
-    than a cubic over the rows follows. The end of
-    a range: from some value on, a reading falls short by all that is predicted beyond it. Accident
-    is drawn as in `designer.diagnosis.structure.find_structure`.
+    than a cubic over the rows follows. The end of a range: from some value on, a reading falls
+    short by all that is predicted beyond it. Accident is drawn as in
+    `designer.diagnosis.structure.find_structure`.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +15,8 @@ from designer.diagnosis.hold import Outcome, implausible, structure_left, withou
 from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
-from designer.diagnosis.search import SIGNIFICANCE, Search
+from designer.diagnosis.search import SIGNIFICANCE, Search, Searcher
+from designer.diagnosis.structure import Structure
 from designer.effects.effect import Effect
 
 _CLEAR, _ENOUGH = 2.0, 6
@@ -58,41 +59,48 @@ def keep_what_helps(
     """
     found, model, searcher = list(outcome.search.found), outcome.search.fit, outcome.searcher
     withdrawn = list(outcome.withdrawn)
-    gains: dict[str, Gain] = {}
-    while found:
-        wild = implausible(model, found) or _faint(model, found)
-        if wild is not None:
-            withdrawn.append(wild)
-            found = without(found, [wild.effect])
-            model = searcher.fit(found, model, thorough=True)
-            continue
-        gains = {}
-        left = whole.residual(model.settings)[heldout]
-        for effect in found:
-            rest = searcher.fit(without(found, [effect.key]), model)
-            before = whole.residual(rest.settings)[heldout]
-            gains[effect.key] = _gain(before, left, heldout)
-        if all(gain.is_clear for gain in gains.values()):
-            slow = _no_step(whole, model, found)
-            if slow is None:
-                break
-            withdrawn.append(slow)
-            found = without(found, [slow.effect])
-            model = searcher.fit(found, model, thorough=True)
-            continue
-        least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
-        progress(f"{least} withdrawn")
-        gain = gains.pop(least)
-        withdrawn.append(Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std))
-        found = without(found, [least])
+    everywhere = np.ones_like(heldout)
+    while True:
+        gains, structure = dict[str, Gain](), outcome.structure
+        gone = implausible(model, found) or _faint(model, found)
+        if gone is None:
+            gains = _gains(searcher, whole, model, found, heldout)
+            gone = _unclear(gains)
+        if gone is None:
+            structure = structure_left(whole, model.settings, everywhere)
+            gone = _no_step(structure, found)
+        if gone is None:
+            break
+        progress(f"{gone.effect} withdrawn")
+        withdrawn.append(gone)
+        found = without(found, [gone.effect])
         model = searcher.fit(found, model, thorough=True)
     search = Search(outcome.search.steps, model, tuple(found))
-    everywhere = np.ones_like(heldout)
-    structure = structure_left(whole, model.settings, everywhere)
     return (
         replace(outcome, search=search, withdrawn=tuple(withdrawn), structure=structure),
         gains,
     )
+
+
+def _gains(
+    searcher: Searcher, whole: Problem, model: Fit, found: Sequence[Effect], heldout: BoolArray
+) -> dict[str, Gain]:
+    """Return what each effect gains on held-out rows, the others fitted anew without it."""
+    left = whole.residual(model.settings)[heldout]
+    gains = {}
+    for effect in found:
+        rest = searcher.fit(without(found, [effect.key]), model)
+        gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
+    return gains
+
+
+def _unclear(gains: Mapping[str, Gain]) -> Withdrawn | None:
+    """Return the least clear effect; None where all are clear."""
+    if all(gain.is_clear for gain in gains.values()):
+        return None
+    least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
+    gain = gains[least]
+    return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
 
 
 def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
@@ -108,15 +116,12 @@ def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
     return None
 
 
-def _no_step(whole: Problem, model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+def _no_step(structure: Structure, found: Sequence[Effect]) -> Withdrawn | None:
     """Return an effect that begins at a time, if what is left goes with time all the same."""
     steps = [effect for effect in found if effect.starts_from is not None]
-    if not steps:
-        return None
-    left = structure_left(whole, model.settings, np.ones(whole.measured.n_rows, dtype=np.bool_))
-    if not any(carrier.name in ("time_s", "row") for carrier in left.present):
-        return None
-    return Withdrawn(steps[0].key, reason=Reason.NO_STEP)
+    if steps and any(carrier.name in ("time_s", "row") for carrier in structure.present):
+        return Withdrawn(steps[0].key, reason=Reason.NO_STEP)
+    return None
 
 
 def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:

@@ -15,7 +15,7 @@ from designer.cable import Cable
 from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, upright_poses
-from designer.statics.inverse import Statics
+from designer.statics.inverse import Statics, statics_with
 from designer.statics.nearest import solve_nearest
 from designer.statics.stiffness import per_reach
 from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
@@ -79,20 +79,8 @@ def solve_internal(
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
     closes = (rest <= _CLOSES) & (gap_rad <= SETTLED_RAD)
-    free, force_x, force_z = np.where(closes[:, None], found, np.nan)
-    ones = np.ones((len(rest), 1))
-    return Statics(
-        robot=robot,
-        poses=poses,
-        verdict=np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8),
-        weight_N_per_m=weight * ones,
-        axial_stiffness_N=stiffness * ones,
-        length_m=free + run.wrap_m,
-        force_x_N=force_x,
-        force_z_N=force_z,
-        run=run,
-        force_N=force_N,
-    )
+    verdict = np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
+    return statics_with(robot, poses, cable, run, verdict, found, force_N)
 
 
 def _nearest_balance(

@@ -262,6 +262,36 @@ def statics_of(
     )
 
 
+def statics_with(
+    robot: Robot,
+    poses: Poses,
+    cable: Cable,
+    run: PulleyRun,
+    verdict: VerdictArray,
+    found: FloatArray,
+    force_N: FloatArray | None,
+) -> Statics:
+    """Return the statics of poses (n_poses,) with one cable for all.
+
+    What was ``found`` is free lengths [m] and forces x and z at the platform [N],
+    (3, n_poses, n_cables); NaN unless solved.
+    """
+    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], found, np.nan)
+    ones = np.ones((len(verdict), 1))
+    return Statics(
+        robot=robot,
+        poses=poses,
+        verdict=verdict,
+        weight_N_per_m=cable.weight_N_per_m * ones,
+        axial_stiffness_N=cable.axial_stiffness_N * ones,
+        length_m=free + run.wrap_m,
+        force_x_N=force_x,
+        force_z_N=force_z,
+        run=run,
+        force_N=force_N,
+    )
+
+
 def _solve_or_nan(matrices: FloatArray, right: FloatArray) -> FloatArray:
     """Solve many small systems; a singular one gives NaN instead of an exception."""
     scale = np.abs(matrices).max(axis=(-2, -1), keepdims=True)

@@ -25,7 +25,7 @@ from designer.cable import Cable
 from designer.kernel.calling import plain
 from designer.robot import Poses, Robot
 from designer.statics.geometry import upright_poses
-from designer.statics.inverse import Statics
+from designer.statics.inverse import Statics, statics_with
 from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
 from designer.verdict import Verdict
 
@@ -70,22 +70,9 @@ def solve_underactuated(
     found, run, gap_rad = over_pulleys(robot, poses, solve)
     load = np.linalg.norm(load_N[:, :3], axis=1)
     held = (told[:, WRENCH_LEFT] <= _MOST_LEFT * load) & (told[:, LONGEST] <= _LONGEST)
-    verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND)
+    verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND).astype(np.int8)
     verdict[~((told[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = Verdict.NOT_CONVERGED
-    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], found, np.nan)
-    ones = np.ones((n_poses, 1))
-    return Statics(
-        robot=robot,
-        poses=poses,
-        verdict=verdict.astype(np.int8),
-        weight_N_per_m=weight * ones,
-        axial_stiffness_N=stiffness * ones,
-        length_m=free + run.wrap_m,
-        force_x_N=force_x,
-        force_z_N=force_z,
-        run=run,
-        force_N=force_N,
-    )
+    return statics_with(robot, poses, cable, run, verdict, found, force_N)
 
 
 def imbalance(statics: Statics) -> FloatArray:

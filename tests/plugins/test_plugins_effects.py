@@ -16,6 +16,7 @@ from designer import effects
 from designer.cli import main
 from designer.config import read_study
 from designer.declared import as_built_by, declared_settings
+from designer.diagnosis.check import check
 from designer.diagnosis.plugin_effects import diagnose_study
 from designer.diagnosis_files import diagnosed_config, diagnosis_dict
 from designer.effects.known import KnownEffects
@@ -180,6 +181,19 @@ def test_it_may_be_unknown_from_the_start(site, tmp_path) -> None:
     assert study.measurements.unknown == ("load_cell_drift",)
     with pytest.raises(InputError, match=r"unknown\[0\]: 'load_cell_drift' is not known"):
         read_study(path)
+
+
+def test_its_unknown_is_fitted_where_nothing_is_declared(site, tmp_path) -> None:
+    install_plugin(site, "acme-drift", plugin(DRIFT))
+    path = twin(tmp_path, 2.0)
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("measured.csv", "measured.csv\n  unknown: [load_cell_drift]"))
+    study = read_study(path, known())
+    assert study.measurements is not None
+    told = check(study, study.measurements, read_measured(study))
+    assert told.fitted is not None
+    assert told.fitted.tension_N is not None and told.without.tension_N is not None
+    assert told.fitted.tension_N.rms.value < 0.5 * told.without.tension_N.rms.value
 
 
 # what the hook gives, beside DRIFT, and what is said of it
