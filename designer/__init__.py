@@ -1,3 +1,94 @@
-"""Design exploration for large cable-driven parallel robots."""
+"""Design exploration for large cable-driven parallel robots.
+
+Everything in `__all__` is meant to be used from Python; it is loaded when it is first asked for.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "designer.api": "analyse catalogue diagnose read_study size write_report",
+    "designer.analysis.analyse": "Analysis PoseAnalysis",
+    "designer.grades.grade": "Grade",
+    "designer.grades.registry": "Catalogue",
+    "designer.diagnosis.result": "Diagnosis",
+    "designer.errors": "DesignerError EffectError InputError OutputError",
+    "designer.model.cable": "Cable Material",
+    "designer.model.region": "PointList Prism Rectangle",
+    "designer.model.robot": "Platform Poses Robot",
+    "designer.model.space": "Orientations",
+    "designer.model.verdict": "Verdict",
+    "designer.study": "CableGroup DeclaredEffect Measurements Selection Study Workspace",
+}
+"""Where the public names are defined, those of each module separated by spaces."""
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import Analysis, PoseAnalysis
+    from designer.api import analyse, catalogue, diagnose, read_study, size, write_report
+    from designer.diagnosis.result import Diagnosis
+    from designer.errors import DesignerError, EffectError, InputError, OutputError
+    from designer.grades.grade import Grade
+    from designer.grades.registry import Catalogue
+    from designer.model.cable import Cable, Material
+    from designer.model.region import PointList, Prism, Rectangle
+    from designer.model.robot import Platform, Poses, Robot
+    from designer.model.space import Orientations
+    from designer.model.verdict import Verdict
+    from designer.study import (
+        CableGroup,
+        DeclaredEffect,
+        Measurements,
+        Selection,
+        Study,
+        Workspace,
+    )
+
+__all__ = [
+    "Analysis",
+    "Cable",
+    "CableGroup",
+    "Catalogue",
+    "DeclaredEffect",
+    "DesignerError",
+    "Diagnosis",
+    "EffectError",
+    "Grade",
+    "InputError",
+    "Material",
+    "Measurements",
+    "Orientations",
+    "OutputError",
+    "Platform",
+    "PointList",
+    "PoseAnalysis",
+    "Poses",
+    "Prism",
+    "Rectangle",
+    "Robot",
+    "Selection",
+    "Study",
+    "Verdict",
+    "Workspace",
+    "analyse",
+    "catalogue",
+    "diagnose",
+    "read_study",
+    "size",
+    "write_report",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first asked for, so that importing this costs nothing."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOME_OF[name]), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -1,6 +1,6 @@
 """``python -m designer``."""
 
-from designer.cli import main
+from designer.cli.commands import main
 
 if __name__ == "__main__":
     main()

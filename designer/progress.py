@@ -24,3 +24,6 @@ class Silent:
     def task(self, name: str, total: int) -> Iterator[Advance]:
         """Open a task that nobody watches."""
         yield lambda _: None
+
+
+SILENT = Silent()

@@ -70,6 +70,12 @@ STRESS = Dimension("a stress or a modulus", "Pa", "200 GPa")
 DENSITY = Dimension("a density", "kg/m^3", "7800 kg/m^3")
 LINEAR_DENSITY = Dimension("a mass per length", "kg/m", "0.142 kg/m")
 PER_TEMPERATURE = Dimension("a strain per temperature", "1/K", "1.2e-5 /K")
+TIME = Dimension("a time", "s", "10 s")
+PER_LENGTH = Dimension("a change per length", "1/m", "2e-4 /m")
+COMPLIANCE = Dimension("a displacement per force", "m/N", "2e-6 m/N")
+FLEXURAL_RIGIDITY = Dimension("a flexural rigidity", "N*m^2", "12 N*m^2")
+TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
+SPEED = Dimension("a speed", "m/s", "3 m/s")
 
 
 class QuantityError(ValueError):

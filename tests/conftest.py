@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Material
-from designer.robot import Platform, Robot
+from designer.model.cable import Material
+from designer.model.robot import Platform, Robot
 
 
 @pytest.fixture(scope="session")

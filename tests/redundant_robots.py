@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.cable import Material
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Platform, Poses, Robot
 
 FOUR = Robot(frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]]), Platform(1000.0))
 """A point mass under four masts."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.cable import Cable, Material
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable, Material
+from designer.model.robot import Platform, Poses, Robot
 
 # Exit points and attachments of CoGiRo [m], as published with the sample `cogiro` of
 # github.com/cable-robots/cdpyr; each cable with the attachment that it holds.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from designer.cli import main
+from designer.cli.commands import main
 from designer.resources import example_file, example_names
 
 Change = tuple[str, str]

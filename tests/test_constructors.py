@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Cable, Cables, Material
 from designer.kernel.batch import solve_batch
-from designer.region import PointList, Prism, Rectangle
-from designer.robot import Platform, Poses, Robot
-from designer.space import Orientations
+from designer.model.cable import Cable, Cables, Material
+from designer.model.region import PointList, Prism, Rectangle
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.space import Orientations
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from designer import __version__
-from designer.catalogue.files import read_grade
-from designer.config import read_study
+from designer.documents.formats import RESULT_FORMAT
 from designer.errors import InputError
-from designer.formats import RESULT_FORMAT
+from designer.grades.files import read_grade
+from designer.io.config import read_study
+from designer.io.results import read_result
 from designer.resources import data_folder, example_file
-from designer.result_json import read_result
 
 
 def study_text(first_line: str) -> str:

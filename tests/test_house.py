@@ -8,14 +8,10 @@ from pathlib import Path
 import designer
 
 ROOMS = [
-    "__init__", "errors", "arrays", "nearest", "units", "resources", "effect_names", "progress",
-    "verdict", "process", "output", "physics", "cable", "robot", "region", "space", "machine",
-    "measured_data", "kernel", "statics", "sizing", "plugins", "effects", "study", "declared",
-    "formats",
-    "measured", "config", "catalogue", "workspace", "interference", "selection", "diagnosis",
-    "qualities", "analysis", "selection_json", "groups_json", "result_json", "diagnosis_files",
-    "report", "terminal", "terminal_catalog", "terminal_check", "cli_options", "cli_catalog",
-    "cli", "__main__",
+    "__init__", "errors", "arrays", "spelling", "units", "resources", "progress", "model",
+    "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
+    "grades", "measured", "workspace", "selection", "diagnosis", "analysis", "io", "report",
+    "api", "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from designer.errors import OutputError
-from designer.output import output_folder, write_new_file
+from designer.io.output import output_folder, write_new_file
 
 
 def test_files_appear_when_all_is_done(tmp_path) -> None:
@@ -163,7 +163,7 @@ def test_a_new_file_that_breaks_off_is_not_there(tmp_path: Path) -> None:
 
 HALTING = """
 import pathlib, sys, time
-from designer.output import output_folder
+from designer.io.output import output_folder
 
 def halt():
     print("there", flush=True)

@@ -90,8 +90,8 @@ def test_a_request_to_end_leaves_nothing_behind(
         "import signal, time\nfrom pathlib import Path\n"
         # Where the tests run in the background, SIGINT is ignored from the start.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "from designer.output import output_folder\n"
-        "from designer.process import settle_in\nsettle_in()\n"
+        "from designer.io.output import output_folder\n"
+        "from designer.io.process import settle_in\nsettle_in()\n"
         "with output_folder(Path('deep/report')) as building:\n"
         "    (building / 'half').write_text('')\n"
         "    print('at work', flush=True)\n    time.sleep(60)\n"
@@ -122,8 +122,8 @@ class Ask:
 
 sys.meta_path.insert(0, Ask())
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from designer.output import output_folder
-from designer.process import settle_in
+from designer.io.output import output_folder
+from designer.io.process import settle_in
 settle_in()
 try:
     with output_folder(Path("deep/report")) as building:
@@ -150,7 +150,7 @@ def test_a_request_to_end_does_not_unwind_a_library_that_is_half_loaded(
     assert list(tmp_path.iterdir()) == []
 
 
-NOTE = "from designer.terminal import print_left_out; print_left_out(['a note'])"
+NOTE = "from designer.cli.terminal import print_left_out; print_left_out(['a note'])"
 
 
 @posix

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.region import PointList, Prism
+from designer.model.region import PointList, Prism
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 

@@ -14,12 +14,12 @@ import pytest
 from twins import physics
 from twins.robots import FAST3
 
-from designer.analysis import analyse
-from designer.catalogue.registry import load_catalogue
-from designer.cli import main
-from designer.config import read_study
+from designer.analysis.analyse import analyse
+from designer.analysis.result_json import result_dict
+from designer.cli.commands import main
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
 from designer.progress import Silent
-from designer.result_json import result_dict
 
 pytestmark = pytest.mark.slow
 

@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
-from designer.analysis import Analysis, analyse, analyse_pose
-from designer.catalogue.registry import load_catalogue
-from designer.config import read_study
+from designer.analysis.analyse import Analysis, analyse, analyse_pose
+from designer.analysis.result_json import json_text, result_dict, size_dict
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
+from designer.io.results import write_results
 from designer.progress import Advance
-from designer.result_json import result_dict, size_text, write_result
-from designer.selection_json import write_candidates
 
 pytestmark = pytest.mark.slow
 
@@ -73,10 +73,11 @@ def analysis(tmp_path_factory: pytest.TempPathFactory) -> Analysis:
 
 @pytest.fixture(scope="module")
 def result(analysis: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Any:
-    path = tmp_path_factory.mktemp("out") / "result.json"
-    write_result(analysis, path)
-    assert [file.name for file in path.parent.iterdir()] == ["result.json"]
-    return json.loads(path.read_text(encoding="utf-8"))
+    folder = tmp_path_factory.mktemp("out")
+    write_results(analysis, folder)
+    names = {file.name for file in folder.iterdir()}
+    assert names == {"result.json", "candidates.csv", "workspace.nc"}
+    return json.loads((folder / "result.json").read_text(encoding="utf-8"))
 
 
 def test_promised_names_are_there(result: Any) -> None:
@@ -125,9 +126,8 @@ def test_selection_has_its_parts(result: Any) -> None:
 
 def test_every_candidate_is_in_the_table(analysis: Analysis, result: Any, tmp_path: Path) -> None:
     assert analysis.selection is not None
-    path = tmp_path / "candidates.csv"
-    write_candidates(analysis.selection, path)
-    with path.open(encoding="utf-8", newline="") as file:
+    write_results(analysis, tmp_path)
+    with (tmp_path / "candidates.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(result["selection"]["candidates"]) > 20
     for row, candidate in zip(rows, result["selection"]["candidates"], strict=True):
@@ -174,7 +174,7 @@ def test_negative_answers_are_null_with_a_reason(tmp_path: Path) -> None:
 def test_size_prints_the_pose_under_the_same_names(analysis: Analysis, result: Any) -> None:
     pose = analyse_pose(analysis.study)
     assert pose is not None
-    printed = json.loads(size_text(analysis.study, pose))
+    printed = json.loads(json_text(size_dict(analysis.study, pose)))
     assert printed["pose"] == result["pose"]
     assert printed["provenance"]["config_sha256"] == analysis.study.source.sha256
 

@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.cable import Cable
-from designer.declared import declared_settings
 from designer.diagnosis.diagnose import Case
 from designer.effects.effect import NEEDS, Effect, as_built
-from designer.machine import Machine
-from designer.measured_data import Measured
-from designer.study import Measurements, Study
+from designer.model.cable import Cable
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.study import Measurements, Study, declared_settings
 
 
 def case_of(study: Study, measurements: Measurements, measured: Measured) -> Case:

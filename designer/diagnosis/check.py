@@ -21,7 +21,7 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold, Interval, Outlier
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Setting
-from designer.measured_data import Measured, Noise
+from designer.model.measured_data import Measured, Noise
 from designer.study import Measurements, Study
 
 CARRIED = "as estimated when diagnosed"

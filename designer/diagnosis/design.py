@@ -6,16 +6,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from designer.cable import Cable
-from designer.catalogue.grade import Grade
-from designer.declared import as_built_by
 from designer.diagnosis.result import Choice, Diagnosis, Use
 from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade
+from designer.model.cable import Cable
 from designer.selection.compare import Entry
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.verify import verify
-from designer.study import DeclaredEffect, Study
+from designer.study import DeclaredEffect, Study, as_built_by
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
 

@@ -26,8 +26,8 @@ from designer.diagnosis.unseen import Gain, keep_what_helps
 from designer.diagnosis.whereabouts import Whereabouts, whereabouts
 from designer.effects.effect import Effect, Setting
 from designer.errors import Fault, InputError
-from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2

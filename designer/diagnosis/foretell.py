@@ -17,7 +17,7 @@ from designer.diagnosis.physical import added_force_N
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Foretold
 from designer.effects.effect import Setting
-from designer.robot import Poses
+from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.physical import added_force_N, straightened_m
 from designer.effects.effect import Readings, Setting
-from designer.machine import Machine
-from designer.measured_data import Measured, Noise
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured, Noise
 from designer.statics.internal import solve_internal
 
 _MOST_TURNS = 12

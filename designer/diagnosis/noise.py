@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.measured_data import Measured, Noise
+from designer.model.measured_data import Measured, Noise
 from designer.study import Measurements
 
 _MAD_TO_STD = 1.4826

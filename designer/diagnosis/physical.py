@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import STANDARD_GRAVITY_M_PER_S2
 from designer.effects.effect import Readings
-from designer.machine import Machine
-from designer.measured_data import Measured
-from designer.robot import Poses
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.nearest import solve_nearest
 from designer.statics.underactuated import imbalance, solve_underactuated

@@ -9,7 +9,7 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
 from designer.errors import EffectError
-from designer.measured_data import Measured
+from designer.model.measured_data import Measured
 from designer.study import Measurements, Study
 
 

@@ -13,8 +13,8 @@ from designer.diagnosis.physical import readings_of
 from designer.effects.effect import Readings, Setting, as_built
 from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
-from designer.machine import Machine
-from designer.measured_data import EVEN, Measured, Noise
+from designer.model.machine import Machine
+from designer.model.measured_data import EVEN, Measured, Noise
 
 _SLOPES_KEPT = 8
 

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import Readings, Setting
-from designer.measured_data import Measured, Noise
+from designer.model.measured_data import Measured, Noise
 
 _UNHELD, _TIMES_OFF = 1e3, 10.0
 """Residual of a reading at a pose that the model cannot hold: in units of noise, and so many times

@@ -11,9 +11,9 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.result import Proposal
 from designer.effects.effect import Setting
-from designer.measured_data import Measured, Noise
-from designer.region import PointList, Region
-from designer.robot import Poses
+from designer.model.measured_data import Measured, Noise
+from designer.model.region import PointList, Region
+from designer.model.robot import Poses
 from designer.study import Workspace
 from designer.workspace.samples import positions_m
 

@@ -12,8 +12,8 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Effect, Readings, Setting
-from designer.machine import Machine
-from designer.measured_data import Measured, Noise
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured, Noise
 from designer.study import Study
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.clusters import INDEPENDENT, Lasting, lasting
 from designer.effects.effect import Readings
-from designer.measured_data import Measured
+from designer.model.measured_data import Measured
 
 SIGNIFICANCE = 0.001
 _DRAWS = 999

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from designer.effect_names import FLEXURAL_RIGIDITY, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
+from designer.units import FLEXURAL_RIGIDITY
 
 _LIGHTEST_KG_PER_M3 = 1000.0
 

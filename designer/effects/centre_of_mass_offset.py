@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
 from designer.units import LENGTH
 
 

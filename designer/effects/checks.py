@@ -7,12 +7,12 @@ import re
 from collections.abc import Iterator
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import NEEDS, Effect, Parameter
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
-from designer.robot import Platform, Robot
+from designer.effects.names import EffectName, ParameterName
+from designer.model.cable import Cable
+from designer.model.machine import Machine
+from designer.model.robot import Platform, Robot
 from designer.units import Dimension, QuantityError, read_quantity
 
 RESERVED_IDS = frozenset({"anchors", "cable"})

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from designer.cable import Cable, Material
 from designer.effects.effect import Setting, as_built
 from designer.errors import EffectError
-from designer.machine import Machine
-from designer.robot import Robot
+from designer.model.cable import Cable, Material
+from designer.model.machine import Machine
+from designer.model.robot import Robot
 
 _PROBES_M = (1e-3, 7e-3, 0.05, 0.35)
 """Diameters at which a family is looked at, to tell whether an effect leaves it one."""

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effect_names import PER_LENGTH, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Readings, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
-from designer.measured_data import Measured
-from designer.units import LENGTH
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.units import LENGTH, PER_LENGTH
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:

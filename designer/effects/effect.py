@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from designer.arrays import FloatArray
-from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
 
 Values = Mapping[str, float]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from designer.effect_names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
 from designer.units import NUMBER
 
 

@@ -12,8 +12,8 @@ from designer.effects.checks import flaws_of_built
 from designer.effects.effect import Effect, Readings, Values
 from designer.effects.kind import EffectKind
 from designer.errors import EffectError
-from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
 from designer.plugins.guard import one_line
 
 Value = TypeVar("Value")

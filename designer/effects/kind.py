@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from designer.effect_names import EffectName
 from designer.effects.effect import Builder
+from designer.effects.names import EffectName
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from designer.effect_names import EffectName
 from designer.effects.effect import Effect, Setting
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
+from designer.effects.names import EffectName
+from designer.model.machine import Machine
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effect_names import TIME, EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
-from designer.measured_data import Measured
-from designer.units import MASS
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.units import MASS, TIME
 
 _LEAST_ROWS = 5
 

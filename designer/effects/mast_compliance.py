@@ -7,13 +7,14 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effect_names import COMPLIANCE, EffectName, ParameterName
 from designer.effects.along import pull_of
 from designer.effects.effect import Effect, Parameter, Readings, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
-from designer.measured_data import Measured
-from designer.robot import Robot
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.model.robot import Robot
+from designer.units import COMPLIANCE
 
 _NOTHING = 1e-12
 

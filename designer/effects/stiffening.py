@@ -7,12 +7,12 @@ from functools import partial
 
 import numpy as np
 
-from designer.effect_names import EffectName, ParameterName
 from designer.effects.along import pull_of
 from designer.effects.effect import Effect, Parameter, Readings, Values
 from designer.effects.kind import EffectKind
-from designer.machine import Machine
-from designer.measured_data import Measured
+from designer.effects.names import EffectName, ParameterName
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
 from designer.units import FORCE, NUMBER
 
 

@@ -42,7 +42,7 @@ from designer.kernel.layout import (
     V,
 )  # fmt: skip
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 TOLERANCE = 1e-10
 """Largest residual of closure (over length) plus balance (over the largest force)."""

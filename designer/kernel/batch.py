@@ -16,7 +16,7 @@ from designer.kernel.cone import refuse_range
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
 from designer.kernel.redundant_search import search_range
 from designer.kernel.square import solve_range
-from designer.robot import Poses, Robot
+from designer.model.robot import Poses, Robot
 
 _SHARE = 32 * layout.LANES
 

@@ -52,7 +52,7 @@ from designer.kernel.redundant_pose import (
     write_wrenches,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 _SOLVED = int(Verdict.SOLVED)
 _AT_LIMIT = 1e-6

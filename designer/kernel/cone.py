@@ -32,7 +32,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.kernel.compiling import kernel
 from designer.kernel.redundant_layout import LEAST, WRENCH, Pose
 from designer.kernel.redundant_pose import lift, make_straight, new_pose, place, write_wrenches
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 _BEYOND = 1e6
 _ROUNDING = 1e-15

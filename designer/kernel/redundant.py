@@ -64,7 +64,7 @@ from designer.kernel.redundant_pose import (
     pull_of,
 )
 from designer.kernel.unit_cable import PULL_FLOOR
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 _MOST_STEPS = 8
 _SMALL_STEP = 1e-6

@@ -41,7 +41,7 @@ from designer.kernel.redundant_layout import (
 )  # fmt: skip
 from designer.kernel.redundant_pose import lowest_tension
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 OPTIMAL_WITHIN = 1e-6
 """Largest last step, or residual of the optimality conditions, of an answer."""

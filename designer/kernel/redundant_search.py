@@ -57,7 +57,7 @@ from designer.kernel.redundant_pose import (
     smallest_pull,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.verdict import Verdict
+from designer.model.verdict import Verdict
 
 _RANDOM_STARTS = 6
 _HANGS = 0.5

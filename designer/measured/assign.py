@@ -20,7 +20,7 @@ from designer.measured.names import (
     tension_names,
 )
 from designer.measured.table import RawColumn, Table
-from designer.nearest import did_you_mean
+from designer.spelling import did_you_mean
 from designer.study import LogColumn, Measurements, Study
 
 _MAP = "measurements.columns"

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import re
 
-from designer.effect_names import TIME
-from designer.nearest import did_you_mean
-from designer.units import ANGLE, FORCE, LENGTH, NUMBER, Dimension
-
-TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
-SPEED = Dimension("a speed", "m/s", "3 m/s")
+from designer.spelling import did_you_mean
+from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, TIME, Dimension
 
 TIME_NAME = "time_s"
 TEMPERATURE_NAME = "temperature_C"

@@ -11,8 +11,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.names import POSITION, length_names
-from designer.measured_data import Measured
-from designer.robot import Robot
+from designer.model.measured_data import Measured
+from designer.model.robot import Robot
 from designer.statics.geometry import cable_geometry
 
 _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "feet": 1.0 / 0.3048, "inches": 1.0 / 0.0254}

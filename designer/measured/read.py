@@ -14,8 +14,8 @@ from designer.measured.rows import Rows, cell_faults, usable_rows
 from designer.measured.sense import sense_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
-from designer.measured_data import Measured
-from designer.robot import Poses
+from designer.model.measured_data import Measured
+from designer.model.robot import Poses
 from designer.study import Measurements, Study
 
 MOST_FAULTS = 100

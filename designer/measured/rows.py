@@ -13,17 +13,9 @@ from designer.errors import Fault
 from designer.measured.assign import Assigned
 from designer.measured.cells import MOST_ALIKE, is_number
 from designer.measured.faults import first_few, row_list
-from designer.measured.names import (
-    POSITION,
-    SPEED,
-    TEMPERATURE,
-    TIME_NAME,
-    dimension_of,
-    length_names,
-    tension_names,
-)
+from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
 from designer.measured.table import RawColumn
-from designer.units import ANGLE, FORCE, LENGTH, NUMBER, describe
+from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
 FEWEST_ROWS = 8
 _NUMBER = "a number, or nothing where there is none"

@@ -12,8 +12,8 @@ from designer.errors import Fault
 from designer.measured.faults import first_few
 from designer.measured.names import TEMPERATURE_NAME, length_names, tension_names
 from designer.measured.table import Table
-from designer.measured_data import Measured
-from designer.robot import Robot
+from designer.model.measured_data import Measured
+from designer.model.robot import Robot
 from designer.statics.geometry import cable_geometry
 
 FEWEST_POSES = 5

@@ -14,7 +14,7 @@ from designer.plugins import hookspecs
 from designer.plugins.guard import attempt, one_line
 
 OWN_ENTRIES = (
-    EntryPoint("builtin", "designer.catalogue.builtin", hookspecs.ENTRY_POINT_GROUP),
+    EntryPoint("builtin", "designer.grades.builtin", hookspecs.ENTRY_POINT_GROUP),
     EntryPoint("builtin-effects", "designer.effects.builtin", hookspecs.ENTRY_POINT_GROUP),
 )
 """Our own plugins, as `pyproject.toml` declares them.

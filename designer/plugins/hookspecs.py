@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from designer.catalogue.grade import Grade
     from designer.effects.kind import EffectKind
+    from designer.grades.grade import Grade
 
 PROJECT = "designer"
 ENTRY_POINT_GROUP = "designer.plugins"

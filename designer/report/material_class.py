@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from designer.catalogue.grade import Grade
+from designer.grades.grade import Grade
 
 MaterialClass = Literal["steel", "stainless steel", "fibre", "not stated"]
 

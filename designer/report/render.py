@@ -6,9 +6,10 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from designer.output import write_whole
-from designer.report.context import build_context
-from designer.report.drawings import draw
+from designer.io.output import output_folder, write_whole
+from designer.io.results import write_results
+from designer.report.design.context import build_context
+from designer.report.design.drawings import draw
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
 from designer.resources import data_folder
@@ -16,8 +17,10 @@ from designer.resources import data_folder
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from designer.analysis import Analysis
+    from designer.analysis.analyse import Analysis
 
+REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
+"""What `designer report` writes; the last two only where the study asks for them."""
 REPORT, DIAGNOSIS = "report", "diagnosis"
 """The pages that there are templates for."""
 
@@ -107,7 +110,29 @@ def render_pdf(html: str) -> bytes:
     return add_outline(stream.getvalue(), html)
 
 
-def write_report(analysis: Analysis, folder: Path) -> None:
+def write_report(analysis: Analysis, folder: Path | str) -> None:
+    """Write the report and all results into a folder, as `designer report` does; all or nothing.
+
+    Where this machine cannot draw in space, the report says which pictures are left out.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        What to report.
+    folder : Path or str
+        May exist; an earlier report in it is replaced.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    with output_folder(Path(folder), REPORT_FILES) as building:
+        write_report_pages(analysis, building)
+        write_results(analysis, building)
+
+
+def write_report_pages(analysis: Analysis, folder: Path) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
     write_pages(build_context(analysis, draw(analysis)), REPORT, folder)
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Cable
-from designer.catalogue.grade import Grade, Size
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable
 from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.pareto import dominator_of, is_undominated
 from designer.selection.result import Standing

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from designer.cable import Material
-from designer.catalogue.grade import Grade
 from designer.effects.design import AsBuilt
-from designer.robot import Poses
+from designer.grades.grade import Grade
+from designer.model.cable import Material
+from designer.model.robot import Poses
 from designer.selection.efficiency import Allowance
 from designer.selection.verify import worst_of
 from designer.sizing.newton import size_poses

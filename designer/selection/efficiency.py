@@ -26,8 +26,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from designer.cable import Cable, Material
-from designer.catalogue.grade import Grade, Size
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable, Material
 from designer.study import Selection
 
 _STEEL = ("steel", "stainless steel", None)

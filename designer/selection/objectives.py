@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from designer.cable import Cable
-from designer.catalogue.grade import Grade, Size
-from designer.robot import Robot
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable
+from designer.model.robot import Robot
 from designer.study import Objective, Workspace
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 from designer.workspace.samples import thinned

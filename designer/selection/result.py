@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from designer.cable import Cable, Material
-from designer.catalogue.grade import Grade, Size
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable, Material
 from designer.selection.objectives import Figures
 from designer.selection.usable import Usable
 from designer.selection.verify import Verification

@@ -10,10 +10,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from designer.catalogue.grade import Grade
 from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade
+from designer.model.robot import Robot
 from designer.progress import Reporter, Silent
-from designer.robot import Robot
 from designer.selection.compare import Entry, best_of, settle, standing_of
 from designer.selection.continuous import continuous_optimum
 from designer.selection.efficiency import Allowance

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.cable import Cable
-from designer.catalogue.grade import Grade, Size
-from designer.region import Prism
-from designer.robot import Poses, Robot
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable
+from designer.model.region import Prism
+from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out

@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Cable
-from designer.robot import Robot
+from designer.model.cable import Cable
+from designer.model.robot import Robot
 from designer.study import Workspace
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import Demand, Pool, Worst, refine_over_branches
@@ -24,7 +24,7 @@ class Verification:
     Parameters
     ----------
     worst_position_m : array (n_coordinates,)
-        Place where its tension is largest, see `designer.space` [m, rad].
+        Place where its tension is largest, see `designer.model.space` [m, rad].
     max_tension_N : float
         The largest tension there [N]; inf if the pose cannot be held at all.
     utilisation : float

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from designer.arrays import FloatArray
-from designer.cable import Material
-from designer.robot import Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Poses, Robot
 from designer.statics.task import Task, solve_task
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.cable import Material
-from designer.robot import Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_massless, solve_sagging
 
 _RUNAWAY = 1e4

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
-from designer.robot import Poses, Robot
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.inverse import Statics, statics_of
 from designer.statics.task import Task, solve_task
-from designer.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.robot import Poses, Robot
 from designer.physics import catenary
-from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless
 

@@ -26,9 +26,9 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.robot import Poses, Robot
 from designer.physics import catenary
-from designer.robot import Poses, Robot
 from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 

@@ -23,10 +23,10 @@ from typing import Any, Literal
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.robot import Poses, Robot
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix, upright_poses
 from designer.statics.task import flat_poses, straight_run
-from designer.verdict import Verdict
 
 Objective = Literal["smallest_largest", "least_squares", "centred"]
 """Smallest largest tension, smallest sum of squares, or nearest to the middle of the range."""

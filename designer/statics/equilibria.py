@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.cable import Cable, Cables
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
 from designer.statics.forward import ForwardStatics, solve_forward
 from designer.statics.stiffness import reach_m
 

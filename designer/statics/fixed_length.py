@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics
 from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
-from designer.verdict import Verdict
 
 
 def cables_of_length(

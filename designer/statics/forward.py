@@ -19,12 +19,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.cable import Cable, Cables
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics
 from designer.statics.stiffness import is_stable, per_reach, reach_m, scaled, upright_stiffness
-from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     from designer.arrays import VerdictArray

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.robot import Poses, Robot
+from designer.model.robot import Poses, Robot
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,15 +11,15 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, require_shape
-from designer.cable import Cable
 from designer.kernel.calling import plain
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.geometry import cable_geometry, upright_poses
 from designer.statics.inverse import Statics, statics_with
 from designer.statics.nearest import solve_nearest
 from designer.statics.stiffness import per_reach
 from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
-from designer.verdict import Verdict
 
 _LEAST_PULL = 1.0 / 16.0
 _LEAST_SHARE = 0.05

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.cable import Cable, Cables
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict, hanging_cables
 from designer.physics import catenary
-from designer.robot import Poses, Robot
 from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import (
     CableGeometry,
@@ -19,7 +20,6 @@ from designer.statics.geometry import (
     structure_matrix,
 )
 from designer.statics.task import PulleyRun, Task, solve_task, straight_run
-from designer.verdict import Verdict, hanging_cables
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution

@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Cable
 from designer.kernel.calling import plain
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Poses, Robot
 from designer.statics.geometry import upright_poses
 from designer.statics.task import straight_run
 

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
-from designer.cable import Cable, Cables
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
 from designer.statics.equilibria import find_equilibria, spread_poses
 
 _STARTS = 24

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
-from designer.cable import Cable
 from designer.kernel.calling import plain, pool
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Poses, Robot
 from designer.statics.geometry import upright_exit_points_m, upright_poses
 from designer.statics.inverse import solve_sagging
 

@@ -20,8 +20,8 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.model.robot import Robot
 from designer.physics import tangent
-from designer.robot import Robot
 from designer.statics.geometry import cable_geometry, upright_poses
 from designer.statics.inverse import Statics
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import pulley
-from designer.robot import Poses, Robot
 from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_poses
-from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution

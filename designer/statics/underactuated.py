@@ -21,13 +21,13 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Cable
 from designer.kernel.calling import plain
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.geometry import upright_poses
 from designer.statics.inverse import Statics, statics_with
 from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
-from designer.verdict import Verdict
 
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7

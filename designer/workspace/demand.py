@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.cable import Cable, Material
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Material
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
 from designer.study import HangsBelow, Workspace
-from designer.verdict import Verdict
 from designer.workspace.refine import Demand
 
 

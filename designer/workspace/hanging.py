@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.cable import Cable, Cables
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
 from designer.statics.hanging import length_over_chord, lowest_m
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
@@ -31,7 +31,7 @@ class Hanging:
     cable : int
         Which cable, counted from 1.
     place : tuple of float
-        In which sample, see `designer.space` [m, rad].
+        In which sample, see `designer.model.space` [m, rad].
     """
 
     samples: int

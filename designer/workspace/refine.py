@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.region import PointList
-from designer.space import Space
+from designer.model.region import PointList
+from designer.model.space import Space
 from designer.workspace.strata import landmarks, scattered
 
 Demand = Callable[[FloatArray], FloatArray]

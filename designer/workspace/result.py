@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
-from designer.robot import Poses
-from designer.space import turn_of
+from designer.model.robot import Poses
+from designer.model.space import turn_of
 from designer.workspace.hanging import HangingCables
+from designer.workspace.store import open_sweep
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,6 +110,8 @@ class WorkspaceMap:
         beyond which no cable exists. NaN if not feasible.
     infeasible_rotation_vector_rad : array (3,) or None
         How the platform is turned in that position [rad].
+    file : Path or None
+        NetCDF file with every sample, where one was written.
     """
 
     census: Census
@@ -114,6 +122,20 @@ class WorkspaceMap:
     infeasible_example_m: FloatArray | None
     limit_ratio: float
     infeasible_rotation_vector_rad: FloatArray | None = None
+    file: Path | None = None
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return every sample along ``sample``, with units in the attributes of each variable.
+
+        Raises
+        ------
+        ValueError
+            If no file was written.
+        """
+        if self.file is None:
+            raise ValueError("samples are kept in a file only; map_workspace(file=...) writes one")
+        with open_sweep(self.file) as sweep:
+            return sweep.load()
 
     @property
     def infeasible_pose(self) -> Poses | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import PointList, Prism, Rectangle
+from designer.model.region import PointList, Prism, Rectangle
 from designer.study import Workspace
 
 CHUNK = 2**15

@@ -17,10 +17,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from designer.cable import Material
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
-from designer.robot import Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.study import Workspace
 from designer.workspace.refine import Worst

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Cable, Cables
-from designer.robot import Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace

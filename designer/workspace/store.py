@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing
-from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,8 +12,8 @@ from itertools import product
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import PointList, Prism, Region
-from designer.space import Orientations, Space
+from designer.model.region import PointList, Prism, Region
+from designer.model.space import Orientations, Space
 
 _MOST_POINTS = 256
 _AT_AN_END = 1.0 / 3.0

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.cable import Material
-from designer.robot import Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Poses, Robot
+from designer.model.space import turn_of
+from designer.model.verdict import Verdict
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import Sizing, size_poses
-from designer.space import turn_of
 from designer.study import Workspace
-from designer.verdict import Verdict
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
 from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.refine import Pool, refine, refine_over_branches
@@ -61,7 +61,7 @@ def map_workspace(
             for some, sizing in _sweep(robot, workspace, material, progress):
                 gathered.add(some, sizing)
                 store.append(some, sizing)
-    return _summarise(robot, workspace, material, gathered)
+    return _summarise(robot, workspace, material, gathered, file)
 
 
 def _sweep(
@@ -118,7 +118,7 @@ class _Gathered:
 
 
 def _summarise(
-    robot: Robot, workspace: Workspace, material: Material, gathered: _Gathered
+    robot: Robot, workspace: Workspace, material: Material, gathered: _Gathered, file: Path | None
 ) -> WorkspaceMap:
     census = gathered.census()
     example = gathered.infeasible_example
@@ -143,6 +143,7 @@ def _summarise(
         infeasible_example_m=None if example is None else example[:3],
         limit_ratio=ratio,
         infeasible_rotation_vector_rad=None if example is None else turn_of(example),
+        file=file,
     )
 
 

@@ -88,9 +88,9 @@ class Row:
 
 def verdict_on(job: Job, dataset: DataSet) -> Row:
     """Diagnose a data set and compare with what is in it."""
-    from designer.config import read_study
     from designer.diagnosis.case import case_of
     from designer.diagnosis.diagnose import diagnose
+    from designer.io.config import read_study
     from designer.measured.read import read_measured
 
     with tempfile.TemporaryDirectory() as folder:

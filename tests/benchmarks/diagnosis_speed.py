@@ -29,17 +29,17 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from twins.dataset import make, size_for
 from twins.robots import FIELD4, YARD3
 
-from designer.catalogue.registry import load_catalogue
-from designer.config import read_study
 from designer.diagnosis import design as diagnosis_design
 from designer.diagnosis import predict
 from designer.diagnosis.case import case_of
 from designer.diagnosis.design import with_design
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.effects.effect import Readings
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
 from designer.measured.read import read_measured
+from designer.model.robot import Poses
 from designer.physics import catenary
-from designer.robot import Poses
 from designer.selection.select import select
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless

@@ -25,10 +25,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from twins.thinnest import STARTS, thinnest
 
 from designer.arrays import frozen_array
-from designer.cable import Material
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
-from designer.verdict import Verdict
 
 IMPOSSIBLE = (Verdict.OUTSIDE_HULL, Verdict.NO_FINITE_CABLE, Verdict.RANK_DEFICIENT)
 THICKER = 1.001

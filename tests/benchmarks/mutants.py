@@ -25,17 +25,15 @@ from functools import partial
 from pathlib import Path
 from types import FrameType
 
-from designer.analysis import analyse, analyse_pose
-from designer.catalogue.family import families
-from designer.catalogue.files import read_grade
-from designer.catalogue.registry import Catalogue, load_catalogue
-from designer.config import read_study
+from designer.analysis.analyse import analyse, analyse_pose
+from designer.analysis.result_json import json_text, result_dict, size_dict
 from designer.errors import DesignerError
+from designer.grades.files import read_grade
+from designer.grades.registry import Catalogue, load_catalogue
+from designer.io.config import read_study
 from designer.plugins.find import find_plugins
 from designer.progress import Silent
 from designer.resources import data_folder, example_file, example_names
-from designer.result_json import result_dict, size_text
-from designer.result_json import text_of as json_text
 from designer.study import Study
 
 SLOWEST_S = 20
@@ -154,7 +152,7 @@ def solve(study: Study, catalogue: Catalogue, folder: Path) -> None:
     """Solve the pose and some samples, and write both as strict JSON."""
     pose = analyse_pose(study)
     if pose is not None:
-        json.loads(size_text(study, pose))
+        json.loads(json_text(size_dict(study, pose)))
     json.loads(json_text(result_dict(analyse(small(study), catalogue, folder, Silent()))))
 
 
@@ -164,7 +162,6 @@ def main(configs: int = 2000, grades: int = 2000, analyses: int = 40, seed: int 
     plugins = find_plugins(with_plugins=False)
     full = load_catalogue(plugins=plugins)
     catalogue = replace(full, grades=tuple(g for g in full.grades if "7x19" in g.id)[:2])
-    material_of = families(plugins)
     studies = [example_file(name) for name in example_names()]
     with tempfile.TemporaryDirectory() as name:
         trial = Trial(Path(name))
@@ -172,7 +169,7 @@ def main(configs: int = 2000, grades: int = 2000, analyses: int = 40, seed: int 
             solve(read_study(study), catalogue, trial.folder)
         for _ in range(configs):
             text = spoilt(_text(chance.choice(studies)), chance)
-            study = trial.reads("config", text, lambda p: read_study(p, material_of=material_of))
+            study = trial.reads("config", text, lambda p: read_study(p, plugins=plugins))
             if isinstance(study, Study) and trial.tally["analysis done"] < analyses:
                 trial.does("analysis", text, partial(solve, study, catalogue, trial.folder))
         tables = sorted(data_folder("catalog").glob("*.yaml"))

@@ -27,15 +27,15 @@ from redundant_robots import anywhere, cogiro_poses, one
 from sample_robots import COGIRO
 from sizing import STEEL, Paper, in_chunks, seconds_per_pose
 
-from designer.cable import Material
-from designer.region import Prism
-from designer.robot import Poses
+from designer.model.cable import Material
+from designer.model.region import Prism
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
 from designer.statics.distribution import BLOCK, distribute, distribute_evenly
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
-from designer.verdict import Verdict
 from designer.workspace.sweep import map_workspace
 
 REGION = Prism.box((-4.0, 4.0), (-3.0, 3.0), (0.3, 3.0))

@@ -18,10 +18,10 @@ import time
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.catalogue.registry import load_catalogue
-from designer.region import Prism
-from designer.robot import Platform, Poses, Robot
+from designer.grades.registry import load_catalogue
+from designer.model.cable import Cable
+from designer.model.region import Prism
+from designer.model.robot import Platform, Poses, Robot
 from designer.selection.verify_sizes import Sampled, verify_sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace

@@ -21,10 +21,10 @@ import numpy as np
 from scipy.optimize import minimize, root
 
 from designer.arrays import frozen_array
-from designer.cable import STANDARD_GRAVITY_M_PER_S2 as G
-from designer.cable import Material
-from designer.region import Prism
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as G
+from designer.model.cable import Material
+from designer.model.region import Prism
+from designer.model.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless, solve_sagging

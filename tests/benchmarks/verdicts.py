@@ -15,12 +15,12 @@ import time
 
 import numpy as np
 
-from designer.config import read_study
+from designer.io.config import read_study
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.resources import example_file, example_names
-from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.study import Study
-from designer.verdict import Verdict
 
 _TOLERANCE = 1e-9
 _CHUNK = 2**15

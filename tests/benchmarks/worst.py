@@ -22,17 +22,17 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray, frozen_array
-from designer.config import read_study
-from designer.interference.clearance import smallest_clearance
-from designer.interference.survey import survey
-from designer.region import Prism, Rectangle
+from designer.io.config import read_study
+from designer.model.region import Prism, Rectangle
+from designer.model.robot import Poses, Robot
+from designer.model.space import Orientations
 from designer.resources import example_file, example_names
-from designer.robot import Poses, Robot
 from designer.selection.verify import verify
-from designer.space import Orientations
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, Workspace
+from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import diameter_demand, massless_demand, rope_demand
+from designer.workspace.interference import survey
 from designer.workspace.refine import Demand
 from designer.workspace.stiffness import displacement_demand, survey_stiffness
 from designer.workspace.sweep import map_workspace

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from designer.config import read_study
 from designer.errors import Fault, InputError
+from designer.io.config import read_study
 from designer.study import Study
 
 VALID = """\

@@ -14,17 +14,15 @@ import pytest
 from benchmarks.mutants import NUMBERS, no_longer_than, spoilt
 from pydantic import BaseModel
 
-from designer.catalogue.family import families
-from designer.catalogue.files import read_grade
-from designer.catalogue.schema import GradeSection
-from designer.config import read_study
-from designer.config.bounds import BOUNDS
-from designer.config.fields import Quantity
-from designer.config.schema import StudySection
+from designer.analysis.selection_json import finite
+from designer.documents.bounds import BOUNDS
+from designer.documents.fields import Quantity
 from designer.errors import Fault, InputError
-from designer.plugins.find import find_plugins
+from designer.grades.files import read_grade
+from designer.grades.schema import GradeSection
+from designer.io.config import read_study
+from designer.io.config.schema import StudySection
 from designer.resources import data_folder, example_file, example_names
-from designer.selection_json import finite
 from designer.study import GradeFamily, Study
 
 StudyOf = Callable[[str], Study]
@@ -51,7 +49,7 @@ def quantities(kind: Any, seen: set[Any]) -> Iterator[Quantity]:
 def test_every_number_has_two_ends_and_a_reason(schema: type[BaseModel]) -> None:
     found = list(quantities(schema, set()))
     assert len(found) > 5
-    # the figures of a size are looked at by designer.catalogue.checks, by the same table
+    # the figures of a size are looked at by designer.grades.checks, by the same table
     sizes = [one for one in found if one == Quantity(one.dimension, above=0.0)]
     assert len(sizes) == (4 if schema is GradeSection else 0)
     for one in found:
@@ -129,11 +127,10 @@ def test_long_numbers_are_settled_at_once(tmp_path: Path, number: str) -> None:
 
 def test_mutants_are_read_or_refused(tmp_path: Path) -> None:
     chance, path, refused = random.Random(7), tmp_path / "mutant.yaml", 0
-    material_of = families(find_plugins(with_plugins=False))
     studies = [example_file(name).read_text(encoding="utf-8") for name in example_names()]
     tables = [p.read_text(encoding="utf-8") for p in sorted(data_folder("catalog").glob("*.yaml"))]
     for sources, read in (
-        (studies, lambda p: read_study(p, None, material_of)),
+        (studies, read_study),
         (tables, read_grade),
     ):
         for _ in range(40):
@@ -161,7 +158,7 @@ GRADE_CABLE = FLAT.replace(
 def graded(folder: Path, text: str) -> Study:
     path = folder / "crane.yaml"
     path.write_text(text, encoding="utf-8")
-    return read_study(path, material_of=families(find_plugins(with_plugins=False)))
+    return read_study(path)
 
 
 def test_a_grade_may_be_the_configured_family(tmp_path: Path) -> None:
@@ -199,8 +196,3 @@ def test_a_grade_that_cannot_be_is_told_with_its_line(
     with pytest.raises(InputError, match=r"crane\.yaml:4: cable\.") as caught:
         graded(tmp_path, text)
     assert words in str(caught.value)
-
-
-def test_without_a_catalogue_a_grade_is_refused(faults_of: FaultsOf) -> None:
-    (fault,) = faults_of(GRADE_CABLE)
-    assert "no catalogue was given" in str(fault)

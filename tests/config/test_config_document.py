@@ -8,13 +8,13 @@ from typing import NoReturn
 
 import pytest
 
-from designer.config.document import (
+from designer.documents.document import (
     DEEPEST_NESTING,
     LARGEST_FILE_BYTES,
     Document,
     read_document,
 )
-from designer.config.node import path_text
+from designer.documents.node import path_text
 from designer.errors import Fault, InputError
 
 

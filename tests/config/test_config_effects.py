@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.config.effects import read_effects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault
-from designer.machine import Machine
-from designer.robot import Platform, Robot
+from designer.io.config.effects import read_effects
+from designer.model.cable import Cable
+from designer.model.machine import Machine
+from designer.model.robot import Platform, Robot
 from designer.study import DeclaredEffect, Entry, Study
 
 FaultsOf = Callable[[str], list[Fault]]

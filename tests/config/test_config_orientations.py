@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from designer.errors import Fault
-from designer.region import Rectangle
-from designer.space import FILLING
+from designer.model.region import Rectangle
+from designer.model.space import FILLING
 from designer.study import Study, Workspace
 
 BODY = """\

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.config import columns, read_study, schema
-from designer.config.section import Section
+from designer.documents.section import Section
 from designer.errors import InputError
-from designer.region import PointList, Prism
+from designer.io.config import columns, read_study, schema
+from designer.model.region import PointList, Prism
 from designer.resources import data_folder, example_file
 from designer.study import Entry, LogColumn, Study
 

@@ -10,11 +10,11 @@ import yaml
 from twins.dataset import make, size_for
 from twins.robots import HALL6, HALL8, YARD3
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis_files import diagnosed_config
+from designer.io.config import read_study
+from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 
 

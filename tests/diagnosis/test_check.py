@@ -14,9 +14,9 @@ from twins.dataset import make
 from twins.robots import YARD3
 
 from designer.arrays import frozen_array
-from designer.cli import main
-from designer.config import read_study
+from designer.cli.commands import main
 from designer.diagnosis.check import Check, check
+from designer.io.config import read_study
 from designer.measured.read import read_measured
 
 HEAVIER = {"platform_mass": {"offset_kg": 8.0}}

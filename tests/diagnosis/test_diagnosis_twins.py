@@ -13,20 +13,19 @@ from twins import physics
 from twins.dataset import DataSet, make, size_for
 from twins.robots import HALL6, YARD3, TwinRobot
 
-from designer.catalogue.registry import load_catalogue
-from designer.config import read_study
-from designer.declared import as_built_by
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
 from designer.diagnosis.design import choice, with_design
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis_files import diagnosed_config, diagnosis_dict
 from designer.errors import InputError
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
+from designer.io.diagnosis_files import diagnosed_config, diagnosis_dict
 from designer.measured.read import read_measured
-from designer.robot import Poses
+from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Study
+from designer.study import Study, as_built_by
 
 pytestmark = pytest.mark.slow
 

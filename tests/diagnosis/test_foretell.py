@@ -9,15 +9,15 @@ import pytest
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
-from designer.config import read_study
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
 from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Setting
+from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.measured_data import Noise
+from designer.model.measured_data import Noise
 
 
 def problem_and_case(robot, effects, folder, **how):

@@ -10,14 +10,14 @@ from rich.console import Console
 from twins.dataset import make, size_for
 from twins.robots import YARD3
 
-from designer import terminal
-from designer.config import read_study
+from designer.cli import terminal
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.diagnosis.pace import Pace, in_words
-from designer.diagnosis_files import diagnosis_dict
+from designer.io.config import read_study
+from designer.io.diagnosis_files import diagnosis_dict
 from designer.measured.read import read_measured
-from designer.report.diagnosis_sections.sureness import sureness
+from designer.report.diagnosis.sureness import sureness
 
 
 @dataclass

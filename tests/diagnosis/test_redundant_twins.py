@@ -6,14 +6,14 @@ import pytest
 from twins.dataset import make, size_for
 from twins.robots import HALL8
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
 from designer.diagnosis.result import Diagnosis
 from designer.effects.effect import Setting
+from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.measured_data import Noise
+from designer.model.measured_data import Noise
 
 pytestmark = pytest.mark.slow
 

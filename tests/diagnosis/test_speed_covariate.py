@@ -9,12 +9,12 @@ from twins.dataset import make
 from twins.robots import YARD3
 
 from designer.arrays import frozen_array
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.drift import _weights
 from designer.diagnosis.structure import Carrier, Structure, covariates_of
 from designer.effects.effect import Readings
+from designer.io.config import read_study
 from designer.measured.read import read_measured
 
 LAG_S = 0.05

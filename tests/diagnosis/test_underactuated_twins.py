@@ -7,11 +7,11 @@ import pytest
 from twins.dataset import make
 from twins.robots import FIELD4
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis_files import diagnosis_dict
+from designer.io.config import read_study
+from designer.io.diagnosis_files import diagnosis_dict
 from designer.measured.read import read_measured
 
 

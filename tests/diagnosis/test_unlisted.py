@@ -7,10 +7,10 @@ from twins.dataset import DataSet, make, size_for
 from twins.robots import YARD3
 from twins.troubles import troubled
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis, Reason, Verdict
+from designer.io.config import read_study
 from designer.measured.read import read_measured
 
 pytestmark = pytest.mark.slow

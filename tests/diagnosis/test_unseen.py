@@ -10,14 +10,14 @@ from twins.dataset import DataSet, make
 from twins.robots import HALL8, YARD3
 from twins.troubles import troubled
 
-from designer.config import read_study
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import Case, diagnose
 from designer.diagnosis.result import Diagnosis, Reason, Verdict
 from designer.diagnosis.unseen import Gain
+from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis_sections.first_page import verdict
+from designer.report.diagnosis.first_page import verdict
 
 
 def case_in(dataset: DataSet, folder) -> Case:

@@ -11,27 +11,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.analysis import Analysis, analyse, analyse_pose
-from designer.cable import Cable
-from designer.catalogue.registry import load_catalogue
-from designer.config import read_study
-from designer.declared import as_built_by
-from designer.effect_names import EffectName, ParameterName
+from designer.analysis.analyse import Analysis, analyse, analyse_pose
+from designer.analysis.result_json import result_dict
+from designer.analysis.selection_json import selection_dict
 from designer.effects.effect import Effect, Parameter, Values
 from designer.effects.guard import guarded
 from designer.effects.kind import EffectKind
 from designer.effects.known import KnownEffects
+from designer.effects.names import EffectName, ParameterName
 from designer.effects.registry import SHIPPED
 from designer.errors import EffectError
-from designer.machine import Machine
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
+from designer.model.cable import Cable
+from designer.model.machine import Machine
+from designer.model.robot import Poses
 from designer.progress import Silent
-from designer.report.sections.appendix import assumptions_section
-from designer.result_json import result_dict
-from designer.robot import Poses
-from designer.selection_json import selection_dict
+from designer.report.design.appendix import assumptions_section
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Study
+from designer.study import Study, as_built_by
 from designer.units import LINEAR_DENSITY
 
 ROPE = Cable(0.0085, 0.253, 3.5e6, 8e3)

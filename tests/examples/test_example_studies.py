@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from designer.analysis import analyse_pose
+from designer.analysis.analyse import analyse_pose
 from designer.arrays import FloatArray
-from designer.config import read_study
+from designer.io.config import read_study
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
 from designer.resources import data_folder, example_file, example_names, example_summary
-from designer.robot import Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.study import Study
-from designer.verdict import Verdict
 from designer.workspace.samples import places
 
 # name: needed diameter [mm] and massless tension [N] of the configured pose

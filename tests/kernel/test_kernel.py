@@ -110,7 +110,7 @@ def test_a_singular_lane_does_not_disturb_its_neighbours() -> None:
 
 def test_kernels_are_cached_on_disk(fast_robot, steel) -> None:
     """A second process finds the machine code of the first."""
-    from designer.robot import Poses
+    from designer.model.robot import Poses
     from designer.sizing.newton import size_poses
 
     size_poses(fast_robot, Poses.at([250.0, 200, -50]), steel)

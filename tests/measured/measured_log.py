@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray
-from designer.config import read_study
 from designer.errors import Fault, InputError
+from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.measured_data import Measured
+from designer.model.measured_data import Measured
 
 POINT = """\
 robot:

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.cli import main
-from designer.robot import Platform, Poses, Robot
+from designer.cli.commands import main
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 CONFIG = """\

@@ -13,10 +13,10 @@ from twins.logs import (
     write_printer,
 )
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
+from designer.io.config import read_study
 from designer.measured.read import read_measured
 
 

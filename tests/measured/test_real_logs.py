@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from shared_data import needs_shared, shared
 
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis, Verdict
+from designer.io.config import read_study
 from designer.measured.read import read_measured
 
 pytestmark = pytest.mark.slow

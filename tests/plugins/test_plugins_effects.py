@@ -13,23 +13,22 @@ from twins.dataset import make
 from twins.robots import YARD3
 
 from designer import effects
-from designer.cli import main
-from designer.config import read_study
-from designer.declared import as_built_by, declared_settings
+from designer.cli.commands import main
 from designer.diagnosis.check import check
 from designer.diagnosis.plugin_effects import diagnose_study
-from designer.diagnosis_files import diagnosed_config, diagnosis_dict
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.effects.registry import KINDS, SHIPPED
 from designer.errors import EffectError, InputError
+from designer.io.config import read_study
+from designer.io.diagnosis_files import diagnosed_config, diagnosis_dict
 from designer.measured.read import read_measured
 from designer.plugins.find import find_plugins
-from designer.study import Study
+from designer.study import Study, as_built_by, declared_settings
 
 DRIFT = """
 from dataclasses import replace
-from designer.effect_names import EffectName, ParameterName
+from designer.effects.names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter
 from designer.effects.kind import EffectKind
 from designer.units import Dimension
@@ -50,7 +49,7 @@ EFFECT = Effect(
 """
 LIGHTER = """
 from dataclasses import replace
-from designer.effect_names import EffectName, ParameterName
+from designer.effects.names import EffectName, ParameterName
 from designer.effects.effect import Effect, Parameter
 from designer.effects.kind import EffectKind
 from designer.units import MASS

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from wheels import install
 
-from designer.catalogue.registry import load_catalogue
+from designer.grades.registry import load_catalogue
 
 PLUGINS = Path(__file__).parents[2] / "plugins"
 

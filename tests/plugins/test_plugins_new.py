@@ -9,18 +9,18 @@ import sys
 import pytest
 from wheels import install
 
-from designer.analysis import analyse
-from designer.cable import Cable
-from designer.catalogue.registry import CatalogueSource, load_catalogue
-from designer.cli import main
-from designer.config import read_study
-from designer.declared import as_built_by
+from designer.analysis.analyse import analyse
+from designer.cli.commands import main
+from designer.cli.new_plugin import write_plugin
 from designer.effects.load import load_effects
 from designer.errors import InputError, OutputError
+from designer.grades.registry import CatalogueSource, load_catalogue
+from designer.io.config import read_study
+from designer.model.cable import Cable
 from designer.plugins.find import find_plugins
-from designer.plugins.new_plugin import write_plugin
 from designer.progress import Silent
 from designer.resources import data_folder
+from designer.study import as_built_by
 
 pytestmark = pytest.mark.slow
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from report_cases import CASES, DEFAULTS, FAST
 
-from designer.analysis import Analysis, analyse
-from designer.catalogue.registry import load_catalogue
-from designer.config import read_study
+from designer.analysis.analyse import Analysis, analyse
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
 from designer.progress import Advance
 
 

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.analysis import Provenance
+from designer.analysis.analyse import Provenance
 from designer.arrays import frozen_array
-from designer.config import read_study
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
@@ -20,16 +19,17 @@ from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Prop
 from designer.diagnosis.search import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
+from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis import (
+from designer.report.diagnosis.appendix import internal_forces
+from designer.report.diagnosis.context import (
     DiagnosisContext,
     build_diagnosis_context,
     write_diagnosis,
 )
-from designer.report.diagnosis_drawings import draw
-from designer.report.diagnosis_sections.appendix import internal_forces
-from designer.report.diagnosis_sections.design import design_section
-from designer.report.diagnosis_sections.search import search_section
+from designer.report.diagnosis.design import design_section
+from designer.report.diagnosis.drawings import draw
+from designer.report.diagnosis.search import search_section
 from designer.report.render import DIAGNOSIS, render_html
 
 pytestmark = pytest.mark.slow

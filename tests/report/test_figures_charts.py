@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from figures_cases import CASES, THREE, maps_of, pose_at, solved
 
-from designer.analysis import analyse_pose
-from designer.catalogue.registry import load_catalogue
-from designer.region import Prism
+from designer.analysis.analyse import analyse_pose
+from designer.grades.registry import load_catalogue
+from designer.model.region import Prism
 from designer.report.figures import canvas
 from designer.report.figures.charts_candidates import candidates_chart, rank
 from designer.report.figures.charts_edge import edge_chart

@@ -8,20 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.analysis import Analysis, Provenance, analyse_pose
+from designer.analysis.analyse import Analysis, Provenance, analyse_pose
 from designer.arrays import frozen_array
-from designer.catalogue.registry import Catalogue
-from designer.config import read_study
-from designer.region import PointList
-from designer.report.drawings import draw
+from designer.grades.registry import Catalogue
+from designer.io.config import read_study
+from designer.model.region import PointList
+from designer.model.robot import Poses
+from designer.model.space import Orientations
+from designer.report.design.drawings import draw
+from designer.report.design.scope import describe_orientations
+from designer.report.design.workspace import describe_region
 from designer.report.figures.maps import WorkspaceMaps, workspace_maps
 from designer.report.figures.workspace_scene import edges_m
-from designer.report.sections.scope import describe_orientations
-from designer.report.sections.workspace import describe_region
 from designer.resources import example_file
-from designer.robot import Poses
 from designer.sizing.newton import size_poses
-from designer.space import Orientations
 from designer.study import Study
 from designer.workspace.sweep import map_workspace
 

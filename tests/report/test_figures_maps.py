@@ -9,29 +9,29 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
-from designer.analysis import analyse_pose
-from designer.config import read_study
-from designer.region import Prism
-from designer.report import captions
-from designer.report.figures import grids
-from designer.report.figures.charts_edge import _not_held
-from designer.report.figures.edge import _limit, edge_profile
-from designer.report.figures.field import (
+from designer.analysis.analyse import analyse_pose
+from designer.analysis.field import (
     Field,
     cable_curves_m,
     chords_m,
     field_at,
     largest_sag,
 )
+from designer.io.config import read_study
+from designer.model.region import Prism
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
+from designer.report.design import captions
+from designer.report.figures import grids
+from designer.report.figures.charts_edge import _not_held
+from designer.report.figures.edge import _limit, edge_profile
 from designer.report.figures.maps import as_built, workspace_maps
 from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
-from designer.robot import Poses
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
 from designer.study import DeclaredEffect
-from designer.verdict import Verdict
 
 pytestmark = pytest.mark.slow
 

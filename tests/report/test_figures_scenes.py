@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, THREE, maps_of, pose_at, solved
 
-from designer.analysis import analyse_pose
+from designer.analysis.analyse import analyse_pose
+from designer.analysis.field import Field
 from designer.errors import MissingLibraryError
-from designer.region import Prism
+from designer.model.region import Prism
 from designer.report.figures import opengl, overlay, palette, stage
-from designer.report.figures.field import Field
 from designer.report.figures.interactive import workspace_scene_html
 from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.quantity import DIAMETER, RATIO, TENSION

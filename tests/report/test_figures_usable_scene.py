@@ -9,11 +9,11 @@ import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
 
 from designer.arrays import FloatArray
-from designer.catalogue.grade import Grade, Modulus, Reference, Size
-from designer.report import captions
+from designer.grades.grade import Grade, Modulus, Reference, Size
+from designer.model.robot import Poses
+from designer.report.design import captions
 from designer.report.figures.usable_scene import chosen_sizes, colours, layers_of, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
-from designer.robot import Poses
 from designer.selection.usable import Usable, usable
 from designer.sizing.newton import size_poses
 

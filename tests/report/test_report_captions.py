@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from figures_cases import maps_of
 
-from designer.analysis import Analysis
-from designer.report import captions
-from designer.report.drawings import draw
+from designer.analysis.analyse import Analysis
+from designer.report.design import captions
+from designer.report.design.drawings import draw
 from designer.report.figures.maps import Served
 
 pytestmark = pytest.mark.slow

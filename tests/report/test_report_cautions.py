@@ -10,14 +10,14 @@ from report_cases import DEFAULTS, FAST
 from test_report_groups import YARD
 from test_report_qualities import PRISM, SELECTION, SIX
 
-from designer.analysis import Analysis
-from designer.catalogue.grade import Limits
-from designer.report.context import ReportContext, build_context
+from designer.analysis.analyse import Analysis
+from designer.grades.grade import Limits
+from designer.report.design.candidates import front_sentence
+from designer.report.design.context import ReportContext, build_context
 from designer.report.figures.charts_pareto import pareto_chart
 from designer.report.material_class import class_of
 from designer.report.pictures import Pictures
 from designer.report.render import render_html
-from designer.report.sections.candidates import front_sentence
 
 pytestmark = pytest.mark.slow
 

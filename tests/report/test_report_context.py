@@ -11,15 +11,15 @@ import pytest
 from markupsafe import escape
 from report_cases import CASES, DEFAULTS, FAST
 
-from designer.analysis import Analysis
+from designer.analysis.analyse import Analysis
+from designer.report import design
 from designer.report import format as fmt
-from designer.report import sections
-from designer.report.context import ReportContext, build_context
+from designer.report.design.candidates import best_table, thin_table
+from designer.report.design.context import ReportContext, build_context
+from designer.report.design.pose import turns_table
 from designer.report.parts import MOST_ROWS, Picture, Table
 from designer.report.pictures import Pictures
 from designer.report.render import render_html
-from designer.report.sections.candidates import best_table, thin_table
-from designer.report.sections.pose import turns_table
 from designer.sizing.loop import Iterate, LoopSizing
 
 pytestmark = pytest.mark.slow
@@ -103,8 +103,8 @@ def documented_classes() -> list[type]:
             found.append(kind)
 
     add(ReportContext)
-    for info in pkgutil.iter_modules(sections.__path__):
-        module = importlib.import_module(f"{sections.__name__}.{info.name}")
+    for info in pkgutil.iter_modules(design.__path__):
+        module = importlib.import_module(f"{design.__name__}.{info.name}")
         for value in vars(module).values():
             add(value)
     return [

@@ -9,12 +9,12 @@ import re
 import pypdf
 import pytest
 
-from designer.analysis import Analysis
-from designer.report.context import build_context
-from designer.report.drawings import draw
+from designer.analysis.analyse import Analysis
+from designer.report.design.candidates import thin_table
+from designer.report.design.context import build_context
+from designer.report.design.drawings import draw
 from designer.report.pictures import Pictures
 from designer.report.render import render_html, render_pdf
-from designer.report.sections.candidates import thin_table
 
 pytestmark = pytest.mark.slow
 

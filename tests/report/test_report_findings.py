@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from designer.analysis import Analysis
-from designer.region import Prism
-from designer.report.findings import distance_to_sides_m, find
-from designer.robot import Poses
+from designer.analysis.analyse import Analysis
+from designer.analysis.findings import distance_to_sides_m, find
+from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
 
@@ -121,7 +121,7 @@ def test_hanging_share_is_that_of_the_chosen_rope(
 
 
 def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
-    from designer.report.sections.appendix import assumptions_section
+    from designer.report.design.appendix import assumptions_section
     from designer.resources import example_file
 
     text = example_file("yard").read_text(encoding="utf-8")

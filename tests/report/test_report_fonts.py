@@ -15,8 +15,8 @@ import pypdf
 import pytest
 from fontTools.ttLib import TTFont
 
-from designer.analysis import Analysis
-from designer.report.context import ReportContext, build_context
+from designer.analysis.analyse import Analysis
+from designer.report.design.context import ReportContext, build_context
 from designer.report.fonts import FACES, with_fonts
 from designer.report.pictures import Pictures
 from designer.report.render import render_html

@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import pytest
 
-from designer import terminal
-from designer.analysis import Analysis
-from designer.groups_json import groups_dict
+from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings
+from designer.analysis.groups_json import groups_dict
+from designer.analysis.result_json import result_dict
+from designer.cli import terminal
+from designer.report.design.first_page import first_page
+from designer.report.design.groups import groups_section
 from designer.report.figures.charts_groups import groups_plan
-from designer.report.findings import Findings
 from designer.report.pictures import Pictures
-from designer.report.sections.first_page import first_page
-from designer.report.sections.groups import groups_section
-from designer.result_json import result_dict
 
 pytestmark = pytest.mark.slow
 

@@ -7,10 +7,10 @@ import json
 
 import pytest
 
-from designer.analysis import Analysis
-from designer.report.sections.appendix import left_out_section
+from designer.analysis.analyse import Analysis
+from designer.analysis.result_json import result_dict
+from designer.report.design.appendix import left_out_section
 from designer.resources import data_folder
-from designer.result_json import result_dict
 
 pytestmark = pytest.mark.slow
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from designer.analysis import Analysis
-from designer.report.context import build_context
+from designer.analysis.analyse import Analysis
+from designer.report.design.context import build_context
+from designer.report.design.first_page import FirstPage
 from designer.report.pictures import Pictures
-from designer.report.sections.first_page import FirstPage
 
 pytestmark = pytest.mark.slow
 

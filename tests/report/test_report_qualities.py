@@ -10,14 +10,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from designer.analysis import Analysis
-from designer.report.context import build_context
-from designer.report.drawings import draw
+from designer.analysis.analyse import Analysis
+from designer.analysis.result_json import result_dict
+from designer.report.design.context import build_context
+from designer.report.design.drawings import draw
 from designer.report.figures import grids
 from designer.report.figures.height_map import HeightMap, height_map
 from designer.report.pictures import Pictures
 from designer.report.render import render_html
-from designer.result_json import result_dict
 
 pytestmark = pytest.mark.slow
 
@@ -169,7 +169,7 @@ workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 
 @pytest.mark.parametrize("case", ["all", "some bad", "nothing", "limit"])
 def test_height_maps(case: str) -> None:
-    from designer.region import Prism
+    from designer.model.region import Prism
 
     region = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
     position = grids.disc_m(region, 1.5, 6, 24)

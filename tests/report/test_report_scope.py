@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from designer import terminal
-from designer.analysis import Analysis
+from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings
+from designer.analysis.result_json import result_dict
 from designer.arrays import frozen_array
-from designer.config import read_study
-from designer.region import PointList, Prism
-from designer.report.context import build_context
-from designer.report.findings import Findings
+from designer.cli import terminal
+from designer.io.config import read_study
+from designer.model.region import PointList, Prism
+from designer.model.robot import Poses
+from designer.model.space import Orientations, Space
+from designer.report.design.context import build_context
+from designer.report.design.first_page import first_page
+from designer.report.design.scope import orientation_statement, strength_statement
 from designer.report.pictures import Pictures
-from designer.report.sections.first_page import first_page
-from designer.report.sections.scope import orientation_statement, strength_statement
 from designer.resources import example_file
-from designer.result_json import result_dict
-from designer.robot import Poses
-from designer.space import Orientations, Space
 from designer.study import Selection, Study
 
 pytestmark = pytest.mark.slow
@@ -126,7 +126,7 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:
-    from designer.report.sections.candidates import pareto_table
+    from designer.report.design.candidates import pareto_table
 
     selection = analyses["positive"].selection
     assert selection is not None and selection.chosen is not None

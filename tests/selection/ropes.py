@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from designer.catalogue.grade import Grade, Modulus, Reference, RopeMaterial, SheaveRatio, Size
+from designer.grades.grade import Grade, Modulus, Reference, RopeMaterial, SheaveRatio, Size
 
 LOAD_PER_D2 = 780.0e6
 """Breaking load over diameter squared [N/m²], that of a 7x19 rope."""

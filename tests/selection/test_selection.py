@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from ropes import rope
 
-from designer.catalogue.grade import Grade
-from designer.region import Prism
-from designer.robot import Poses
+from designer.grades.grade import Grade
+from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.selection.result import GradeOutcome
 from designer.selection.select import select
 from designer.selection.verify import verify

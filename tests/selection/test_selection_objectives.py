@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from ropes import rope
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.region import PointList, Prism
+from designer.model.cable import Cable
+from designer.model.region import PointList, Prism
 from designer.selection.objectives import common_currency, smallest_stiffness_N_per_m
 from designer.selection.pareto import dominator_of, is_undominated
 from designer.selection.select import best_product, select

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from ropes import rope
 
-from designer.cable import Material
-from designer.cli import main
-from designer.region import Prism
-from designer.robot import Poses
+from designer.cli.commands import main
+from designer.model.cable import Material
+from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.selection.result import Candidate
 from designer.selection.select import select
 from designer.sizing.newton import size_poses

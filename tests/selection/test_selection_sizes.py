@@ -9,9 +9,9 @@ import pytest
 from ropes import rope
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.region import PointList, Prism
-from designer.robot import Poses
+from designer.model.cable import Cable
+from designer.model.region import PointList, Prism
+from designer.model.robot import Poses
 from designer.selection.verify import verify
 from designer.selection.verify_sizes import refined, verify_sizes
 from designer.statics.inverse import solve_sagging

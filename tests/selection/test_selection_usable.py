@@ -9,14 +9,14 @@ import pytest
 from ropes import rope
 
 from designer.arrays import frozen_array
-from designer.config import read_study
-from designer.region import PointList, Prism
+from designer.io.config import read_study
+from designer.model.region import PointList, Prism
+from designer.model.robot import Poses
+from designer.model.space import Orientations
 from designer.resources import example_file
-from designer.robot import Poses
 from designer.selection.select import select
 from designer.selection.usable import usable
 from designer.sizing.newton import size_poses
-from designer.space import Orientations
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Workspace
 from designer.workspace.samples import positions_m

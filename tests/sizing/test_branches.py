@@ -11,10 +11,10 @@ from redundant_robots import FOUR, anywhere, cogiro_poses, four_poses, one, stee
 from sample_robots import COGIRO
 from twins.thinnest import thinnest
 
-from designer.robot import Poses
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
-from designer.verdict import Verdict
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 

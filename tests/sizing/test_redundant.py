@@ -19,9 +19,10 @@ from redundant_robots import (
 from sample_robots import COGIRO
 
 from designer.arrays import frozen_array
-from designer.cable import Cable, Cables, Material
+from designer.model.cable import Cable, Cables, Material
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.robot import Platform, Poses, Robot
 from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import size_by_loop
 from designer.sizing.newton import Sizing, size_poses
@@ -30,7 +31,6 @@ from designer.sizing.scp import optimality_of, size_by_scp
 from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_sagging
-from designer.verdict import Verdict
 
 WEIGHTS = (1.0, 30.0, 60.0)
 CASES = {

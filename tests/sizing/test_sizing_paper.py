@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from designer.robot import Poses
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import size_by_loop
 from designer.sizing.newton import size_poses
 from designer.sizing.nlp import size_by_nlp
-from designer.verdict import Verdict
 
 POSE = Poses.at([250.0, 200.0, -50.0])
 

@@ -12,11 +12,11 @@ from scipy.linalg import null_space
 from scipy.optimize import LinearConstraint, linprog, minimize
 
 from designer.arrays import frozen_array
-from designer.robot import Platform, Poses, Robot
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.distribution import distribute, distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N
 from designer.statics.inverse import solve_massless
-from designer.verdict import Verdict
 
 CASES = {
     "cogiro": (COGIRO, anywhere(150), 600.0),

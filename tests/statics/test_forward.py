@@ -10,13 +10,13 @@ from sample_robots import COGIRO, COGIRO_CABLE, ROPE, poses_under
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
-from designer.cable import Cable, Cables, Material
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable, Cables, Material
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.equilibria import find_equilibria, spread_poses
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.forward import ForwardStatics, solve_forward
 from designer.statics.inverse import solve_sagging
-from designer.verdict import Verdict
 
 COGIRO_LENGTHS_M = np.array(
     [9.69426, 9.3803, 9.73006, 9.40211, 9.71528, 10.00552, 9.74173, 10.01977]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.cable import Cable
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 SLACK = Cable(0.02, 2.0, 1e8, 1e9)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import Cable
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.robot import Platform, Poses, Robot
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.internal import solve_internal
 from designer.statics.inverse import Statics
-from designer.verdict import Verdict
 
 EIGHT = Robot(
     frozen_array(

@@ -7,9 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
-from designer.robot import Platform, Poses, Robot
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.statics.inverse import solve_massless, solve_sagging
-from designer.verdict import Verdict
 
 
 def poses_below(robot: Robot, count: int, seed: int) -> Poses:

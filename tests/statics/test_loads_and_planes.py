@@ -9,13 +9,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import STANDARD_GRAVITY_M_PER_S2 as G
-from designer.cable import Material
-from designer.region import Rectangle
-from designer.robot import Platform, Poses, Robot, vertical_frame
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2 as G
+from designer.model.cable import Material
+from designer.model.region import Rectangle
+from designer.model.robot import Platform, Poses, Robot, vertical_frame
+from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.verdict import Verdict
 
 STEEL = Material(7800.0, 200e9, 180e6)
 

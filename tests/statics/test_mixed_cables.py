@@ -11,9 +11,9 @@ from twins import physics
 from twins.robots import FAST3, HALL6, TwinRobot
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import Cable, Cables
 from designer.effects.design import AsBuilt
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 PULLEYS_M = [0.0, 0.4]

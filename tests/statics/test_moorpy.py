@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from sample_robots import COGIRO, COGIRO_CABLE, ROPE, poses_under
 
-from designer.cable import Cable
+from designer.model.cable import Cable
+from designer.model.robot import Poses, Robot
 from designer.physics import catenary
-from designer.robot import Poses, Robot
 from designer.statics.forward import solve_forward
 from designer.statics.geometry import load_wrench_N, structure_matrix
 from designer.statics.inverse import Statics, solve_sagging

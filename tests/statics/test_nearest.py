@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import Cable
 from designer.kernel.unit_cable import PULL_FLOOR
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
-from designer.robot import Platform, Poses, Robot
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.nearest import solve_nearest
 from designer.statics.task import straight_run

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import Material
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Material
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
-from designer.verdict import Verdict
 
 pytestmark = pytest.mark.slow
 

@@ -12,8 +12,9 @@ from scipy.optimize import nnls
 
 from designer.arrays import frozen_array
 from designer.kernel.batch import refuse_batch
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.geometry import (
     cable_geometry,
@@ -23,7 +24,6 @@ from designer.statics.geometry import (
 )
 from designer.statics.inverse import solve_sagging
 from designer.statics.task import over_pulleys, straight_run
-from designer.verdict import Verdict
 
 OUTSIDE, NOT_FOUND = Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND
 

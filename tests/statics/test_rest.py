@@ -9,8 +9,8 @@ import numpy as np
 from sample_robots import COGIRO, COGIRO_CABLE
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.equilibria import spread_poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.rest import RestingPlaces, resting_places

@@ -10,8 +10,8 @@ from sample_robots import COGIRO, COGIRO_CABLE, ROPE, poses_under
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.forward import solve_forward
 from designer.statics.inverse import Statics, solve_sagging

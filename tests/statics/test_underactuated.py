@@ -13,12 +13,12 @@ from twins.hanging import hang
 from twins.robots import FIELD4
 
 from designer.arrays import FloatArray, frozen_array
-from designer.cable import Cable
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.verdict import Verdict
 from designer.physics import catenary
-from designer.robot import Platform, Poses, Robot
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.underactuated import imbalance, solve_underactuated
-from designer.verdict import Verdict
 
 ALL = tuple(range(6))
 

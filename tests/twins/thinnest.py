@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog, minimize
 
-from designer.cable import STANDARD_GRAVITY_M_PER_S2, Material
-from designer.robot import Poses, Robot
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.robot import Poses, Robot
 
 STARTS = 14
 _STEEPEST = 3.0  # of δ: no cable more than about three times as long as its horizontal distance

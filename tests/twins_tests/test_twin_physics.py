@@ -13,8 +13,8 @@ from twins.physics import GRAVITY, Machine, solve
 from twins.robots import FAST3_WIDE, HALL6, ROBOTS, YARD3, TwinRobot
 
 from designer.arrays import frozen_array
-from designer.cable import Cable
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Cable
+from designer.model.robot import Platform, Poses, Robot
 from designer.statics.inverse import solve_sagging
 
 TRIPOD = np.array([[[10.0, 0, 0], [-5, 5 * np.sqrt(3), 0], [-5, -5 * np.sqrt(3), 0]]])

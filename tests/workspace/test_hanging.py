@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Material
-from designer.region import Prism
-from designer.robot import Platform, Poses, Robot
+from designer.model.cable import Material
+from designer.model.region import Prism
+from designer.model.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.hanging import length_over_chord, lowest_m
 from designer.statics.inverse import solve_sagging

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.cable import Material
-from designer.region import PointList, Prism
-from designer.robot import Poses, Robot
+from designer.model.cable import Material
+from designer.model.region import PointList, Prism
+from designer.model.robot import Poses, Robot
+from designer.model.space import FILLING, Orientations, Space
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
-from designer.space import FILLING, Orientations, Space
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import refine

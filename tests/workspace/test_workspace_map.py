@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.region import PointList, Prism
-from designer.robot import Poses
+from designer.model.region import PointList, Prism
+from designer.model.robot import Poses
+from designer.model.space import Orientations, Space
 from designer.sizing.newton import size_poses
-from designer.space import Orientations, Space
 from designer.study import Workspace
 from designer.workspace.refine import Pool, refine, refine_each
 from designer.workspace.samples import CHUNK, positions_m, sample_count, thinned

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import PointList, Prism, Region
+from designer.model.region import PointList, Prism, Region
+from designer.model.robot import Poses, Robot
 from designer.report.figures import canvas, palette
 from designer.report.figures.names import names_of
-from designer.robot import Poses, Robot
-from designer.selection.groups_result import Assigned, GroupChoice
+from designer.selection.groups.result import Assigned, GroupChoice
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,7 +12,7 @@ from designer.arrays import FloatArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.whereabouts import strongest_channel
-from designer.report.diagnosis_sections import words
+from designer.report.diagnosis import words
 from designer.report.figures import canvas, diagnosis_style, palette
 
 if TYPE_CHECKING:

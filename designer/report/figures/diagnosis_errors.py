@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.diagnosis.result import Diagnosis
-from designer.report.diagnosis_sections.quantity import Quantity, quantities
+from designer.report.diagnosis.quantity import Quantity, quantities
 from designer.report.figures import canvas, diagnosis_style, palette
 
 if TYPE_CHECKING:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from designer.analysis.field import Field, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.region import PointList, Prism, Rectangle
+from designer.model.region import PointList, Prism, Rectangle
+from designer.model.verdict import Verdict
 from designer.report.figures import grids
-from designer.report.figures.field import Field, field_at
 from designer.study import Study
-from designer.verdict import Verdict
 
 _STEPS = 400
 _BISECTIONS = 40

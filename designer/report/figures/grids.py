@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import Prism, Rectangle
+from designer.model.region import Prism, Rectangle
 
 _RINGS, _SPOKES, _LAYERS = 48, 180, 24
 _OPENING_RAD = np.radians(100.0)

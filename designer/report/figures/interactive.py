@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from designer.analysis.field import Field
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette, stage
 from designer.report.figures.colours import Steps
-from designer.report.figures.field import Field
 from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.names import names_of
 from designer.report.figures.quantity import DIAMETER, Quantity

@@ -8,19 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from designer.analysis import Analysis
+from designer.analysis.analyse import Analysis
+from designer.analysis.field import Field, field_at, field_of
 from designer.arrays import BoolArray, FloatArray
-from designer.declared import as_built_by
-from designer.region import PointList, Rectangle, Region
+from designer.model.region import PointList, Rectangle, Region
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.report.figures import grids
 from designer.report.figures.edge import EdgeProfile, edge_profile
-from designer.report.figures.field import Field, field_at, field_of
 from designer.report.figures.quantity import Quantity
-from designer.robot import Poses
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.study import Study, Workspace
-from designer.verdict import Verdict
+from designer.study import Study, Workspace, as_built_by
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from designer.analysis.field import Field
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
 from designer.report.figures.colours import Steps
-from designer.report.figures.field import Field
 from designer.report.figures.quantity import Quantity
 from designer.report.figures.stage import Image
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View

@@ -11,7 +11,7 @@ from designer.arrays import FloatArray
 from designer.report.figures import canvas
 
 if TYPE_CHECKING:
-    from designer.report.figures.field import Field
+    from designer.analysis.field import Field
 
 
 _KILONEWTON = 1e3

@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis import PoseAnalysis
-from designer.arrays import FloatArray
-from designer.report import format as fmt
-from designer.report.figures import canvas, labels, overlay, palette, stage
-from designer.report.figures.field import (
+from designer.analysis.analyse import PoseAnalysis
+from designer.analysis.field import (
     Sag,
     body_lines_m,
     cable_curves_m,
     chords_m,
     largest_sag,
 )
+from designer.arrays import FloatArray
+from designer.model.robot import Robot
+from designer.model.verdict import Verdict
+from designer.report import format as fmt
+from designer.report.figures import canvas, labels, overlay, palette, stage
 from designer.report.figures.view import View, clear_azimuth_rad, facing_azimuth_rad, fitting
-from designer.robot import Robot
 from designer.statics.inverse import Statics
-from designer.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.analysis import Analysis
+from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray
-from designer.interference.clearance import smallest_clearance
-from designer.region import Prism
+from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.report.figures import grids
 from designer.report.figures.height_map import HeightMap, height_map
-from designer.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import is_left_out
 
 _STIFFNESS_GRID = (40, 144)

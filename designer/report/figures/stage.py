@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from designer.analysis.field import Field
 from designer.arrays import BoolArray, FloatArray
 from designer.errors import MissingLibraryError
 from designer.report.figures import palette
 from designer.report.figures.colours import Steps
-from designer.report.figures.field import Field
 from designer.report.figures.opengl import why_no_scenes
 from designer.report.figures.quantity import Quantity
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View

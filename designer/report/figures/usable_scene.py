@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.region import Prism
+from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.report.figures import canvas, labels, overlay, palette, stage
 from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.stage import PRINT
 from designer.report.figures.view import View
 from designer.report.figures.workspace_scene import bounds_m, edges_m, size_m, view_of
-from designer.robot import Poses
 from designer.selection.usable import Usable, UsableSize
 from designer.statics.inverse import solve_sagging
 

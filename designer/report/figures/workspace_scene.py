@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.field import body_lines_m, cable_curves_m
 from designer.arrays import FloatArray
-from designer.region import Prism, Rectangle
+from designer.model.region import Prism, Rectangle
 from designer.report.figures import canvas, grids, labels, overlay, palette, stage
 from designer.report.figures.colours import Steps, steps_for
-from designer.report.figures.field import body_lines_m, cable_curves_m
 from designer.report.figures.maps import WorkspaceMaps
 from designer.report.figures.quantity import DIAMETER, Quantity
 from designer.report.figures.stage import PRINT, Pen

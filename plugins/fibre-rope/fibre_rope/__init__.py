@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from designer.catalogue.grade import Grade
+from designer.grades.grade import Grade
 from designer.plugins import hookimpl
 
 PARAMETERS_VARIABLE = "FIBRE_ROPE_PARAMETERS"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from designer.catalogue.grade import ComputedFigure, Grade, Limits, Reference, Size
-from designer.catalogue.stiffness import RelativeStiffness
+from designer.grades.grade import ComputedFigure, Grade, Limits, Reference, Size
+from designer.grades.stiffness import RelativeStiffness
 from fibre_rope.creep import CreepLaw
 from fibre_rope.parameters import Condition, Parameters
 

@@ -12,7 +12,7 @@ from fibre_rope.creep import BOLTZMANN_J_PER_K, CreepLaw
 from fibre_rope.grades import breaking_load_N, computed_grades, creep_load_fraction
 from fibre_rope.parameters import Condition, Parameters, read_parameters
 
-from designer.catalogue.checks import find_flaws
+from designer.grades.checks import find_flaws
 
 YEAR_S = 365.25 * 86400.0
 LAW = CreepLaw(

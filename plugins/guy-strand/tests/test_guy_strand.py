@@ -5,8 +5,8 @@ from __future__ import annotations
 import guy_strand
 import pytest
 
-from designer.catalogue.files import read_grades
-from designer.catalogue.grade import Grade
+from designer.grades.files import read_grades
+from designer.grades.grade import Grade
 
 
 @pytest.fixture(scope="module")

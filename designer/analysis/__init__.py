@@ -1,0 +1,1 @@
+"""From a study to everything that is known of it: computed here, shown by the report."""

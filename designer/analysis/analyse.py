@@ -1,0 +1,341 @@
+"""The pipeline: from a study to everything that the report shows."""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import weakref
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import numpy as np
+
+from designer import __version__
+from designer.effects.design import AsBuilt
+from designer.grades.registry import Catalogue, load_catalogue
+from designer.progress import SILENT, Reporter
+from designer.selection.groups.choose import choose_groups_of
+from designer.selection.groups.result import GroupChoice
+from designer.selection.qualities import Qualities, qualities_of
+from designer.selection.result import SelectionResult
+from designer.selection.select import select
+from designer.sizing.limit import limit_ratio
+from designer.sizing.loop import LoopSizing, size_by_loop
+from designer.sizing.newton import Sizing, size_poses
+from designer.statics.inverse import MasslessStatics, solve_massless
+from designer.statics.rest import RestingPlaces, resting_places
+from designer.study import Study, as_built_by, require_enough_cables
+from designer.workspace.hanging import HangingCables
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.samples import sample_count
+from designer.workspace.section import section_of_pose, section_of_workspace
+from designer.workspace.sweep import map_workspace
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseAnalysis:
+    """The configured pose alone.
+
+    Parameters
+    ----------
+    sizing : Sizing
+        Optimum by Newton, no leading axes.
+    massless : MasslessStatics
+        Straight weightless cables.
+    loop : LoopSizing
+        The basic loop with its iterates.
+    limit_ratio : float
+        Stress at infinite section over allowable stress; at 1 no finite cable is left.
+    rest : RestingPlaces or None
+        Whether the platform stays there on cables of the optimum; None where there is none.
+    """
+
+    sizing: Sizing
+    massless: MasslessStatics
+    loop: LoopSizing
+    limit_ratio: float
+    rest: RestingPlaces | None
+
+    @property
+    def caution(self) -> str:
+        """What a reader must know of cables that hang below the platform; empty if none does."""
+        statics = self.sizing.statics
+        if not (statics.is_solved and statics.hangs_below):
+            return ""
+        chord_m = statics.geometry().chord_m
+        each = [
+            f"Cable {k + 1} hangs below the platform, {statics.length_m[k]:.4g} m long over a "
+            f"distance of {chord_m[k]:.4g} m."
+            for k in np.flatnonzero(statics.hanging_cables)
+        ]
+        if not np.isfinite(self.sizing.massless_tension_N):
+            each.append("Straight cables cannot hold this pose: what hangs there is a weight.")
+        return " ".join(each)
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Where the numbers come from.
+
+    Parameters
+    ----------
+    version : str
+        Of this program.
+    libraries : tuple of (name, version)
+        What computed and drew them.
+    system : str
+        Operating system and Python.
+    created : datetime
+        When the analysis was started.
+    """
+
+    version: str
+    libraries: tuple[tuple[str, str], ...]
+    system: str
+    created: datetime
+
+    @classmethod
+    def now(cls, study: Study | None = None) -> Provenance:
+        """Return the provenance of an analysis that starts now, with what the study asks for."""
+        names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
+        if study is not None and _needs_programmes(study):
+            names += ["cvxpy", "highspy"]
+        return cls(
+            version=__version__,
+            libraries=tuple((name, version(name)) for name in names),
+            system=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            created=datetime.now().astimezone(),
+        )
+
+
+class Scratch:
+    """A temporary folder that goes when nothing refers to this any more."""
+
+    def __init__(self) -> None:
+        self.folder = Path(mkdtemp(prefix="designer-"))
+        weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Analysis:
+    """Everything that the report shows.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    catalogue : Catalogue
+        The grades it was solved with.
+    provenance : Provenance
+        Versions and time.
+    pose : PoseAnalysis or None
+        If the study has a pose.
+    workspace : WorkspaceMap or None
+        If the study has a workspace.
+    selection : SelectionResult or None
+        If the study has a workspace and a selection.
+    groups : GroupChoice or None
+        If the selection has groups of cables.
+    qualities : Qualities or None
+        Stiffness and clearances, if the study has a workspace and a cable holds in all of it.
+    section_m : float or None
+        Diameter whose mass, stiffness and strength stand for the configured family; None where the
+        declared effects leave it a family, see `designer.workspace.section` [m].
+    scratch : Scratch or None
+        Folder that goes with this value, where no other was given for the samples.
+    """
+
+    study: Study
+    catalogue: Catalogue
+    provenance: Provenance
+    pose: PoseAnalysis | None
+    workspace: WorkspaceMap | None
+    selection: SelectionResult | None
+    groups: GroupChoice | None = None
+    qualities: Qualities | None = None
+    section_m: float | None = None
+    scratch: Scratch | None = field(default=None, repr=False)
+
+    @property
+    def sweep_file(self) -> Path | None:
+        """NetCDF file with every sample, if the study has a workspace."""
+        return None if self.workspace is None else self.workspace.file
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``result.json`` holds: plain values under stable names."""
+        from designer.analysis.result_json import result_dict
+
+        return result_dict(self)
+
+    def to_json(self) -> str:
+        """Return what ``result.json`` holds, as text."""
+        from designer.analysis.result_json import json_text
+
+        return json_text(self.to_dict())
+
+    @property
+    def built(self) -> AsBuilt:
+        """Robot and cables with the declared effects, as everything here was solved."""
+        return as_built_by(self.study, self.section_m)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What plugins and grade files gave that could not be used, one line each."""
+        problems = (*self.study.known_effects.problems, *self.catalogue.problems)
+        return tuple(dict.fromkeys(problems))
+
+    @property
+    def hanging(self) -> HangingCables:
+        """Cables that hang too far, with those of the design; else with what each sample needs."""
+        if self.qualities is not None:
+            return self.qualities.hanging
+        return HangingCables() if self.workspace is None else self.workspace.census.hanging
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the answer is yes: cables hold as asked, and keep the clearance asked for."""
+        clear = None if self.qualities is None else self.qualities.interference
+        return self.has_cable and (clear is None or not clear.is_violated)
+
+    @property
+    def has_cable(self) -> bool:
+        """Whether the pose is solved, the workspace served, a product found."""
+        pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
+        workspace_ok = self.workspace is None or self.workspace.is_feasible
+        return pose_ok and workspace_ok and self.has_products
+
+    @property
+    def has_groups(self) -> bool:
+        """Whether products for groups of cables are the answer."""
+        return self.groups is not None and self.groups.chosen is not None
+
+    @property
+    def has_products(self) -> bool:
+        """Whether a product was found, or one for each group where the study has groups."""
+        if self.groups is not None:
+            return self.groups.chosen is not None
+        return self.selection is None or self.selection.chosen is not None
+
+
+def _needs_programmes(study: Study) -> bool:
+    """Tell whether tensions or products are chosen by mathematical programmes."""
+    has_groups = study.selection is not None and bool(study.selection.groups)
+    return has_groups or study.robot.is_redundant
+
+
+def analyse_pose(study: Study) -> PoseAnalysis | None:
+    """Size the configured pose in every way; None if the study has none."""
+    if study.pose is None:
+        return None
+    built = as_built_by(study)
+    section_m = section_of_pose(built, study.pose, study.material)
+    robot, material = built.robot, built.material(study.material, section_m)
+    sizing = size_poses(robot, study.pose, material)
+    rest = None
+    if sizing.statics.is_solved:
+        cable = material.cable(float(sizing.diameter_m))
+        rest = resting_places(robot, study.pose, cable, sizing.statics.length_m)
+    return PoseAnalysis(
+        sizing=sizing,
+        massless=solve_massless(robot, study.pose),
+        loop=size_by_loop(robot, study.pose, material),
+        limit_ratio=float(limit_ratio(robot, study.pose, material)),
+        rest=rest,
+    )
+
+
+def analyse(
+    study: Study,
+    catalogue: Catalogue | None = None,
+    folder: Path | None = None,
+    reporter: Reporter = SILENT,
+) -> Analysis:
+    """Size the pose, sweep the workspace, choose a product.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    catalogue : Catalogue, optional
+        All grades; if left out, those that are shipped, of plugins, and of the study's own files.
+    folder : Path, optional
+        Existing folder that receives ``workspace.nc``; a temporary one if left out.
+    reporter : Reporter
+        Shows progress.
+
+    Raises
+    ------
+    InputError
+        If the robot has fewer cables than degrees of freedom, or a grade is not in the catalogue.
+    """
+    require_enough_cables(study)
+    if catalogue is None:
+        catalogue = load_catalogue(study.catalogues)
+    catalogue.require_grades_of(study)
+    scratch = None
+    if folder is None and study.workspace is not None:
+        scratch = Scratch()
+        folder = scratch.folder
+    provenance = Provenance.now(study)
+    pose = analyse_pose(study)
+    built = as_built_by(study)
+    if study.workspace is not None:
+        section_m = section_of_workspace(built, study.workspace, study.material)
+        built = replace(built, section_m=section_m)
+    workspace = chosen = groups = None
+    if study.workspace is not None and folder is not None:
+        with reporter.task("workspace", sample_count(study.workspace)) as advance:
+            workspace = map_workspace(
+                built.robot,
+                study.workspace,
+                built.material(study.material),
+                file=folder / "workspace.nc",
+                attributes=_attributes(study, provenance),
+                progress=advance,
+            )
+    if study.workspace is not None and study.selection is not None:
+        chosen = select(
+            built.robot,
+            study.workspace,
+            study.selection,
+            catalogue.grades,
+            built=built,
+            reporter=reporter,
+        )
+        if study.selection.groups:
+            groups = choose_groups_of(
+                study.workspace,
+                study.selection,
+                catalogue.grades,
+                built,
+                chosen.chosen,
+                reporter,
+            )
+    qualities = None
+    if study.workspace is not None and workspace is not None:
+        qualities = qualities_of(study.workspace, workspace, chosen, groups, built, study.material)
+    return Analysis(
+        study,
+        catalogue,
+        provenance,
+        pose,
+        workspace,
+        chosen,
+        groups,
+        qualities,
+        built.section_m,
+        scratch,
+    )
+
+
+def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:
+    return {
+        "title": study.name,
+        "source": f"cdpr-designer {provenance.version}",
+        "config_sha256": study.source.sha256,
+        "history": f"{provenance.created.isoformat(timespec='seconds')} created",
+    }

@@ -1,0 +1,244 @@
+"""What a reviewer asks next: a few small extra solves about the answer.
+
+What would ignoring sag have led to? How much does the doubt about the rope's modulus matter? How
+near is the chosen rope to the boundary of what any section can hold? What changes if poses with a
+cable below the platform count, or not? How wide is the strip that cannot be served?
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from designer.analysis.analyse import Analysis
+from designer.arrays import FloatArray
+from designer.grades.grade import Size
+from designer.model.region import Prism
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
+from designer.selection.result import Candidate, GradeOutcome
+from designer.selection.verify import Verification, verify
+from designer.sizing.limit import limit_ratio
+from designer.statics.inverse import solve_sagging
+from designer.study import HangsBelow
+from designer.workspace.demand import is_left_out
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.samples import places
+from designer.workspace.store import open_sweep
+from designer.workspace.sweep import map_workspace
+
+_MOST_SAMPLES = 20_000
+_CHUNK = 2**18
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MasslessChoice:
+    """The size of the chosen grade that a design without sag would have picked.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The thinnest size whose allowable tension covers the massless one.
+    verification : Verification
+        What that size really meets in the workspace.
+    """
+
+    candidate: Candidate
+    verification: Verification
+
+    @property
+    def size(self) -> Size:
+        """The size."""
+        return self.candidate.size
+
+    @property
+    def safety_factor(self) -> float:
+        """What is left of its breaking load over the largest tension that it really meets."""
+        strength_N = self.candidate.efficiency * self.size.minimum_breaking_load_N
+        return strength_N / self.verification.max_tension_N
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OtherPolicy:
+    """The workspace with the opposite setting of ``hangs_below``.
+
+    Parameters
+    ----------
+    hangs_below : str
+        The opposite setting.
+    map : WorkspaceMap
+        What it leads to, from at most 20 000 samples and the search between them.
+    """
+
+    hangs_below: HangsBelow
+    map: WorkspaceMap
+
+
+@dataclass(frozen=True, slots=True)
+class Unserved:
+    """Where the samples lie that no cable of the configured family can serve.
+
+    Parameters
+    ----------
+    depth_m : float
+        Largest distance of any of them from the sides of the region [m].
+    inradius_m : float
+        Largest distance of any sample from the sides [m].
+    lowest_z_m : float
+        Smallest z of any of them [m].
+    """
+
+    depth_m: float
+    inradius_m: float
+    lowest_z_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Findings:
+    """Answers to the questions of this module; None where a question does not arise.
+
+    Parameters
+    ----------
+    chosen_outcome : GradeOutcome or None
+        The grade of the chosen product.
+    chosen_limit_ratio : float or None
+        Stress at infinite section over allowable stress, in that grade's family, at the worst
+        pose of the chosen product.
+    massless_choice : MasslessChoice or None
+        None also where the grade has no size thick enough for the massless tension.
+    modulus_utilisation : tuple of float or None
+        Utilisation at the worst pose with the lowest and the highest modulus that is possible.
+    other_policy : OtherPolicy or None
+        None where no cable hangs below the platform.
+    hanging : float or None
+        Share of the samples in which a cable hangs below the platform: with the chosen rope, or
+        those of groups, where there is one, else with what the configured family needs. None
+        without a workspace.
+    unserved : Unserved or None
+        None where every sample is served, and for a list of points.
+    """
+
+    chosen_outcome: GradeOutcome | None = None
+    chosen_limit_ratio: float | None = None
+    massless_choice: MasslessChoice | None = None
+    modulus_utilisation: tuple[float, float] | None = None
+    other_policy: OtherPolicy | None = None
+    hanging: float | None = None
+    unserved: Unserved | None = None
+
+
+def find(analysis: Analysis) -> Findings:
+    """Answer the questions of this module."""
+    chosen = analysis.selection.chosen if analysis.selection else None
+    findings = Findings(
+        other_policy=_other_policy(analysis),
+        hanging=_hanging(analysis),
+        unserved=_unserved(analysis),
+    )
+    if chosen is None or analysis.selection is None:
+        return findings
+    outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
+    robot = analysis.built.robot
+    worst = Poses.at(chosen.verification.worst_position_m)
+    return replace(
+        findings,
+        chosen_outcome=outcome,
+        chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
+        massless_choice=None if analysis.has_groups else _massless_choice(analysis, outcome),
+        modulus_utilisation=modulus_utilisation(robot, chosen),
+    )
+
+
+def modulus_utilisation(robot: Robot, candidate: Candidate) -> tuple[float, float]:
+    """Return the utilisation at the worst pose with the lowest and the highest modulus."""
+    cable, doubt = candidate.cable, candidate.grade.elasticity.uncertainty
+    worst = Poses.at(candidate.verification.worst_position_m)
+
+    def at(scale: float) -> float:
+        other = replace(cable, axial_stiffness_N=scale * cable.axial_stiffness_N)
+        tension = float(solve_sagging(robot, worst, other).largest_tension_N)
+        return tension / cable.allowable_tension_N
+
+    return at(1.0 - doubt), at(1.0 + doubt)
+
+
+def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
+    study, workspace = analysis.study, analysis.workspace
+    assert study.workspace is not None
+    assert study.selection is not None
+    if workspace is None or workspace.massless is None:
+        return None
+    needed_N = workspace.massless.max_tension_N
+    enough = [c for c in outcome.candidates if c.cable.allowable_tension_N >= needed_N]
+    if not enough:
+        return None
+    first = enough[0]
+    if first.verification.is_refined:
+        return MasslessChoice(first, first.verification)
+    verification = verify(analysis.built.robot, study.workspace, first.cable)
+    return MasslessChoice(first, verification)
+
+
+def _other_policy(analysis: Analysis) -> OtherPolicy | None:
+    study, workspace = analysis.study, analysis.workspace
+    if study.workspace is None or workspace is None or workspace.census.hangs_below == 0:
+        return None
+    built = analysis.built
+    other: HangsBelow = "exclude" if study.workspace.hangs_below == "include" else "include"
+    samples = min(study.workspace.samples, _MOST_SAMPLES)
+    changed = replace(study.workspace, hangs_below=other, samples=samples)
+    return OtherPolicy(other, map_workspace(built.robot, changed, built.material(study.material)))
+
+
+def _hanging(analysis: Analysis) -> float | None:
+    workspace, found = analysis.study.workspace, analysis.workspace
+    if workspace is None or found is None:
+        return None
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if analysis.qualities is None or not (chosen or analysis.has_groups):
+        return found.census.hangs_below / found.census.samples
+    robot, cable = analysis.built.robot, analysis.qualities.cable.cable
+    few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
+    hangs = [
+        is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
+        for positions in places(few)
+    ]
+    return float(np.concatenate(hangs).mean())
+
+
+def _unserved(analysis: Analysis) -> Unserved | None:
+    study, workspace = analysis.study, analysis.workspace
+    if study.workspace is None or workspace is None or analysis.sweep_file is None:
+        return None
+    region = study.workspace.region
+    if workspace.is_feasible or not isinstance(region, Prism):
+        return None
+    fine = [Verdict.SOLVED]
+    if study.workspace.hangs_below == "exclude":
+        fine.append(Verdict.NO_FINITE_CABLE)
+    return _locate(analysis.sweep_file, region, fine)
+
+
+def _locate(sweep_file: Path, region: Prism, fine: list[Verdict]) -> Unserved | None:
+    depth_m = inradius_m = 0.0
+    lowest_m = np.inf
+    with open_sweep(sweep_file) as sweep:
+        for start in range(0, sweep.sizes["sample"], _CHUNK):
+            part = sweep.isel(sample=slice(start, start + _CHUNK))
+            position = part["position"].values
+            distance = distance_to_sides_m(region, position)
+            unserved = ~np.isin(part["verdict"].values, fine)
+            depth_m = max(depth_m, float(distance[unserved].max(initial=0.0)))
+            inradius_m = max(inradius_m, float(distance.max(initial=0.0)))
+            lowest_m = min(lowest_m, float(position[unserved, 2].min(initial=np.inf)))
+    return Unserved(depth_m, inradius_m, lowest_m) if np.isfinite(lowest_m) else None
+
+
+def distance_to_sides_m(region: Prism, positions_m: FloatArray) -> FloatArray:
+    """Return the horizontal distance of positions (n, 3) inside a prism to its nearest side [m]."""
+    edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
+    to_point = positions_m[:, None, :2] - region.polygon_m
+    area = edge[:, 0] * to_point[..., 1] - edge[:, 1] * to_point[..., 0]
+    return np.asarray((area / np.linalg.norm(edge, axis=1)).min(axis=1))

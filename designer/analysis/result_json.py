@@ -1,0 +1,282 @@
+"""``result.json``: the results for scripts, under stable names; a missing number is null."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from designer import __version__
+from designer.analysis.analyse import Analysis, PoseAnalysis
+from designer.analysis.groups_json import groups_dict
+from designer.analysis.selection_json import finite, selection_dict
+from designer.arrays import FloatArray
+from designer.documents.formats import RESULT_FORMAT
+from designer.model.space import turn_of
+from designer.model.verdict import Verdict
+from designer.selection.qualities import Qualities
+from designer.sizing.newton import Sizing
+from designer.statics.rest import RestingPlaces
+from designer.study import Study
+from designer.workspace.hanging import Hanging, HangingCables
+from designer.workspace.interference import Interference
+from designer.workspace.result import Extreme, WorkspaceMap
+from designer.workspace.stiffness import StiffnessSurvey
+
+Json = dict[str, Any]
+
+
+def result_dict(analysis: Analysis) -> Json:
+    """Return everything that ``result.json`` holds; a part without results is None."""
+    study = analysis.study
+    return {
+        "format": RESULT_FORMAT,
+        "name": study.name,
+        "positive": analysis.is_positive,
+        "answer": _answer(analysis),
+        "pose": None if analysis.pose is None else _pose(study, analysis.pose),
+        "workspace": (
+            None
+            if analysis.workspace is None
+            else {
+                **_workspace(analysis.workspace),
+                "orientations": _orientations(study),
+                "section_m": analysis.section_m,
+                **_qualities(analysis.qualities),
+            }
+        ),
+        "selection": None if analysis.selection is None else _selection(analysis),
+        "provenance": {
+            **_origin(study),
+            "catalogues": [
+                {"name": source.name, "source": source.source, "grades": source.n_grades}
+                for source in analysis.catalogue.sources
+            ],
+            "problems": list(analysis.left_out),
+            "libraries": dict(analysis.provenance.libraries),
+            "system": analysis.provenance.system,
+            "created": analysis.provenance.created.isoformat(timespec="seconds"),
+            "seed": None if study.workspace is None else study.workspace.seed,
+        },
+    }
+
+
+def size_dict(study: Study, pose: PoseAnalysis) -> Json:
+    """Return what ``designer size --json`` prints: the pose alone, under the same names."""
+    pose_alone = {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
+    return {"format": RESULT_FORMAT, **pose_alone}
+
+
+def json_text(values: Mapping[str, Any]) -> str:
+    """Return results as JSON text."""
+    return json.dumps(finite(values), indent=2, ensure_ascii=False, allow_nan=False)
+
+
+def _origin(study: Study) -> Json:
+    return {"version": __version__, "config_sha256": study.source.sha256}
+
+
+def _answer(analysis: Analysis) -> Json | None:
+    """Return what to put on each cable: the products of groups where there are any."""
+    choice = analysis.groups
+    if choice is not None:
+        if choice.chosen is None:
+            return None
+        names = ("name", "cables", "grade", "size_id")
+        products = [{name: one[name] for name in names} for one in groups_dict(choice)["groups"]]
+        return {"products": products, "total_mass_kg": _number(choice.chosen.total_mass_kg)}
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if chosen is None:
+        return None
+    cables = list(range(1, analysis.study.robot.n_cables + 1))
+    product = {"cables": cables, "grade": chosen.grade.id, "size_id": chosen.size.id}
+    return {"products": [{"name": None, **product}], "total_mass_kg": _number(chosen.total_mass_kg)}
+
+
+def _pose(study: Study, pose: PoseAnalysis) -> Json:
+    statics, sizing = pose.sizing.statics, pose.sizing
+    diameter = _number(sizing.diameter_m)
+    return {
+        "position_m": _numbers(statics.poses.position_m),
+        "in_workspace": None if study.workspace is None else not study.pose_outside,
+        "limit_ratio": _number(pose.limit_ratio),
+        "sagging": {
+            "diameter_m": diameter,
+            "max_tension_N": _number(statics.largest_tension_N),
+            "lengths_m": _numbers(statics.length_m),
+            "tensions_N": _numbers(statics.exit_tension_N),
+            "platform_tensions_N": _numbers(statics.platform_tension_N),
+            "forces_x_N": _numbers(statics.force_x_N),
+            "forces_z_N": _numbers(statics.force_z_N),
+            "hangs_below": bool(statics.hangs_below) if statics.is_solved else None,
+            "closure_residual_m": _number(statics.closure_residual_m().max()),
+            "equilibrium_residual_N": _number(abs(statics.equilibrium_residual_N()).max()),
+            "status": Verdict(int(statics.verdict)).label,
+            "thinnest": _how_surely(sizing),
+        },
+        "massless": {
+            "diameter_m": _number(sizing.massless_diameter_m),
+            "max_tension_N": _number(pose.massless.largest_tension_N),
+        },
+        "loop": {
+            "converged": pose.loop.has_converged,
+            "diverged": pose.loop.has_diverged,
+            "iterates": [
+                {"diameter_m": i.diameter_m, "max_tension_N": i.max_tension_N}
+                for i in pose.loop.iterates
+            ],
+        },
+        "optimum": {"diameter_m": diameter},
+        "rest": _rest(pose.rest),
+    }
+
+
+def _how_surely(sizing: Sizing) -> str | None:
+    """Return whether it is proved that no thinner cable holds the pose, or it is the best found."""
+    if not sizing.statics.is_solved:
+        return None
+    return "proved" if sizing.is_thinnest else "found"
+
+
+def _rest(rest: RestingPlaces | None) -> Json | None:
+    if rest is None:
+        return None
+    return {
+        "stable": rest.is_stable,
+        "starts": rest.starts,
+        "other_places": rest.others,
+        "nearest_m": _number(rest.nearest_m),
+        "nearest_turn_rad": _number(rest.nearest_turn_rad),
+    }
+
+
+def _workspace(found: WorkspaceMap) -> Json:
+    example, census = found.infeasible_example_m, found.census
+    return {
+        "samples": census.samples,
+        "feasible": found.is_feasible,
+        "reason": None if found.is_feasible else _why_infeasible(found),
+        "statuses": dict(census.statuses),
+        "hangs_below": census.hangs_below,
+        "excluded": census.excluded,
+        **_hanging(census.hanging),
+        "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
+        "infeasible_example_m": None if example is None else _numbers(example),
+        **_turn(found.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
+        "limit_ratio": _number(found.limit_ratio),
+        "sagging": _extreme(found.sagging),
+        "sampled": _extreme(found.sampled),
+        "massless": _extreme(found.massless),
+    }
+
+
+def _hanging(found: HangingCables) -> Json:
+    """Return how many samples have a cable that hangs too far, and the worst of them."""
+    return {
+        "long_cables": _worst_hanging(found.long, "length_over_chord"),
+        "below_floor": _worst_hanging(found.below_floor, "lowest_m"),
+    }
+
+
+def _worst_hanging(found: Hanging | None, name: str) -> Json:
+    if found is None:
+        return {"samples": 0}
+    place = np.array(found.place)
+    return {
+        "samples": found.samples,
+        name: _number(found.extreme),
+        "cable": found.cable,
+        "pose": _numbers(place[:3]),
+        **_turn(turn_of(place)),
+    }
+
+
+def _orientations(study: Study) -> Json | None:
+    """Return which orientations were tried at each position; None of a point mass."""
+    if study.workspace is None or study.robot.is_point_mass:
+        return None
+    asked = study.workspace.orientations
+    ends = asked.range_rad
+    return {
+        "rotation_vectors": [_numbers(turn) for turn in asked.turns_rad],
+        "range": None if ends is None else [_numbers(end) for end in ends],
+    }
+
+
+def _qualities(found: Qualities | None) -> Json:
+    """Return stiffness and clearances; None where they were not looked at."""
+    stiffness = None if found is None else found.stiffness
+    interference = None if found is None else found.interference
+    return {
+        "stiffness": None if stiffness is None else _stiffness(stiffness),
+        "interference": None if interference is None else _interference(interference),
+        "hanging": None if found is None else _hanging(found.hanging),
+    }
+
+
+def _stiffness(found: StiffnessSurvey) -> Json:
+    return {
+        "samples": found.samples,
+        "unstable": found.unstable,
+        "largest_displacement_m_per_N": _number(found.softest_m_per_N),
+        "pose": _numbers(found.softest_place[:3]),
+    }
+
+
+def _interference(found: Interference) -> Json:
+    worst = found.worst
+    return {
+        "clearance_m": found.clearance_m,
+        "min_distance_m": None if worst is None else _number(worst.distance_m),
+        "error_m": None if worst is None else _number(worst.error_m),
+        "pair": None if worst is None else list(worst.names),
+        "pose": None if worst is None else _numbers(worst.place[:3]),
+        "samples": found.samples,
+        "violating": found.violating,
+        "violated": found.is_violated,
+    }
+
+
+def _why_infeasible(found: WorkspaceMap) -> str:
+    counts = found.census.statuses
+    unserved = [v for v in Verdict if v is not Verdict.SOLVED and counts[v.label] > 0]
+    if unserved:
+        return " ".join(f"{counts[v.label]} samples: {v.sentence}" for v in unserved)
+    if found.infeasible_example_m is None:
+        return "Every pose is left out."
+    return "The search between the samples met a pose without a finite cable."
+
+
+def _selection(analysis: Analysis) -> Json:
+    assert analysis.selection is not None
+    return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
+
+
+def _extreme(extreme: Extreme | None) -> Json | None:
+    if extreme is None:
+        return None
+    return {
+        "diameter_m": _number(extreme.diameter_m),
+        "max_tension_N": _number(extreme.max_tension_N),
+        "pose": _numbers(extreme.position_m),
+        **_turn(extreme.rotation_vector_rad),
+    }
+
+
+def _turn(rotation_vector_rad: FloatArray | None, name: str = "rotation_vector") -> Json:
+    """Return the orientation; nothing where the platform is not turned."""
+    if rotation_vector_rad is None or not rotation_vector_rad.any():
+        return {}
+    return {name: _numbers(rotation_vector_rad)}
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def _numbers(values: Iterable[Any]) -> list[float | None]:
+    return [_number(value) for value in values]

@@ -1,0 +1,171 @@
+"""The commands `designer catalog …`."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli.options import NEGATIVE_ANSWER, WRONG_INPUT, NoPlugins, path_of
+from designer.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    from designer.grades.registry import Catalogue
+
+catalog = typer.Typer(help="Look at the rope grades that are known.", no_args_is_help=True)
+
+
+@catalog.command("list")
+def catalog_list(
+    construction: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only these, such as 7x19 or braid.")
+    ] = None,
+    material: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only these, such as steel or HMPE.")
+    ] = None,
+    maker: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Only makers or publishers named so.")
+    ] = None,
+    diameter: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Only sizes of this, such as 12mm.")
+    ] = None,
+    nominal: Annotated[
+        bool, typer.Option("--nominal", help="Those computed by a standard's factors instead.")
+    ] = False,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """List the grades with their source.
+
+    Example:  designer catalog list --construction 7x19 --diameter 6mm
+    """
+    from designer.cli.terminal import print_left_out
+    from designer.cli.terminal_catalog import print_grades
+    from designer.grades.listing import Wanted, list_rows, split_nominal
+    from designer.grades.registry import load_catalogue
+
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    products, computed = split_nominal(wanted.among(catalogue.grades))
+    shown, others = (computed, products) if nominal else (products, computed)
+    if shown:
+        print_grades(list_rows(shown))
+    if others and not nominal:
+        typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
+    if not shown:
+        typer.echo("no grade is like that", err=True)
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _material(name: str | None, catalogue: Catalogue) -> str | None:
+    from designer.grades.listing import materials
+
+    known = materials(catalogue.grades)
+    if name is not None and name.casefold() not in (one.casefold() for one in known):
+        problem = f"no grade is of {name!r}"
+        raise InputError([Fault("--material", None, "", problem, ", ".join(known))])
+    return name
+
+
+def _diameter_m(text: str | None) -> float | None:
+    from designer.documents.bounds import BOUNDS
+    from designer.units import LENGTH, QuantityError, read_quantity
+
+    if text is None:
+        return None
+    try:
+        diameter_m = read_quantity(text, LENGTH)
+    except QuantityError as error:
+        raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
+    bound = BOUNDS["rope diameter"]
+    if not bound.least <= diameter_m <= bound.most:
+        problem = f"{text!r} is {diameter_m:g} m, which no rope has"
+        is_bare = text.strip().replace(".", "", 1).isdigit()
+        expected = f"'{text.strip()}mm'" if is_bare else "a diameter such as '12mm'"
+        raise InputError([Fault("--diameter", None, "", problem, expected)])
+    return diameter_m
+
+
+@catalog.command("show")
+def catalog_show(
+    grade: Annotated[str, typer.Argument(metavar="GRADE", help="Id from `designer catalog list`.")],
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Show one grade: where its figures come from, and its sizes.
+
+    Example:  designer catalog show unirope-7x19-galvanised
+    """
+    from designer.cli.terminal import print_left_out
+    from designer.cli.terminal_catalog import print_grade
+    from designer.grades.registry import load_catalogue
+
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    print_grade(catalogue.grade(grade))
+
+
+@catalog.command("check")
+def catalog_check(
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            parser=path_of,
+            metavar="PATH",
+            help="Grade file, or a folder of them; else all that load.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Check grades: units, proportions, unknown fields.
+
+    Example:  designer catalog check my-ropes/
+    """
+    from designer.cli.terminal import print_left_out
+    from designer.grades.listing import check_path, summary
+    from designer.grades.registry import load_catalogue
+
+    if path is not None:
+        faults = check_path(path)
+        if faults:
+            raise InputError(faults)
+        typer.echo(f"{path}: no fault found")
+        return
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
+    if catalogue.problems:
+        raise typer.Exit(WRONG_INPUT)
+
+
+@catalog.command("new-plugin")
+def catalog_new_plugin(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as acme-ropes.")],
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            parser=path_of, metavar="PATH", help="New folder to write, NAME if left out."
+        ),
+    ] = None,
+    effect: Annotated[
+        bool, typer.Option("--effect", help="One that brings a physical effect, not grades.")
+    ] = False,
+) -> None:
+    """Write a plugin project with one commented grade file or effect, ready to install.
+
+    Example:  designer catalog new-plugin acme-ropes
+    """
+    from designer.cli.new_plugin import module_name, write_plugin
+
+    folder = path or Path(name)
+    write_plugin(name, folder, effect=effect)
+    own = folder / module_name(name)
+    typer.echo(f"{folder} written. Next:")
+    typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
+    if effect:
+        typer.echo(f"  pip install pytest && pytest {shlex.quote(str(folder))}")
+        typer.echo(f"then write your own law in {own / 'effect.py'}")
+    else:
+        typer.echo("  designer catalog list")
+        typer.echo(f"then put your own figures into {own / 'grades'}")

@@ -1,0 +1,329 @@
+"""The commands; each is one visible pipeline from a file to an answer.
+
+Nothing heavy is imported here: `designer --help` and `designer catalog` answer at once.
+"""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from designer import __version__
+from designer.cli.catalog import catalog
+from designer.cli.options import (
+    NEGATIVE_ANSWER,
+    WRONG_INPUT,
+    Config,
+    NoPlugins,
+    output_option,
+    path_of,
+)
+from designer.errors import DesignerError, Fault, InputError
+from designer.io.process import readable_output, settle_in
+
+if TYPE_CHECKING:
+    from designer.grades.registry import Catalogue
+    from designer.model.measured_data import Measured
+    from designer.plugins.find import Plugins
+    from designer.study import Study
+
+
+class Commands(TyperGroup):
+    """All commands; typer itself would give a closed pipe the status of a negative answer."""
+
+    def make_context(self, *arguments: Any, **named: Any) -> Any:
+        """Read the arguments; those that ask for help are answered here."""
+        with readable_output():
+            return super().make_context(*arguments, **named)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that is asked for."""
+        with readable_output():
+            return super().invoke(ctx)
+
+
+app = typer.Typer(
+    cls=Commands,
+    help="Size the cables of large cable-driven parallel robots, and report it.",
+    epilog="Start with:  designer init my-crane.yaml  then  designer report my-crane.yaml",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+)
+app.add_typer(catalog, name="catalog")
+
+
+def main() -> None:
+    """Run the command line; a user's mistake ends with one line a fault and exit status 2."""
+    settle_in()
+    with readable_output():
+        try:
+            app()
+        except DesignerError as error:
+            print(error, file=sys.stderr)
+            sys.exit(WRONG_INPUT)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"cdpr-designer {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    _: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            help="Print the version and stop.",
+            is_eager=True,
+            callback=_version,
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def report(
+    config: Config,
+    output: Annotated[Path | None, output_option("report")] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Size, sweep the workspace, choose a rope, and write the report.
+
+    Writes report.html, report.pdf, result.json, candidates.csv and workspace.nc.
+
+    Example:  designer report fast.yaml -o fast-report
+
+    Exit status 0: there is a cable, and it keeps the clearance asked for. 1: there is none or it
+    does not, and the report says why. 2: the input is wrong, and nothing is written.
+    """
+    from designer.cli.terminal import (
+        ProgressBars,
+        announce_compiling,
+        print_left_out,
+        print_summary,
+    )
+    from designer.io.output import file_names, output_folder
+    from designer.plugins.find import find_plugins
+    from designer.report.figures.opengl import begin_probe, why_no_scenes
+    from designer.study import require_enough_cables
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
+    require_enough_cables(study)
+    if study.workspace is None and study.pose is None:
+        raise InputError(
+            [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
+        )
+    folder = output or Path(f"{config.stem}-report")
+    begin_probe()
+    catalogue = _catalogue(study, plugins)
+    announce_compiling()
+
+    from designer.analysis.analyse import analyse
+    from designer.io.results import write_results
+    from designer.report.render import REPORT_FILES, write_report_pages
+
+    with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
+        analysis = analyse(study, catalogue, building, bars)
+        with bars.task("report", 1) as advance:
+            write_report_pages(analysis, building)
+            advance(1)
+        write_results(analysis, building)
+        written = file_names(building)
+    print_left_out(filter(None, [why_no_scenes()]))
+    print_summary(analysis, folder, written)
+    if not analysis.is_positive:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
+def size(
+    config: Config,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Size the configured pose alone: massless, loop with its iterates, optimum.
+
+    Example:  designer size fast.yaml
+    """
+    from designer.analysis.result_json import json_text, size_dict
+    from designer.cli.terminal import announce_compiling, print_pose
+    from designer.plugins.find import find_plugins
+    from designer.study import require_enough_cables
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
+    require_enough_cables(study)
+    if study.selection is not None and study.selection.grades is not None:
+        _catalogue(study, plugins)  # misspelt grades are told here as by `report`
+    announce_compiling()
+    from designer.analysis.analyse import analyse_pose
+
+    pose = analyse_pose(study)
+    if pose is None:
+        raise InputError(
+            [study.source.fault("pose", "is missing", "a pose, such as [250, 200, -50]")]
+        )
+    if as_json:
+        typer.echo(json_text(size_dict(study, pose)))
+    else:
+        print_pose(study, pose)
+    if not pose.sizing.statics.is_solved:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
+def diagnose(
+    config: Config,
+    output: Annotated[Path | None, output_option("diagnosis")] = None,
+    checks: Annotated[
+        bool, typer.Option("--check", help="Search nothing: how well do the declared effects fit?")
+    ] = False,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            "--data", parser=path_of, metavar="CSV", help="Measured data, instead of the study's."
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Compare measured data with the model, and find the effect that the model lacks.
+
+    Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
+    was fitted and found under `effects:`; `designer report` on it uses it everywhere. With --check
+    nothing is searched, and diagnosis.json alone is written, into CONFIG-check.
+
+    Example:  designer diagnose built-crane.yaml
+    A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
+
+    Exit status 0: all structure is explained. 1: some is left, or declared effects do not help.
+    2: the input is wrong.
+    """
+    from designer.cli.terminal import Spinner, announce_compiling, print_diagnosis, print_left_out
+    from designer.io.output import file_names, output_folder
+    from designer.measured.read import read_measured
+    from designer.plugins.find import find_plugins
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
+    measurements = study.measurements
+    if measurements is None:
+        raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
+    if data is not None:
+        if not data.is_file():
+            raise InputError([Fault("--data", None, "", f"there is no file {data}", "a CSV file")])
+        measurements = replace(measurements, file=data)
+        study = replace(study, measurements=measurements)
+    measured = read_measured(study)
+    if checks:
+        _check(study, measured, output or Path(f"{config.stem}-check"))
+        return
+    catalogue = _catalogue(study, plugins)
+    announce_compiling()
+    folder = output or Path(f"{config.stem}-diagnosis")
+
+    from designer.diagnosis.design import with_design
+    from designer.diagnosis.plugin_effects import diagnose_study
+    from designer.io.diagnosis_files import diagnosed_config, diagnosis_text
+    from designer.report.diagnosis.context import write_diagnosis
+
+    with output_folder(folder) as building, Spinner("searching") as spinner:
+        diagnosis = diagnose_study(study, measurements, measured, spinner)
+        spinner("the design with and without")
+        diagnosis = with_design(diagnosis, catalogue.grades)
+        spinner("report")
+        write_diagnosis(diagnosis, building)
+        (building / "diagnosis.json").write_text(diagnosis_text(diagnosis), encoding="utf-8")
+        text = diagnosed_config(diagnosis, folder)
+        (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
+        written = file_names(building)
+    n_known = len(study.known_effects.problems)
+    print_left_out(diagnosis.study.known_effects.problems[n_known:])
+    print_diagnosis(diagnosis, folder, written)
+    if diagnosis.is_unexplained:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _check(study: Study, measured: Measured, folder: Path) -> None:
+    from designer.cli.terminal import Spinner, announce_compiling
+    from designer.cli.terminal_check import print_check
+    from designer.diagnosis.check import check
+    from designer.io.diagnosis_files import check_dict, json_text
+    from designer.io.output import file_names, output_folder
+
+    assert study.measurements is not None
+    announce_compiling()
+    with output_folder(folder) as building, Spinner("checking") as spinner:
+        found = check(study, study.measurements, measured, spinner)
+        (building / "diagnosis.json").write_text(json_text(check_dict(found)), encoding="utf-8")
+        written = file_names(building)
+    print_check(found, folder, written)
+    if not found.is_positive:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
+def init(
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            parser=path_of, metavar="PATH", help="File to write, EXAMPLE.yaml if left out."
+        ),
+    ] = None,
+    example: Annotated[
+        str, typer.Option("--example", metavar="NAME", help="Which study to copy; see --list.")
+    ] = "fast",
+    lists: Annotated[
+        bool, typer.Option("--list", help="Tell what studies there are, and stop.")
+    ] = False,
+) -> None:
+    """Write a commented study to start from.
+
+    Example:  designer init --example yard my-crane.yaml
+    """
+    from designer.io.output import write_new_file
+    from designer.resources import example_file, example_names, example_summary
+
+    if lists:
+        width = max(len(name) for name in example_names())
+        for name in example_names():
+            typer.echo(f"{name:{width}}  {example_summary(name)}")
+        return
+    if example not in example_names():
+        names = ", ".join(example_names())
+        raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
+    target = path or Path(f"{example}.yaml")
+    write_new_file(target, example_file(example).read_text(encoding="utf-8"))
+    typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")
+
+
+def _study(config: Path, plugins: Plugins) -> Study:
+    from designer.cli.terminal import print_left_out
+    from designer.effects.load import load_effects
+    from designer.io.config import read_study
+
+    effects = load_effects(plugins)
+    print_left_out(effects.problems)
+    return read_study(config, effects, plugins)
+
+
+def _catalogue(study: Study, plugins: Plugins) -> Catalogue:
+    from designer.cli.terminal import print_left_out
+    from designer.grades.registry import load_catalogue
+
+    catalogue = load_catalogue(study.catalogues, plugins=plugins)
+    told = study.known_effects.problems
+    print_left_out(problem for problem in catalogue.problems if problem not in told)
+    catalogue.require_grades_of(study)
+    return catalogue

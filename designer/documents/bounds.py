@@ -1,0 +1,111 @@
+"""What a machine can be: the bounds of every number in a config or grade file, with the reason.
+
+They are wide: what lies beyond is a slip of unit or typing, or beyond what the solvers keep figures
+of. Whether numbers go together is checked where they meet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from designer.units import (
+    ANGLE,
+    AREA,
+    DENSITY,
+    FORCE,
+    FRACTION,
+    LENGTH,
+    LINEAR_DENSITY,
+    MASS,
+    MOMENT,
+    NUMBER,
+    PER_TEMPERATURE,
+    STRESS,
+    TEMPERATURE,
+    TIME,
+    Dimension,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """From where to where a number may lie.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        What kind of quantity.
+    least, most : float
+        The ends, which it may reach [SI].
+    reason : str
+        Why not beyond.
+    """
+
+    dimension: Dimension
+    least: float
+    most: float
+    reason: str
+
+
+MOST_SAMPLES = 10**7
+"""Samples of a workspace: more take days, and the search between them finds more than they do."""
+
+BOUNDS: Mapping[str, Bound] = {
+    "position": Bound(LENGTH, -1e7, 1e7, "as far as survey coordinates reach"),
+    "distance": Bound(LENGTH, 0.0, 2e4, "no cable is longer than some kilometres"),
+    "clearance": Bound(LENGTH, 1e-6, 1e3, "finer than any machine, or larger"),
+    "length noise": Bound(LENGTH, 1e-9, 1e3, "no winch measures finer, or so badly"),
+    "tension noise": Bound(FORCE, 1e-6, 1e8, "no load cell measures finer, or so badly"),
+    "search time": Bound(TIME, 0.0, 1e6, "nobody waits for weeks"),
+    "sheave": Bound(LENGTH, 1e-3, 15.0, "the sheaves of mine hoists have up to 9 m"),
+    "rope diameter": Bound(LENGTH, 1e-4, 0.5, "from a thread to a cable of a bridge"),
+    "mass": Bound(MASS, 1e-6, 1e8, "from a grain to a ship"),
+    "density": Bound(DENSITY, 1.0, 3e4, "air has 1.2, osmium 22 600"),
+    "mass per length": Bound(LINEAR_DENSITY, 1e-7, 5e3, "from a thread to a cable of a bridge"),
+    "breaking load": Bound(FORCE, 1.0, 1e9, "from a thread to a cable of a bridge"),
+    "metallic area": Bound(AREA, 1e-10, 0.2, "from a thread to a cable of a bridge"),
+    "axial stiffness": Bound(FORCE, 1.0, 1e12, "from a thread to a cable of a bridge"),
+    "tension": Bound(FORCE, 0.0, 1e9, "the strongest cable of a bridge bears less"),
+    "force": Bound(FORCE, -1e9, 1e9, "the heaviest lifts are less"),
+    "moment": Bound(MOMENT, -1e12, 1e12, "the heaviest lifts, far off"),
+    "modulus": Bound(STRESS, 1e5, 1.5e12, "rubber has 1e6, diamond 1.2e12"),
+    "stress": Bound(STRESS, 1e3, 1e11, "the strongest fibre bears 6e9"),
+    "direction": Bound(NUMBER, -1e6, 1e6, "only its direction counts"),
+    "part of a quaternion": Bound(NUMBER, -1.01, 1.01, "its length is 1"),
+    "half turn": Bound(ANGLE, -math.pi, math.pi, "half a turn either way reaches all"),
+    # A turn at most: a bare 90 that is meant in degrees shall not pass as 90 rad.
+    "angle": Bound(ANGLE, -2.0 * math.pi, 2.0 * math.pi, "a turn is 2 pi"),
+    "safety factor": Bound(NUMBER, 1.0, 100.0, "lifts of persons have 12"),
+    "efficiency": Bound(FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),
+    "temperature": Bound(TEMPERATURE, -200.0, 1000.0, "steel lasts no further"),
+    "scale of a column": Bound(NUMBER, -1e12, 1e12, "units are no further apart"),
+    "price": Bound(NUMBER, 1e-9, 1e9, "no rope is dearer"),
+    "load fraction": Bound(NUMBER, 1e-6, 1.0, "a rope breaks at 1"),
+    "stiffness over breaking load": Bound(NUMBER, 0.1, 1e4, "ropes break between"),
+    "uncertainty": Bound(NUMBER, 0.0, 1.0, "it is a fraction"),
+    "area factor": Bound(NUMBER, 1e-3, 1.0, "at most pi/4 of d² is metal"),
+    "sheave ratio": Bound(NUMBER, 1.0, 1e3, "a rope is not bent over less than itself"),
+    "expansion": Bound(PER_TEMPERATURE, -1e-2, 1e-2, "the softest plastics have 2e-4 /K"),
+    "time": Bound(TIME, -1e10, 1e10, "three centuries"),
+}
+"""By the name of what is bounded."""
+
+_PARAMETERS: Mapping[str, tuple[float, str]] = {
+    "m": (1e4, "no cable is longer than some kilometres"),
+    "rad": (2.0 * math.pi, "a turn is 2 pi"),
+    "kg": (1e8, "from a grain to a ship"),
+    "N": (1e9, "the strongest cable of a bridge bears less"),
+    "Pa": (1.5e12, "diamond has 1.2e12"),
+    "s": (1e10, "three centuries"),
+    "1/K": (1e-2, "the softest plastics have 2e-4 /K"),
+    "N*m^2": (1e12, "a beam 3 m thick"),
+    "": (1e6, "as good as without end"),
+}
+
+
+def parameter_bound(dimension: Dimension) -> Bound:
+    """Return how far a parameter of an effect may lie from zero, by its unit."""
+    most, reason = _PARAMETERS.get(dimension.unit, (1e12, "as good as without end"))
+    return Bound(dimension, -most, most, reason)

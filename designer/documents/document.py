@@ -1,0 +1,301 @@
+"""Reads a YAML file that may be anything, within bounds of size, depth and expansion."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from designer.documents.node import Key, Node, path_text, printable
+from designer.errors import Fault, InputError
+
+if TYPE_CHECKING:
+    import yaml
+
+LARGEST_FILE_BYTES = 1_000_000
+MOST_VALUES = 200_000
+DEEPEST_NESTING = 24
+_CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
+
+
+@dataclass(frozen=True, slots=True)
+class FileKind:
+    """What a file should hold, for messages.
+
+    Parameters
+    ----------
+    content : str
+        The whole of it.
+    field : str
+        One of its fields.
+    """
+
+    content: str
+    field: str
+
+
+STUDY = FileKind("a study; `designer init` writes a first one", "robot: …")
+GRADE = FileKind("a grade, as in the files of the shipped catalogue", "id: …")
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A YAML file that is well-formed.
+
+    Parameters
+    ----------
+    name : str
+        The file as the user named it.
+    sha256 : str
+        Digest of its bytes.
+    root : Node
+        Its outermost mapping.
+    faults : tuple of Fault
+        Fields that are given twice; the first of the two is in the tree.
+    """
+
+    name: str
+    sha256: str
+    root: Node
+    faults: tuple[Fault, ...]
+
+    def fault(self, keys: Sequence[Key], problem: str, expected: str = "") -> Fault:
+        """Return a fault at this path, in the line of its nearest value that exists."""
+        node = self.root
+        for key in keys:
+            child = node.child(key)
+            if child is None:
+                break
+            node = child
+        return Fault(self.name, node.line, path_text(keys), problem, expected)
+
+
+def read_document(path: Path, kind: FileKind = STUDY) -> Document:
+    """Return the YAML mapping in ``path``.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    kind : FileKind
+        What it should hold.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is too large, is not text, is empty, is not YAML, nests too
+        deeply, expands to too many values, or is no mapping.
+    """
+    name = str(path)
+    raw = _read_bytes(path, name)
+    composer = _Composer(name)
+    root = composer.compose(_decode(raw, name))
+    if root is None:
+        _refuse(name, None, "the file is empty", kind.content)
+    if not isinstance(root.content, dict):
+        expected = f"fields such as '{kind.field}'"
+        _refuse(name, root.line, "the file does not hold a mapping", expected)
+    return Document(name, hashlib.sha256(raw).hexdigest(), root, tuple(composer.faults))
+
+
+def _refuse(name: str, line: int | None, problem: str, expected: str = "") -> NoReturn:
+    raise InputError([Fault(name, line, "", problem, expected)])
+
+
+def _read_bytes(path: Path, name: str) -> bytes:
+    expected = f"a YAML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+    try:
+        size = path.stat().st_size
+        if path.is_dir():
+            _refuse(name, None, "this is a folder", expected)
+        if size > LARGEST_FILE_BYTES:
+            _refuse(name, None, f"the file has {size / 1e6:.3g} MB", expected)
+        with path.open("rb") as file:
+            raw = file.read(LARGEST_FILE_BYTES + 1)
+    except FileNotFoundError:
+        _refuse(name, None, "there is no such file", expected)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "its name is not valid"
+        _refuse(name, None, f"the file cannot be read: {reason.lower()}", expected)
+    if len(raw) > LARGEST_FILE_BYTES:
+        _refuse(name, None, "the file is too large", expected)
+    return raw
+
+
+def _decode(raw: bytes, name: str) -> str:
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        _refuse(name, line, "this is not text in UTF-8", "a YAML text file")
+    control_code = _CONTROL_CODE.search(text)
+    if control_code is not None:
+        line = text.count("\n", 0, control_code.start()) + 1
+        _refuse(name, line, "this is a binary file", "a YAML text file")
+    return text
+
+
+@dataclass(slots=True)
+class _Open:
+    """A mapping or list whose end has not been read yet."""
+
+    line: int
+    anchor: str | None
+    is_mapping: bool
+    items: list[Node] = field(default_factory=list)
+    fields: dict[str, Node] = field(default_factory=dict)
+    key: str | None = None
+    key_line: int = 0
+
+    def close(self) -> Node:
+        children = list(self.fields.values()) if self.is_mapping else self.items
+        return Node(
+            line=self.line,
+            content=self.fields if self.is_mapping else tuple(self.items),
+            size=1 + sum(child.size for child in children),
+            height=1 + max((child.height for child in children), default=0),
+        )
+
+
+class _Composer:
+    """Builds the tree from the parser's events, one by one, so that nothing expands unseen."""
+
+    def __init__(self, name: str) -> None:
+        self.faults: list[Fault] = []
+        self._name = name
+        self._open: list[_Open] = []
+        self._anchors: dict[str, Node] = {}
+        self._root: Node | None = None
+        self._lines: list[str] = []
+
+    def compose(self, text: str) -> Node | None:
+        """Return the outermost value; None for an empty document."""
+        import yaml
+
+        self._lines = text.splitlines()
+        documents = 0
+        try:
+            for event in _events(text):
+                documents += isinstance(event, yaml.DocumentStartEvent)
+                if documents > 1:
+                    _refuse(self._name, _line(event), "a second document starts here", "only one")
+                self._take(event)
+        except yaml.YAMLError as error:
+            self._refuse_syntax(error)
+        is_blank = self._root is not None and self._root.data() is None
+        return None if is_blank else self._root
+
+    def _take(self, event: yaml.Event) -> None:
+        import yaml
+
+        if isinstance(event, yaml.ScalarEvent):
+            self._check_tag(event)
+            self._add(Node(_line(event), event.value, event.implicit[0]), event.anchor)
+        elif isinstance(event, yaml.AliasEvent):
+            self._add(self._aliased(event))
+        elif isinstance(event, yaml.CollectionStartEvent):
+            self._check_tag(event)
+            self._start(event)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            self._close()
+
+    def _start(self, event: yaml.CollectionStartEvent) -> None:
+        import yaml
+
+        if len(self._open) >= DEEPEST_NESTING:
+            self._refuse_nesting(_line(event))
+        if self._open and self._open[-1].is_mapping and self._open[-1].key is None:
+            _refuse(self._name, _line(event), "a mapping or a list is no field name", "a name")
+        is_mapping = isinstance(event, yaml.MappingStartEvent)
+        self._open.append(_Open(_line(event), event.anchor, is_mapping))
+
+    def _close(self) -> None:
+        opened = self._open.pop()
+        node = opened.close()
+        self._check_extent(node)
+        self._add(node, opened.anchor)
+
+    def _add(self, node: Node, anchor: str | None = None) -> None:
+        if anchor is not None:
+            self._anchors[anchor] = node
+        if not self._open:
+            self._root = node
+            return
+        parent = self._open[-1]
+        if not parent.is_mapping:
+            parent.items.append(node)
+        elif parent.key is None:
+            parent.key, parent.key_line = self._field_name(node), node.line
+        else:
+            self._set_field(parent, parent.key, node)
+
+    def _field_name(self, node: Node) -> str:
+        if not isinstance(node.content, str):
+            _refuse(self._name, node.line, "a mapping or a list is no field name", "a name")
+        return node.content
+
+    def _set_field(self, parent: _Open, key: str, node: Node) -> None:
+        if key in parent.fields:
+            first = parent.fields[key].line
+            problem = f"is given twice, first in line {first}"
+            self.faults.append(Fault(self._name, parent.key_line, self._place(), problem, "once"))
+        else:
+            parent.fields[key] = replace(node, line=parent.key_line)
+        parent.key = None
+
+    def _place(self) -> str:
+        return path_text(
+            [opened.key or "" if opened.is_mapping else len(opened.items) for opened in self._open]
+        )
+
+    def _aliased(self, event: yaml.AliasEvent) -> Node:
+        anchor = str(event.anchor)
+        if any(opened.anchor == anchor for opened in self._open):
+            _refuse(self._name, _line(event), f"the alias *{printable(anchor)} contains itself")
+        if anchor not in self._anchors:
+            problem = f"the alias *{printable(anchor)} has no anchor before it"
+            _refuse(self._name, _line(event), problem)
+        return self._anchors[anchor]
+
+    def _check_extent(self, node: Node) -> None:
+        if node.size > MOST_VALUES:
+            problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
+            _refuse(self._name, node.line, problem)
+        if node.height > DEEPEST_NESTING:
+            self._refuse_nesting(node.line)
+
+    def _refuse_nesting(self, line: int) -> NoReturn:
+        problem = f"values are nested more than {DEEPEST_NESTING} levels deep"
+        _refuse(self._name, line, problem)
+
+    def _check_tag(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
+        if event.tag not in (None, "!"):
+            shown = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
+            _refuse(self._name, _line(event), f"the tag '{shown}' is not supported", "plain YAML")
+
+    def _refuse_syntax(self, error: yaml.YAMLError) -> NoReturn:
+        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+        reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
+        line = None if mark is None else mark.line + 1
+        if line is not None and self._is_indented_by_tab(line):
+            _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
+        _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
+
+    def _is_indented_by_tab(self, line: int) -> bool:
+        text = self._lines[line - 1] if line <= len(self._lines) else ""
+        return "\t" in text[: len(text) - len(text.lstrip())]
+
+
+def _events(text: str) -> Iterator[yaml.Event]:
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is not everywhere
+    events: Iterator[yaml.Event] = yaml.parse(text, Loader=loader)
+    return events
+
+
+def _line(event: yaml.Event) -> int:
+    return 1 if event.start_mark is None else event.start_mark.line + 1

@@ -1,0 +1,129 @@
+"""Turns what pydantic found into faults with a line, in plain words."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Sequence
+from typing import Any, get_args, get_origin
+
+from pydantic import BaseModel, Tag, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from designer.documents.document import Document
+from designer.documents.node import Key, printable
+from designer.errors import Fault
+from designer.units import describe
+
+MOST_FAULTS = 100
+"""As many as anybody reads; a wrong generated file could have one in each of its lines."""
+
+
+def schema_faults(
+    error: ValidationError, document: Document, schema: type[BaseModel]
+) -> list[Fault]:
+    """Return one fault for each thing in the document that does not follow the schema.
+
+    A field that is missing while another one beside it has nearly its name is reported once, as
+    misspelt. After the first hundred the rest are left out.
+    """
+    details = error.errors(include_url=False)[:MOST_FAULTS]
+    misspelt = set(_misspelt_fields(details, schema))
+    return [
+        document.fault(_document_path(one, document), *_words(one, schema))
+        for one in details
+        if one["loc"] not in misspelt
+    ]
+
+
+def known_fields(schema: type[BaseModel], loc: Sequence[Key]) -> dict[str, FieldInfo]:
+    """Return the fields that the schema knows at pydantic's path ``loc``."""
+    kind: Any = schema
+    for key in loc:
+        kind = _step(kind, key)
+    section = _section_in(kind)
+    return section.model_fields if section else {}
+
+
+def _step(kind: Any, key: Key) -> Any:
+    """Return what the schema holds one step further; a place in a list keeps its kind."""
+    if get_origin(kind) is dict:
+        return get_args(kind)[1]
+    branch = _branch(kind, key)
+    if branch is not None:
+        return branch
+    section = _section_in(kind)
+    info = section.model_fields.get(str(key)) if section else None
+    return kind if info is None else info.annotation
+
+
+def _branch(kind: Any, label: Key) -> Any:
+    """Return the alternative with this label, None where there is none."""
+    parts = get_args(kind)
+    if any(isinstance(part, Tag) and part.tag == label for part in parts):
+        return kind
+    return next((found for part in parts if (found := _branch(part, label)) is not None), None)
+
+
+def _section_in(kind: Any) -> type[BaseModel] | None:
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return kind
+    return next((found for part in get_args(kind) if (found := _section_in(part))), None)
+
+
+def _misspelt_fields(
+    details: Sequence[ErrorDetails], schema: type[BaseModel]
+) -> Iterator[tuple[Key, ...]]:
+    for one in details:
+        nearest = _nearest_field(one["loc"], schema) if one["type"] == "extra_forbidden" else None
+        if nearest is not None:
+            yield (*one["loc"][:-1], nearest)
+
+
+def _nearest_field(loc: Sequence[Key], schema: type[BaseModel]) -> str | None:
+    names = difflib.get_close_matches(str(loc[-1]), known_fields(schema, loc[:-1]), n=1)
+    return names[0] if names else None
+
+
+def _document_path(detail: ErrorDetails, document: Document) -> list[Key]:
+    """Return pydantic's path without the steps that the document does not have.
+
+    Those are the labels of alternatives, and the fields that a shorthand leaves out.
+    """
+    keys: list[Key] = []
+    node = document.root
+    for key in detail["loc"]:
+        child = node.child(key)
+        if child is not None:
+            keys.append(key)
+            node = child
+    return [*keys, detail["loc"][-1]] if detail["type"] == "missing" else keys
+
+
+def _words(detail: ErrorDetails, schema: type[BaseModel]) -> tuple[str, str]:
+    """Return the problem and what was expected."""
+    loc, context = detail["loc"], detail.get("ctx", {})
+    if detail["type"] == "fault":
+        return context["problem"], context["expected"]
+    if detail["type"] == "missing":
+        return "is missing", known_fields(schema, loc[:-1])[str(loc[-1])].description or ""
+    if detail["type"] == "extra_forbidden":
+        return _unknown_field(loc, schema)
+    verdict, expected = {
+        "literal_error": ("is not known", context.get("expected", "")),
+        "bool_type": ("is not a truth value", "true or false"),
+        "model_type": ("is not a mapping", _one_of(known_fields(schema, loc), "a mapping with ")),
+        "dict_type": ("is not a mapping", "a mapping such as {}"),
+    }.get(detail["type"], ("is not valid here", ""))
+    return f"{describe(detail['input'])} {verdict}", expected
+
+
+def _unknown_field(loc: Sequence[Key], schema: type[BaseModel]) -> tuple[str, str]:
+    nearest = _nearest_field(loc, schema)
+    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    expected = _one_of(known_fields(schema, loc[:-1]), "one of ") + hint
+    return f"unknown field '{printable(str(loc[-1]))}'", expected
+
+
+def _one_of(names: dict[str, FieldInfo], lead: str) -> str:
+    return lead + ", ".join(names) if names else ""

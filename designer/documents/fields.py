@@ -1,0 +1,295 @@
+"""Kinds of values that fields of the config hold, each with its own plain error message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from designer.documents.bounds import BOUNDS
+from designer.documents.formats import why_unreadable
+from designer.documents.node import printable
+from designer.units import (
+    NUMBER,
+    Dimension,
+    QuantityError,
+    describe,
+    format_SI,
+    read_quantity,
+)
+
+LONGEST_TEXT = 1000
+
+
+def refusal(problem: str, expected: str) -> PydanticCustomError:
+    """Return the error by which a validator reports a fault; pydantic adds the place."""
+    return PydanticCustomError("fault", "{problem}", {"problem": problem, "expected": expected})
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Annotation of a float that the file gives as a quantity.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        What kind of quantity.
+    above : float or None
+        Limit that the SI value must exceed.
+    at_least, at_most : float or None
+        Limits that the SI value may reach.
+    reason : str
+        Why not beyond them; empty where that is plain.
+    """
+
+    dimension: Dimension
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    reason: str = ""
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the value by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> float:
+        """Return the SI value, or refuse it."""
+        try:
+            value = read_quantity(given, self.dimension)
+        except QuantityError as error:
+            raise refusal(error.problem, error.expected) from None
+        bound = self._broken_bound(value)
+        if bound:
+            raise refusal(f"{describe(given)} is out of range", f"{bound}{self._hint(given)}")
+        return value
+
+    def _hint(self, given: object) -> str:
+        """Return what a bare number was taken for, and what it may have been meant for."""
+        unit = self.dimension.unit
+        if not unit or isinstance(given, str):
+            return ""
+        meant = f"{given:.10g} mm" if isinstance(given, int | float) and unit == "m" else ""
+        try:
+            fits = meant and not self._broken_bound(read_quantity(meant, self.dimension))
+        except QuantityError:
+            fits = False
+        return f"; a bare number is in {unit}" + (f", did you mean '{meant}'?" if fits else "")
+
+    def _broken_bound(self, value: float) -> str:
+        why = f": {self.reason}" if self.reason else ""
+        if self.above is not None and value <= self.above:
+            return f"more than {format_SI(self.above, self.dimension)}"
+        if self.at_least is not None and value < self.at_least:
+            return f"at least {format_SI(self.at_least, self.dimension)}{why}"
+        if self.at_most is not None and value > self.at_most:
+            return f"at most {format_SI(self.at_most, self.dimension)}{why}"
+        return ""
+
+
+@dataclass(frozen=True, slots=True)
+class WholeNumber:
+    """Annotation of an int between two limits."""
+
+    least: int
+    most: int
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the value by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> int:
+        """Return the number, or refuse it."""
+        expected = f"a whole number from {self.least} to {self.most}"
+        try:
+            value = read_quantity(given, NUMBER)
+        except QuantityError as error:
+            raise refusal(error.problem, expected) from None
+        if value != int(value):
+            raise refusal(f"{describe(given)} is not a whole number", expected)
+        if not self.least <= value <= self.most:
+            raise refusal(f"{describe(given)} is out of range", expected)
+        return int(value)
+
+
+@dataclass(frozen=True, slots=True)
+class FormatOf:
+    """Annotation of the number of a file's format, up to the newest that is read."""
+
+    newest: int
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the value by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> int:
+        """Return the number, or refuse it."""
+        why = why_unreadable(given, self.newest)
+        if why is not None:
+            raise refusal(*why)
+        return given if isinstance(given, int) else 1
+
+
+@dataclass(frozen=True, slots=True)
+class ListOf:
+    """Check of a list's length, before its items are read."""
+
+    least: int
+    most: int
+    expected: str
+
+    def __call__(self, given: object) -> object:
+        """Return the list unchanged, or refuse it."""
+        if not isinstance(given, list | tuple):
+            raise refusal(f"{describe(given)} is not a list", self.expected + in_brackets(given))
+        if not self.least <= len(given) <= self.most:
+            count = f"{len(given)} value" + "s" * (len(given) != 1)
+            raise refusal(f"the list has {count}", self.expected)
+        return given
+
+
+@dataclass(frozen=True, slots=True)
+class OnlyWord:
+    """Check that a text is the one word that may stand in place of a list."""
+
+    word: str
+    expected: str
+
+    def __call__(self, given: object) -> object:
+        """Return the word, or refuse what is given."""
+        if given != self.word:
+            raise refusal(f"{describe(given)} is not known", self.expected + in_brackets(given))
+        return given
+
+
+def in_brackets(given: object) -> str:
+    """Return how a text with commas is written as the list that it was meant for; else nothing."""
+    if not isinstance(given, str) or "," not in given or len(given) > LONGEST_TEXT:
+        return ""
+    return f"; a list stands in brackets: [{printable(given)}]"
+
+
+def _text(given: object) -> str:
+    if not isinstance(given, str):
+        raise refusal(f"{describe(given)} is not a text", "a text; quotes make a number one")
+    if not 1 <= len(given.strip()) <= LONGEST_TEXT:
+        raise refusal(f"the text has {len(given.strip())} characters", f"1 to {LONGEST_TEXT}")
+    return given
+
+
+def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
+    lower, upper = ends
+    if lower >= upper:
+        problem = f"the lower end {lower:g} {unit} is not below the upper {upper:g} {unit}"
+        raise refusal(problem, _INTERVAL)
+    return ends
+
+
+def _rising_angles(ends: tuple[float, float]) -> tuple[float, float]:
+    return _rising(ends, "rad")
+
+
+def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(direction):
+        raise refusal("the direction is zero", _DIRECTION)
+    return direction
+
+
+def different(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names unchanged, or refuse them if one stands twice."""
+    twice = next((name for index, name in enumerate(names) if name in names[:index]), None)
+    if twice is not None:
+        raise refusal(f"{describe(twice)} is named twice", "each name once")
+    return names
+
+
+def mapping(given: object) -> object:
+    """Return the mapping unchanged, or refuse what is given."""
+    if not isinstance(given, dict):
+        raise refusal(f"{describe(given)} is not a mapping", "a mapping such as {}")
+    return given
+
+
+def not_empty(given: dict[str, Any]) -> dict[str, Any]:
+    """Return the mapping unchanged, or refuse one without fields."""
+    if not given:
+        raise refusal("the mapping is empty", "at least one group such as {front: [1, 2]}")
+    return given
+
+
+def bounded(name: str) -> Quantity:
+    """Return the annotation of a number of this name in `designer.documents.bounds`."""
+    bound = BOUNDS[name]
+    return Quantity(
+        bound.dimension,
+        above=0.0 if bound.least > 0.0 else None,
+        at_least=bound.least,
+        at_most=bound.most,
+        reason=bound.reason,
+    )
+
+
+_INTERVAL = "[lower, upper]"
+_DIRECTION = "a direction such as [0, 0, -1]"
+_POINT = "three lengths [x, y, z]"
+
+Text = Annotated[str, BeforeValidator(_text)]
+FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
+
+Length = Annotated[float, bounded("position")]
+Distance = Annotated[float, bounded("distance")]
+Clearance = Annotated[float, bounded("clearance")]
+LengthNoise = Annotated[float, bounded("length noise")]
+TensionNoise = Annotated[float, bounded("tension noise")]
+SearchTime = Annotated[float, bounded("search time")]
+Mass = Annotated[float, bounded("mass")]
+Density = Annotated[float, bounded("density")]
+LinearDensity = Annotated[float, bounded("mass per length")]
+AxialStiffness = Annotated[float, bounded("axial stiffness")]
+BreakingLoad = Annotated[float, bounded("breaking load")]
+Tension = Annotated[float, bounded("tension")]
+ForcePart = Annotated[float, bounded("force")]
+MomentPart = Annotated[float, bounded("moment")]
+Share = Annotated[float, bounded("direction")]
+HalfTurn = Annotated[float, bounded("half turn")]
+Modulus = Annotated[float, bounded("modulus")]
+Stress = Annotated[float, bounded("stress")]
+Angle = Annotated[float, bounded("angle")]
+SafetyFactor = Annotated[float, bounded("safety factor")]
+SheaveDiameter = Annotated[float, bounded("sheave")]
+RopeDiameter = Annotated[float, bounded("rope diameter")]
+Efficiency = Annotated[float, bounded("efficiency")]
+Temperature = Annotated[float, bounded("temperature")]
+
+Interval = Annotated[
+    tuple[Length, Length], BeforeValidator(ListOf(2, 2, _INTERVAL)), AfterValidator(_rising)
+]
+Turn = Annotated[
+    tuple[HalfTurn, HalfTurn],
+    BeforeValidator(ListOf(2, 2, _INTERVAL)),
+    AfterValidator(_rising_angles),
+]
+Corner = Annotated[tuple[Length, Length], BeforeValidator(ListOf(2, 2, "two lengths [x, y]"))]
+Point = Annotated[tuple[Length, Length, Length], BeforeValidator(ListOf(3, 3, _POINT))]
+Rotation = Annotated[
+    tuple[Angle, Angle, Angle], BeforeValidator(ListOf(3, 3, "three angles [rx, ry, rz]"))
+]
+Forces = Annotated[
+    tuple[ForcePart, ForcePart, ForcePart], BeforeValidator(ListOf(3, 3, "three forces [x, y, z]"))
+]
+Moments = Annotated[
+    tuple[MomentPart, MomentPart, MomentPart],
+    BeforeValidator(ListOf(3, 3, "three moments [x, y, z]")),
+]
+Direction = Annotated[
+    tuple[Share, Share, Share],
+    BeforeValidator(ListOf(3, 3, _DIRECTION)),
+    AfterValidator(_not_zero),
+]

@@ -1,0 +1,48 @@
+"""The continuous family of a grade, for studies that name one as their cable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from designer.grades.registry import load_catalogue
+from designer.model.cable import Material
+from designer.plugins.find import Plugins
+from designer.study import GradeFamily
+
+
+class GradeError(ValueError):
+    """A grade cannot stand for a family; ``problem`` and what was ``expected``."""
+
+    def __init__(self, problem: str, expected: str) -> None:
+        super().__init__(problem)
+        self.problem, self.expected = problem, expected
+
+
+def family_of(wanted: GradeFamily, catalogues: Sequence[Path], plugins: Plugins) -> Material:
+    """Return the material that a grade of the catalogue stands for.
+
+    Parameters
+    ----------
+    wanted : GradeFamily
+        The grade and its safety factor.
+    catalogues : sequence of Path
+        Files or folders that the study adds to the catalogue.
+    plugins : Plugins
+        Those that were found.
+
+    Raises
+    ------
+    GradeError
+        If there is no such grade, or if it lacks figures.
+    """
+    readable = [path for path in catalogues if path.exists()]
+    catalogue = load_catalogue(readable, plugins=plugins)
+    grade = next((g for g in catalogue.grades if g.id == wanted.grade), None)
+    if grade is None:
+        raise GradeError(*catalogue.explain_unknown(wanted.grade))
+    try:
+        return grade.family(wanted.safety_factor)
+    except ValueError as error:  # a grade made in Python may lack stiffness or area
+        expected = "a grade with breaking load, mass and stiffness"
+        raise GradeError(f"cannot stand for a family: {error}", expected) from None

@@ -1,0 +1,408 @@
+"""Frozen values of a rope grade: one construction, one wire grade, the sizes it is sold in.
+
+Two reference areas occur in rope data and must not be mixed: the circle of the nominal diameter,
+π d²/4, and the metallic area, the sum of the wires' sections. `Modulus` says which one it refers
+to; everything that leaves this module refers to the nominal circle, as
+`designer.model.cable.Material` does.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from statistics import median
+from typing import Literal
+
+from designer.grades.stiffness import Basis, RelativeStiffness
+from designer.model.cable import Cable, Material
+
+ReferenceArea = Literal["nominal", "metallic"]
+Trust = Literal["A", "B", "C"]
+RopeMaterial = Literal[
+    "steel",
+    "stainless steel",
+    "HMPE",
+    "Vectran",
+    "PBO",
+    "aramid",
+    "polyester",
+    "nylon",
+    "polyester and nylon",
+    "polypropylene",
+    "other",
+]
+ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"]
+
+TYPICAL_LOAD_FRACTION = 0.2
+"""Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
+
+_SINGLE_STRAND = re.compile(r"1\s*[x×]\s*\d")
+
+TRUST_MEANING = {
+    "A": "the maker's own or a standard's own table",
+    "B": "a seller's transcript or a secondary table, consistent in itself",
+    "C": "third hand or scattered text",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """One size of a grade.
+
+    Parameters
+    ----------
+    id : str
+        The size as its source names it, such as ``6 mm`` or ``1/4 in``.
+    diameter_m : float
+        Nominal diameter [m].
+    minimum_breaking_load_N : float
+        Minimum breaking load [N].
+    linear_density_kg_per_m : float
+        Mass per length [kg/m].
+    metallic_area_m2 : float or None
+        Sum of the wires' sections [m²]; None where the source gives none.
+    doubt : str or None
+        Why the figures of this size may be wrong. A doubtful size may still be chosen, and
+        whoever shows it shows the doubt with it.
+    price_per_m : float or None
+        Price of one metre in the grade's currency; None where it is not known.
+    """
+
+    id: str
+    diameter_m: float
+    minimum_breaking_load_N: float
+    linear_density_kg_per_m: float
+    metallic_area_m2: float | None = None
+    doubt: str | None = None
+    price_per_m: float | None = None
+
+    @property
+    def nominal_area_m2(self) -> float:
+        """Area of the circle of the nominal diameter [m²]."""
+        return math.pi * self.diameter_m**2 / 4.0
+
+    @property
+    def breaking_stress_Pa(self) -> float:
+        """Minimum breaking load over the nominal circle [Pa]."""
+        return self.minimum_breaking_load_N / self.nominal_area_m2
+
+    @property
+    def density_kg_per_m3(self) -> float:
+        """Mass per length over the nominal circle [kg/m³]."""
+        return self.linear_density_kg_per_m / self.nominal_area_m2
+
+
+@dataclass(frozen=True, slots=True)
+class Modulus:
+    """Effective modulus of elasticity of a rope.
+
+    Parameters
+    ----------
+    value_Pa : float
+        Axial stiffness EA over the reference area [Pa].
+    reference_area : str
+        ``nominal`` (the circle of the nominal diameter) or ``metallic``.
+    basis : str
+        ``printed`` for this grade, ``computed`` from other figures of this grade, or
+        ``borrowed`` from a rope of the same construction.
+    source : str
+        Where the figure comes from; for a borrowed one, the lender.
+    uncertainty : float
+        Relative half-width of the range the true value may lie in.
+    """
+
+    value_Pa: float
+    reference_area: ReferenceArea
+    basis: Basis
+    source: str
+    uncertainty: float
+
+    @property
+    def figure(self) -> str:
+        """The modulus in words."""
+        area = {"nominal": "nominal circle", "metallic": "metallic area"}[self.reference_area]
+        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}"
+
+
+@dataclass(frozen=True, slots=True)
+class ThermalExpansion:
+    """Axial thermal expansion: coefficient [1/K], how it was got, and its source."""
+
+    coefficient_per_K: float
+    basis: Basis
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class AreaFactor:
+    """Metallic area over d², for sizes whose metallic area is not given; basis and source."""
+
+    value: float
+    basis: Basis
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class SheaveRatio:
+    """Sheave over rope diameter, D/d: what is suggested, the minimum, and their source."""
+
+    suggested: float
+    minimum: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a rope bears beside load.
+
+    Parameters
+    ----------
+    source : str
+        Where the limits come from.
+    temperature_C : tuple of float or None
+        Lowest and highest temperature of use [°C].
+    creep : str or None
+        What is known of its creep.
+    """
+
+    source: str
+    temperature_C: tuple[float, float] | None = None
+    creep: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ComputedFigure:
+    """A column of the table of sizes that the source does not print, and how it was computed."""
+
+    figure: ComputedColumn
+    how: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """Where a grade's table was read.
+
+    Parameters
+    ----------
+    publisher, document : str
+        Who published what.
+    url : str or None
+        Address of the document.
+    date : str or None
+        Date or edition of the copy that was read.
+    """
+
+    publisher: str
+    document: str
+    url: str | None = None
+    date: str | None = None
+
+    def __str__(self) -> str:
+        parts = (self.publisher, self.document, self.date, self.url)
+        return ", ".join(part for part in parts if part)
+
+
+@dataclass(frozen=True, slots=True)
+class FamilyFit:
+    """The continuous family of a grade, on the nominal circle, and how well its sizes follow it.
+
+    Parameters
+    ----------
+    density_kg_per_m3, youngs_modulus_Pa, breaking_stress_Pa : float
+        The family; the stress is the breaking one, without a safety factor.
+    n_fitted : int
+        Number of sizes the fit is taken from.
+    linear_density_spread, breaking_load_spread : tuple of float
+        Lowest and highest deviation of any size from the family, relative to the family.
+    """
+
+    density_kg_per_m3: float
+    youngs_modulus_Pa: float
+    breaking_stress_Pa: float
+    n_fitted: int
+    linear_density_spread: tuple[float, float]
+    breaking_load_spread: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Grade:
+    """A rope of one construction and one wire grade or fibre, in the sizes it is sold in.
+
+    Parameters
+    ----------
+    id : str
+        Unique in a catalogue: lower-case letters, digits, ``.``, ``_`` and ``-``.
+    manufacturer, product : str
+        Who makes it, and under which name it is sold.
+    construction, core, finish : str
+        Such as ``6x36 WS``, ``IWRC``, ``galvanised``.
+    sizes : tuple of Size
+        Ascending in diameter.
+    source : Reference
+        Where the table was read.
+    trust : str
+        How far to trust it: a key of `TRUST_MEANING`.
+    modulus : Modulus or None
+        Effective modulus of elasticity.
+    stiffness : RelativeStiffness or None
+        Stiffness over breaking load, for a rope that is described so. A grade has either this or
+        a modulus.
+    material : str or None
+        What bears the load; None where it is not known.
+    standard, wire_grade : str or None
+        Standard, and tensile grade of the wires, where stated.
+    area_factor : AreaFactor or None
+    thermal_expansion : ThermalExpansion or None
+    sheave_ratio : SheaveRatio or None
+    limits : Limits or None
+    currency : str or None
+        Of the prices of the sizes, such as ``EUR``.
+    computed : tuple of ComputedFigure
+        Columns of the table that the source does not print.
+    notes : tuple of str
+        What a user of the figures should know.
+    is_nominal : bool
+        True for a grade computed from the factors of a standard. It is no product: a selection
+        among all grades leaves it out, and takes it where a study names it.
+    origin : str
+        Name of the plugin or folder the grade came in by; set by the registry.
+    file : str
+        File it was read from; empty for a grade made in Python.
+    """
+
+    id: str
+    manufacturer: str
+    product: str
+    construction: str
+    core: str
+    finish: str
+    sizes: tuple[Size, ...]
+    source: Reference
+    trust: Trust
+    modulus: Modulus | None = None
+    stiffness: RelativeStiffness | None = None
+    material: RopeMaterial | None = None
+    standard: str | None = None
+    wire_grade: str | None = None
+    area_factor: AreaFactor | None = None
+    thermal_expansion: ThermalExpansion | None = None
+    sheave_ratio: SheaveRatio | None = None
+    limits: Limits | None = None
+    currency: str | None = None
+    computed: tuple[ComputedFigure, ...] = ()
+    notes: tuple[str, ...] = ()
+    is_nominal: bool = False
+    origin: str = ""
+    file: str = ""
+
+    @property
+    def why_only_by_name(self) -> str | None:
+        """Why a selection takes this grade only where the study names it; None for others."""
+        if self.is_nominal:
+            return (
+                "computed from the factors of a standard, no product; taken where a study names it"
+            )
+        if _SINGLE_STRAND.match(self.construction):
+            return "a single strand, made for stays and not for drums; taken where a study names it"
+        return None
+
+    @property
+    def thickest(self) -> Size:
+        """The largest size."""
+        return self.sizes[-1]
+
+    def metallic_area_m2(self, size: Size) -> float | None:
+        """Return the metallic area of a size, as given or by the area factor [m²]."""
+        if size.metallic_area_m2 is not None or self.area_factor is None:
+            return size.metallic_area_m2
+        return self.area_factor.value * size.diameter_m**2
+
+    @property
+    def elasticity(self) -> Modulus | RelativeStiffness:
+        """The modulus or the relative stiffness, whichever the grade has.
+
+        Raises
+        ------
+        ValueError
+            If it has neither.
+        """
+        found = self.modulus or self.stiffness
+        if found is None:
+            raise ValueError(f"{self.id}: neither modulus nor stiffness is known")
+        return found
+
+    def axial_stiffness_N(self, size: Size, load_fraction: float = TYPICAL_LOAD_FRACTION) -> float:
+        """Return EA of a size [N]; of a fibre rope, EA at this load over breaking load.
+
+        Raises
+        ------
+        ValueError
+            If the grade has neither modulus nor stiffness, or if the modulus refers to a metallic
+            area that is not known.
+        """
+        elasticity = self.elasticity
+        if isinstance(elasticity, RelativeStiffness):
+            return elasticity.at(load_fraction) * size.minimum_breaking_load_N
+        if elasticity.reference_area == "nominal":
+            return elasticity.value_Pa * size.nominal_area_m2
+        area_m2 = self.metallic_area_m2(size)
+        if area_m2 is None:
+            raise ValueError(f"{self.id}, {size.id}: the metallic area is not known")
+        return elasticity.value_Pa * area_m2
+
+    def cable(self, size: Size, safety_factor: float) -> Cable:
+        """Return one size as a cable, its breaking load divided by ``safety_factor``."""
+        return Cable(
+            diameter_m=size.diameter_m,
+            linear_density_kg_per_m=size.linear_density_kg_per_m,
+            axial_stiffness_N=self.axial_stiffness_N(size, 1.0 / safety_factor),
+            allowable_tension_N=size.minimum_breaking_load_N / safety_factor,
+        )
+
+    def family(self, safety_factor: float) -> Material:
+        """Return the continuous family of this grade, see `fit`."""
+        fit = self.fit(1.0 / safety_factor)
+        return Material(
+            density_kg_per_m3=fit.density_kg_per_m3,
+            youngs_modulus_Pa=fit.youngs_modulus_Pa,
+            allowable_stress_Pa=fit.breaking_stress_Pa / safety_factor,
+        )
+
+    def fit(self, load_fraction: float = TYPICAL_LOAD_FRACTION) -> FamilyFit:
+        """Return the continuous family fitted to the sizes, stiff as it is at this load.
+
+        Mass, stiffness and breaking load over the nominal circle would be the same for every
+        size of an ideal grade. Tables deviate: masses of thin sizes are rounded coarsely, single
+        figures are misprinted, some sizes are another rope. The median over the sizes is not
+        moved by any of these, and is exact for a grade that follows the law. A least-squares fit
+        of the loads themselves would follow the two or three thickest sizes alone, a fit of the
+        ratios the worst misprint.
+        """
+        trusted = self._trusted_sizes()
+        density = median(size.density_kg_per_m3 for size in trusted)
+        stress = median(size.breaking_stress_Pa for size in trusted)
+        return FamilyFit(
+            density_kg_per_m3=density,
+            youngs_modulus_Pa=median(
+                self.axial_stiffness_N(size, load_fraction) / size.nominal_area_m2
+                for size in trusted
+            ),
+            breaking_stress_Pa=stress,
+            n_fitted=len(trusted),
+            linear_density_spread=_spread([s.density_kg_per_m3 / density for s in self.sizes]),
+            breaking_load_spread=_spread([s.breaking_stress_Pa / stress for s in self.sizes]),
+        )
+
+    def _trusted_sizes(self) -> tuple[Size, ...]:
+        """Sizes without doubt; all, where more than half are doubted.
+
+        A doubt that most of a table shares is about the table, and the few sizes that are left
+        would be its exceptions rather than its rule.
+        """
+        certain = tuple(size for size in self.sizes if size.doubt is None)
+        return certain if 2 * len(certain) >= len(self.sizes) else self.sizes
+
+
+def _spread(ratios: list[float]) -> tuple[float, float]:
+    return min(ratios) - 1.0, max(ratios) - 1.0

@@ -1,0 +1,179 @@
+"""Checks of what a grade's figures are to each other, so that slips of typing and unit show.
+
+Breaking load over d² and mass over d² hardly change within a grade, and lie within known bounds
+for every rope of a material. A figure in the wrong unit (lb/ft for kg/m, lbf for N), with two
+digits swapped, or on the wrong reference area breaks one of these rules.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from statistics import median
+
+from designer.grades.flaw import Flaw, within
+from designer.grades.grade import Grade, Size
+from designer.grades.materials import (
+    MASS_OVER_METALLIC_AREA_KG_PER_M3,
+    STEEL_DENSITY_KG_PER_M3,
+    bounds_of,
+    metallic_modulus_bounds_Pa,
+)
+
+LARGEST_FACTOR_OF_DOUBT = 1.6
+"""A doubtful size may be this much stronger or heavier for its d² than the grade's median."""
+
+_NEIGHBOURS = 2
+_AGGREGATE_MARGIN = 1.05  # an area or a factor of a table is rounded
+_LEAST_OF_SOLID = 0.5  # ropes of EN 12385-4 have 0.62 to 0.79
+_MASS_OVER_AREA_KG_PER_M3 = (7500.0, 12000.0)  # of a strand about 8000, of a fibre core up to 9900
+_WIRE_GRADE = re.compile(r"(\d{3,4})\s*(?:N/mm|MPa)")
+
+
+def proportion_flaws(grade: Grade) -> Iterator[Flaw]:
+    """Yield what contradicts itself, or a rope of the grade's material."""
+    bounds = bounds_of(grade)
+    masses = ("linear_mass", [size.density_kg_per_m3 for size in grade.sizes])
+    loads = ("minimum_breaking_load", [size.breaking_stress_Pa for size in grade.sizes])
+    columns = [
+        *_of_a_column(grade, *masses, bounds.density_kg_per_m3, "kg/m³"),
+        *_of_a_column(grade, *loads, bounds.breaking_stress_Pa, "Pa"),
+    ]
+    yield from columns or [*_strength(grade), *_metallic_areas(grade)] or _elasticity(grade)
+
+
+def _of_a_column(
+    grade: Grade, name: str, values: Sequence[float], bounds: tuple[float, float], unit: str
+) -> Iterator[Flaw]:
+    middle = median(values)
+    if not within(middle, bounds):
+        problem = f"{name} over the nominal circle is {middle:.3g} {unit} in the median"
+        whose = f" for {grade.material}" if grade.material else ""
+        expected = f"{bounds[0]:.3g} to {bounds[1]:.3g} {unit}{whose}; check the units"
+        yield Flaw(("sizes",), problem, expected)
+        return
+    allowed = bounds_of(grade).outlier
+    for index, deviation in sorted(_outliers(grade.sizes, values, allowed).items()):
+        side = "above" if deviation > 0.0 else "below"
+        problem = f"over d² it is {abs(deviation):.0%} {side} the neighbouring sizes"
+        expected = f"within {allowed:.0%}; check figure and unit, or say in 'doubt' why it is so"
+        yield Flaw(("sizes", index, name), problem, expected)
+    for index, size in enumerate(grade.sizes):
+        factor = values[index] / middle
+        if size.doubt and not 1.0 <= max(factor, 1.0 / factor) <= LARGEST_FACTOR_OF_DOUBT:
+            problem = f"over d² it is {factor:.3g} times the median of the grade"
+            yield Flaw(("sizes", index, name), problem, "about 1, even of a doubtful size")
+
+
+def _outliers(sizes: Sequence[Size], values: Sequence[float], allowed: float) -> dict[int, float]:
+    """Return the deviation of each size without doubt that stands off its neighbours.
+
+    It has to stand off both the doubtful ones and those without doubt: where a table is uneven
+    and says so, a size that lies between the two kinds is not to blame.
+    """
+    trusted = [index for index, size in enumerate(sizes) if size.doubt is None]
+    among_trusted = _stand_off(values, trusted, allowed)
+    among_all = _stand_off(values, range(len(sizes)), allowed)
+    return {index: among_trusted[index] for index in among_trusted if index in among_all}
+
+
+def _stand_off(values: Sequence[float], indices: Sequence[int], allowed: float) -> dict[int, float]:
+    """Return the deviation of each value that stands off its neighbours.
+
+    The worst goes first and is no neighbour any more, so that it does not blame the others. Of
+    fewer than three nobody can say which one is wrong.
+    """
+    left = list(indices)
+    found: dict[int, float] = {}
+    while len(left) >= 3:
+        deviations = {
+            index: values[index] / _around(values, left, place) - 1.0
+            for place, index in enumerate(left)
+        }
+        worst = max(deviations, key=lambda index: abs(deviations[index]))
+        if abs(deviations[worst]) <= allowed:
+            break
+        found[worst] = deviations[worst]
+        left.remove(worst)
+    return found
+
+
+def _around(values: Sequence[float], left: Sequence[int], place: int) -> float:
+    """Return the median of the nearest values on either side."""
+    before = left[max(place - _NEIGHBOURS, 0) : place]
+    after = left[place + 1 : place + 1 + _NEIGHBOURS]
+    return median(values[index] for index in (*before, *after))
+
+
+def _strength(grade: Grade) -> Iterator[Flaw]:
+    """A rope is weaker than all of its wires pulled straight, R·A, but not by half."""
+    wire_grade = _WIRE_GRADE.match(grade.wire_grade or "")
+    if wire_grade is None:
+        return
+    strength_Pa = 1e6 * float(wire_grade[1])
+    for index, size in enumerate(grade.sizes):
+        aggregate_N = strength_Pa * _most_metal_m2(grade, size)
+        if size.minimum_breaking_load_N > _AGGREGATE_MARGIN * aggregate_N:
+            problem = f"is {size.minimum_breaking_load_N / 1e3:.4g} kN"
+            expected = (
+                f"less than metallic area times wire grade, {aggregate_N / 1e3:.4g} kN; check "
+                "breaking load, wire_grade and mass"
+            )
+            yield Flaw(("sizes", index, "minimum_breaking_load"), problem, expected)
+        solid_N = strength_Pa * size.linear_density_kg_per_m / STEEL_DENSITY_KG_PER_M3
+        if size.minimum_breaking_load_N < _LEAST_OF_SOLID * solid_N:
+            share = size.minimum_breaking_load_N / solid_N
+            problem = f"is {share:.0%} of what the same mass of such wire would hold"
+            expected = f"at least {_LEAST_OF_SOLID:.0%}; check breaking load, wire_grade and mass"
+            yield Flaw(("sizes", index, "minimum_breaking_load"), problem, expected)
+
+
+def _most_metal_m2(grade: Grade, size: Size) -> float:
+    """Return the metallic area; where it is not known, as if all of the mass were wire [m²]."""
+    known_m2 = grade.metallic_area_m2(size)
+    return known_m2 or size.linear_density_kg_per_m / STEEL_DENSITY_KG_PER_M3
+
+
+def _metallic_areas(grade: Grade) -> Iterator[Flaw]:
+    for index, size in enumerate(grade.sizes):
+        if size.metallic_area_m2 is None or metallic_modulus_bounds_Pa(grade) is None:
+            continue
+        density = size.linear_density_kg_per_m / size.metallic_area_m2
+        if not within(density, _MASS_OVER_AREA_KG_PER_M3):
+            lowest, highest = _MASS_OVER_AREA_KG_PER_M3
+            problem = f"mass over metallic area is {density:.0f} kg/m³"
+            expected = f"{lowest:.0f} to {highest:.0f} kg/m³; check both figures"
+            yield Flaw(("sizes", index, "metallic_area"), problem, expected)
+
+
+def _elasticity(grade: Grade) -> Iterator[Flaw]:
+    metallic = metallic_modulus_bounds_Pa(grade)
+    if metallic is not None:
+        yield from _metallic_modulus(grade, metallic)
+    fit, bounds = grade.fit(), bounds_of(grade).ea_over_breaking_load
+    ratio = fit.youngs_modulus_Pa / fit.breaking_stress_Pa
+    if not within(ratio, bounds):
+        problem = f"EA is {ratio:.3g} times the breaking load"
+        whose = grade.material or "a rope"
+        field = "modulus" if grade.modulus else "stiffness"
+        yield Flaw((field,), problem, f"{bounds[0]:.3g} to {bounds[1]:.3g} for {whose}")
+
+
+def _metallic_modulus(grade: Grade, bounds: tuple[float, float]) -> Iterator[Flaw]:
+    """What a modulus on the nominal circle is on the metal, and whether metal can be that."""
+    value_Pa = median(
+        grade.axial_stiffness_N(size) / _likely_metal_m2(grade, size) for size in grade.sizes
+    )
+    if not within(value_Pa, bounds):
+        problem = f"is {value_Pa / 1e9:.0f} GPa on the metallic area"
+        expected = (
+            f"{bounds[0] / 1e9:.0f} to {bounds[1] / 1e9:.0f} GPa for {grade.material}, "
+            f"{grade.construction}; check value and reference_area"
+        )
+        yield Flaw(("modulus", "value") if grade.modulus else ("stiffness",), problem, expected)
+
+
+def _likely_metal_m2(grade: Grade, size: Size) -> float:
+    """Return the metallic area, by the mass where it is not known [m²]."""
+    known_m2 = grade.metallic_area_m2(size)
+    return known_m2 or size.linear_density_kg_per_m / MASS_OVER_METALLIC_AREA_KG_PER_M3

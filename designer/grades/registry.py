@@ -1,0 +1,266 @@
+"""Brings the grades of all sources together into one catalogue."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from designer.documents.node import path_text
+from designer.errors import Fault, InputError
+from designer.grades.checks import find_flaws
+from designer.grades.files import id_fault, nothing_found_fault, read_grades
+from designer.grades.grade import Grade
+from designer.plugins.find import Offer, Plugins, ask, find_plugins
+from designer.plugins.guard import one_line
+
+if TYPE_CHECKING:
+    from designer.study import Study  # geometry, which a list of grades does not need
+
+MOST_PROBLEMS_OF_A_SOURCE = 20
+_MOST_NAMED = 12
+_OUR_PLUGINS = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}
+"""How the ids of the example plugins begin."""
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueSource:
+    """Where grades came from.
+
+    Parameters
+    ----------
+    name : str
+        Name of the plugin, ``user folder``, or name of the file or folder.
+    source : str
+        The plugin's distribution and version, or the path.
+    n_grades : int
+        Number of grades that came in from there.
+    """
+
+    name: str
+    source: str
+    n_grades: int
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """All grades that are known.
+
+    Parameters
+    ----------
+    grades : tuple of Grade
+        Ids are unique; each grade's ``origin`` is the name of its source.
+    sources : tuple of CatalogueSource
+        What was loaded.
+    problems : tuple of str
+        What was left out and why, one line each.
+    with_plugins : bool
+        Whether plugins of others were looked for.
+    """
+
+    grades: tuple[Grade, ...]
+    sources: tuple[CatalogueSource, ...]
+    problems: tuple[str, ...]
+    with_plugins: bool = True
+
+    def grade(self, grade_id: str) -> Grade:
+        """Return the grade with this id.
+
+        Raises
+        ------
+        InputError
+            If there is none; names the nearest ids.
+        """
+        for grade in self.grades:
+            if grade.id == grade_id:
+                return grade
+        raise InputError([Fault("catalogue", None, "", *self.explain_unknown(grade_id))])
+
+    def require_grades_of(self, study: Study) -> None:
+        """Refuse a study that names grades which are not here.
+
+        Raises
+        ------
+        InputError
+            With a fault for each; names the nearest ids.
+        """
+        known = {grade.id for grade in self.grades}
+        wanted = study.selection.grades if study.selection else None
+        faults = [
+            study.source.fault(f"selection.grades[{k}]", *self.explain_unknown(grade))
+            for k, grade in enumerate(wanted or ())
+            if grade not in known
+        ]
+        if faults:
+            raise InputError(faults)
+
+    def explain_unknown(self, grade_id: str) -> tuple[str, str]:
+        """Return what is wrong with an id that no grade has, and what was expected."""
+        shown = one_line(grade_id)
+        plugin = next((p for start, p in _OUR_PLUGINS.items() if grade_id.startswith(start)), None)
+        if plugin is not None:
+            why = "is not installed" if self.with_plugins else "--no-plugins leaves out"
+            problem = f"the grade {shown!r} is of the plugin {plugin}, which {why}"
+            return problem, f"`pip install plugins/{plugin}` in a checkout, or another grade"
+        expected = self._alike(grade_id) or "an id that `designer catalog list` shows"
+        hint = "" if self.with_plugins else "; --no-plugins leaves out those of plugins"
+        return f"there is no grade {shown!r}", expected + hint
+
+    def _alike(self, text: str) -> str:
+        """Return the ids whose construction or name has this in it, else those nearly so called."""
+        part = _letters(text)
+        alike = [g for g in self.grades if part and _has(part, g.construction, g.id)]
+        names = [g.id for g in sorted(alike, key=lambda g: g.is_nominal)]
+        if not names:
+            nearest = difflib.get_close_matches(text, [grade.id for grade in self.grades], n=3)
+            return " or ".join(repr(name) for name in nearest)
+        more = len(names) - _MOST_NAMED
+        rest = f" or one of {more} more that `designer catalog list` shows" if more > 0 else ""
+        return "such as " + ", ".join(names[:_MOST_NAMED]) + rest
+
+
+def _letters(text: str) -> str:
+    return "".join(text.casefold().replace("×", "x").split())
+
+
+def _has(part: str, *names: str) -> bool:
+    """Tell whether one of the names has this in it; ``9x7`` is not in ``19x7``."""
+    pattern = re.compile(rf"(?<![a-z0-9]){re.escape(part)}")
+    return any(pattern.search(_letters(name)) for name in names)
+
+
+def load_catalogue(
+    paths: Sequence[Path] = (), with_plugins: bool = True, plugins: Plugins | None = None
+) -> Catalogue:
+    """Return the shipped grades, those of all plugins and of the user folder, and of ``paths``.
+
+    A plugin, or a file of the user folder, that is faulty is left out and reported in
+    ``problems``; the user has asked for ``paths`` in this very study, so a fault there is fatal.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Grade files or folders that a config names.
+    with_plugins : bool
+        False leaves out plugins and the user folder, for studies that give the same answer on
+        every machine.
+    plugins : Plugins or None
+        Those that were found already, by the same wish; None to find them.
+
+    Raises
+    ------
+    InputError
+        If a file in ``paths`` is faulty, or has the id of another grade.
+    """
+    if plugins is None:
+        plugins = find_plugins(with_plugins)
+    offers, failures = ask(plugins, "register_grades")
+    shelf = _Shelf(problems=[*plugins.problems, *failures])
+    for offer in offers:
+        shelf.add_offer(offer)
+    user_folder = user_catalogue_folder()
+    if plugins.with_others and user_folder.is_dir():
+        shelf.add_offer(_offer_of(user_folder))
+    shelf.add_paths(paths)
+    return Catalogue(
+        tuple(shelf.grades.values()),
+        tuple(shelf.sources),
+        tuple(shelf.problems),
+        plugins.with_others,
+    )
+
+
+def user_catalogue_folder() -> Path:
+    """Return the folder whose grade files are always loaded, if it exists."""
+    from platformdirs import user_data_path
+
+    return user_data_path("cdpr-designer", appauthor=False) / "catalog"
+
+
+def _offer_of(folder: Path) -> Offer:
+    return Offer("user folder", str(folder), f"user folder ({folder})", (folder,))
+
+
+@dataclass(slots=True)
+class _Shelf:
+    """The catalogue while it is being filled."""
+
+    problems: list[str]
+    grades: dict[str, Grade] = field(default_factory=dict)
+    sources: list[CatalogueSource] = field(default_factory=list)
+
+    def add_offer(self, offer: Offer) -> None:
+        """Add what is sound in an offer; report the rest."""
+        complaints: list[str] = []
+        before = len(self.grades)
+        for item in offer.items:
+            for grade in _grades_in(item, complaints.append):
+                complaints += self._add(replace(grade, origin=offer.name))
+        self._report(offer.label, complaints)
+        self.sources.append(CatalogueSource(offer.name, offer.source, len(self.grades) - before))
+
+    def add_paths(self, paths: Sequence[Path]) -> None:
+        """Add what the config names; refuse all of it if anything is faulty."""
+        faults: list[Fault] = []
+        for path in paths:
+            found, unreadable = read_grades(path)
+            faults += unreadable
+            if not found and not unreadable:
+                faults.append(nothing_found_fault(path))
+            for one in found:
+                problems = self._add(replace(one.grade, origin=path.name))
+                faults += [id_fault(one, problem) for problem in problems]
+            self.sources.append(CatalogueSource(path.name, str(path), len(found)))
+        if faults:
+            raise InputError(faults)
+
+    def _add(self, grade: Grade) -> list[str]:
+        """Add a grade, unless its id is taken; return what is wrong."""
+        first = self.grades.setdefault(grade.id, grade)
+        if first is grade:
+            return []
+        return [f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already"]
+
+    def _report(self, label: str, complaints: Iterable[str]) -> None:
+        lines = [f"{label}: {one_line(complaint)}: left out" for complaint in complaints]
+        hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
+        self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
+        if hidden > 0:
+            self.problems.append(f"{label}: {hidden} more problems of this kind")
+
+
+def _label(grade: Grade) -> str:
+    return f"{grade.origin!r} ({grade.file})" if grade.file else repr(grade.origin)
+
+
+def _grades_in(item: object, complain: Callable[[str], None]) -> list[Grade]:
+    """Return the sound grades of one item that a plugin gave."""
+    if isinstance(item, Grade):
+        return _sound(item, complain)
+    if not isinstance(item, str | os.PathLike):
+        complain(f"register_grades() gave {type(item).__name__}, not a path or a Grade")
+        return []
+    path = Path(os.fsdecode(item))
+    if not path.is_absolute():
+        complain(f"register_grades() gave the relative path {str(path)!r}")
+        return []
+    found, faults = read_grades(path)
+    for fault in faults:
+        complain(str(fault))
+    return [one.grade for one in found]
+
+
+def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:
+    try:
+        flaws = find_flaws(grade)
+    except Exception as error:  # a grade made in Python may hold values of any type
+        complain(f"a Grade is not usable: {type(error).__name__}: {one_line(error)}")
+        return []
+    for flaw in flaws:
+        place = path_text(flaw.keys)
+        complain(str(Fault(f"grade {grade.id!r}", None, place, flaw.problem, flaw.expected)))
+    return [] if flaws else [grade]

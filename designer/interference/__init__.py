@@ -1,1 +1,0 @@
-"""How near cables come to each other and to the platform."""

@@ -1,0 +1,1 @@
+"""What is read and written: config, JSON, CSV, output folders."""

@@ -1,0 +1,157 @@
+"""Builds the frozen study, in SI, from a config that passed all checks."""
+
+from __future__ import annotations
+
+from itertools import product
+from pathlib import Path
+
+from designer.arrays import frozen_array
+from designer.effects.known import KnownEffects
+from designer.io.config.columns import log_column
+from designer.io.config.effects import read_effects
+from designer.io.config.orientation import rotation_vector_rad
+from designer.io.config.schema import (
+    BoxSection,
+    MeasurementsSection,
+    PointsSection,
+    PoseSection,
+    PrismSection,
+    RectangleSection,
+    RobotSection,
+    SelectionSection,
+    StudySection,
+    WorkspaceSection,
+)
+from designer.model.cable import Material
+from designer.model.machine import Surroundings
+from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.robot import Platform, Poses, Robot
+from designer.model.space import Orientations
+from designer.study import (
+    CableGroup,
+    GradeFamily,
+    Measurements,
+    Selection,
+    Source,
+    Study,
+    Workspace,
+)
+
+
+def build_study(
+    section: StudySection,
+    source: Source,
+    known: KnownEffects,
+    material: Material,
+    family: GradeFamily | None,
+) -> Study:
+    """Return the study that the config describes, with a material that was made for it."""
+    folder = source.path.parent
+    robot = _robot(section.robot)
+    declared = read_effects(section.effects, robot.n_cables, known.names)
+    return Study(
+        name=section.name or source.path.stem,
+        robot=robot,
+        material=material,
+        source=source,
+        pose=_pose(section.pose),
+        workspace=_workspace(section.workspace, robot),
+        selection=_selection(section.selection),
+        catalogues=tuple(folder / name for name in section.catalogues),
+        measurements=_measurements(section.measurements, folder),
+        effects=tuple(one for _, one in declared.effects),
+        known_effects=known,
+        surroundings=Surroundings(section.surroundings.temperature),
+        family=family,
+    )
+
+
+def _robot(section: RobotSection) -> Robot:
+    body = section.platform
+    attachments = None if body.attachments is None else frozen_array(body.attachments)
+    hull = None if body.hull is None else frozen_array(list(product(*body.hull)))
+    wrench = frozen_array([*body.wrench.force, *body.wrench.moment])
+    platform = Platform(body.mass, attachments, frozen_array(body.centre_of_mass), hull, wrench)
+    return Robot(
+        frozen_array(section.anchors),
+        platform,
+        tension_min_N=section.tension_min,
+        gravity_direction=frozen_array(section.gravity),
+        is_planar=section.planar,
+    )
+
+
+def _pose(section: PoseSection | None) -> Poses | None:
+    if section is None:
+        return None
+    turn = rotation_vector_rad(section.rotation_vector, section.quaternion, section.euler)
+    return Poses.at(section.position, turn)
+
+
+def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | None:
+    if section is None:
+        return None
+    return Workspace(
+        region=_region(section.region, robot),
+        samples=section.samples,
+        sampling=section.sampling,
+        seed=section.seed,
+        hangs_below=section.hangs_below,
+        clearance_m=section.clearance,
+        floor_m=section.floor,
+        orientations=_orientations(section),
+    )
+
+
+def _orientations(section: WorkspaceSection) -> Orientations:
+    if section.orientation_range is not None:
+        return Orientations.within(*section.orientation_range.bounds_rad)
+    each = section.orientations or (() if section.orientation is None else (section.orientation,))
+    return Orientations(frozen_array([one.turn_rad for one in each])) if each else Orientations()
+
+
+def _region(
+    section: PrismSection | BoxSection | PointsSection | RectangleSection, robot: Robot
+) -> Region:
+    if isinstance(section, BoxSection):
+        return Prism.box(*section.box)
+    if isinstance(section, PointsSection):
+        return PointList(frozen_array(section.points))
+    if isinstance(section, RectangleSection):
+        over = robot.exit_points_m if section.rectangle == "anchors" else section.rectangle
+        return Rectangle.over(over, section.inset, section.z)
+    corners = robot.exit_points_m if section.prism == "anchors" else section.prism
+    return Prism.over(corners, section.inset, section.z)
+
+
+def _selection(section: SelectionSection | None) -> Selection | None:
+    if section is None:
+        return None
+    return Selection(
+        grades=None if section.grades == "all" else section.grades,
+        safety_factor=section.safety_factor,
+        objectives=section.objectives,
+        termination_efficiency=section.termination_efficiency,
+        sheave_diameter_m=section.sheave_diameter,
+        groups=tuple(CableGroup(name, cables) for name, cables in (section.groups or {}).items()),
+        max_distinct_products=section.max_distinct_products,
+    )
+
+
+def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurements | None:
+    if section is None:
+        return None
+    return Measurements(
+        file=folder / section.file,
+        linear_density_kg_per_m=section.cable.linear_mass,
+        axial_stiffness_N=section.cable.axial_stiffness,
+        diameter_m=section.cable.diameter,
+        minimum_breaking_load_N=section.cable.minimum_breaking_load,
+        columns=tuple(log_column(*item) for item in section.columns.items()),
+        settled=section.settled,
+        unknown=section.unknown,
+        length_noise_m=section.noise.length,
+        tension_noise_N=section.noise.tension,
+        estimated_noise=section.noise.estimated,
+        search_time_s=section.search_time,
+    )

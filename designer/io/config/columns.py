@@ -1,0 +1,107 @@
+"""The map from a log's own columns to ours."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from designer.documents.fields import Text, bounded, mapping, refusal
+from designer.documents.section import Section
+from designer.measured.names import COVARIATE, IGNORE, column_hint, dimension_of
+from designer.study import LogColumn
+from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, describe, read_quantity
+
+_TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
+
+
+def _target(given: object) -> str:
+    if not isinstance(given, str):
+        raise refusal(f"{describe(given)} is not a name", _TARGET)
+    if given not in (IGNORE, COVARIATE) and dimension_of(given) is None:
+        raise refusal(f"{describe(given)} is no column of ours", _TARGET + column_hint(given))
+    return given
+
+
+class ColumnSection(Section):
+    """What one column of a log is to us, and in which unit.
+
+    The value is the reading in its unit, or ``scale`` · reading, plus ``offset``.
+    """
+
+    to: Annotated[str, BeforeValidator(_target)] = Field(description=_TARGET)
+    unit: Text | None = None
+    scale: Annotated[float, bounded("scale of a column")] | None = None
+    offset: Any = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, given: object) -> object:
+        if not isinstance(given, str | dict):
+            expected = f"{_TARGET}, or {{to: …, unit: …}}"
+            raise refusal(f"{describe(given)} is not a name", expected)
+        return {"to": given} if isinstance(given, str) else given
+
+    @model_validator(mode="after")
+    def _check_conversion(self) -> ColumnSection:
+        self.conversion()
+        return self
+
+    def conversion(self) -> tuple[float, float]:
+        """Return scale and offset from the log's numbers to ours."""
+        dimension = dimension_of(self.to)
+        if dimension is None:
+            self._refuse_conversion()
+            return 1.0, 0.0
+        scale, offset = self._scale(dimension)
+        return scale, offset + self._offset(dimension)
+
+    @property
+    def meaning(self) -> str:
+        """What becomes of a reading, for the table of inputs."""
+        scale, offset = self.conversion()
+        if (scale, offset) == (1.0, 0.0):
+            return self.to
+        shift = f" {'-' if offset < 0 else '+'} {abs(offset):.10g}" if offset else ""
+        return f"{self.to} = {scale:.10g} · reading{shift}"
+
+    def _refuse_conversion(self) -> None:
+        given = self.model_fields_set - {"to"}
+        if given:
+            raise refusal(f"'{self.to}' takes no {sorted(given)[0]}", f"'{self.to}' alone")
+
+    def _scale(self, dimension: Dimension) -> tuple[float, float]:
+        if self.scale is not None and self.unit is not None:
+            raise refusal("both a unit and a scale are given", "one of the two")
+        if self.scale == 0.0:
+            raise refusal("the scale is zero", "a factor from the log's numbers to ours")
+        if self.unit is None:
+            return 1.0 if self.scale is None else self.scale, 0.0
+        try:
+            zero, one = (read_quantity(f"{number} {self.unit}", dimension) for number in (0, 1))
+        except QuantityError as error:
+            raise _no_such_unit(self.unit, dimension, error) from None
+        return one - zero, zero
+
+    def _offset(self, dimension: Dimension) -> float:
+        # '5 K' as a difference is not 5 K as a temperature
+        kind = NUMBER if dimension == TEMPERATURE else dimension
+        try:
+            return 0.0 if self.offset is None else read_quantity(self.offset, kind)
+        except QuantityError as error:
+            raise refusal(f"the offset {error.problem}", error.expected) from None
+
+
+def _no_such_unit(unit: str, dimension: Dimension, error: QuantityError) -> PydanticCustomError:
+    _, mark, hint = error.expected.partition("; did you mean")
+    expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
+    return refusal(f"{describe(unit)} is no unit of {dimension.noun}", f"{expected}{mark}{hint}")
+
+
+Columns = Annotated[dict[str, ColumnSection], BeforeValidator(mapping)]
+
+
+def log_column(name: str, section: ColumnSection) -> LogColumn:
+    """Return the frozen value of one entry of the map."""
+    return LogColumn(name, section.to, *section.conversion())

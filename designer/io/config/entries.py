@@ -1,0 +1,104 @@
+"""The table of inputs: every field as the file gives it and in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, get_args
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from designer.documents.fields import Quantity
+from designer.documents.node import Key, Node, path_text
+from designer.io.config.columns import ColumnSection
+from designer.study import Entry
+from designer.units import NUMBER, Dimension, format_SI
+
+DEFAULT = "default"
+_MOST_ROWS = 64
+
+
+def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = ()) -> list[Entry]:
+    """Return the entries of a section and all below it, in the order of the schema.
+
+    Fields and sections that the file leaves out are marked ``default``.
+    """
+    entries: list[Entry] = []
+    for name, info in type(section).model_fields.items():
+        value = getattr(section, name)
+        below = None if node is None else _given(node, name, section)
+        if isinstance(value, BaseModel):
+            entries += all_entries(value, below, (*place, name))
+        else:
+            entries += _entries(value, below, (*place, name), _dimension(info))
+    return entries
+
+
+def _given(node: Node, name: str, section: BaseModel) -> Node | None:
+    """Return the field's node; a list in place of a section gives the section's first field."""
+    is_shorthand = not isinstance(node.content, dict)
+    is_first = name == next(iter(type(section).model_fields))
+    found = node if is_shorthand and is_first else node.child(name)
+    return None if found is None or found.data() is None else found
+
+
+def _entries(
+    value: Any, node: Node | None, place: tuple[Key, ...], dimension: Dimension
+) -> Iterator[Entry]:
+    if node is None:
+        yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
+    elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
+        for index, item in enumerate(value):
+            below = node.child(index)
+            given = DEFAULT if below is None else below.as_written()
+            yield Entry(path_text((*place, index)), given, str(item))
+    elif isinstance(value, dict) and value:
+        yield from _map_entries(value, node, place)
+    elif not _has_rows(value):
+        yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
+    elif len(value) > _MOST_ROWS:
+        ends = f"{_in_SI(value[0], dimension)} … {_in_SI(value[-1], dimension)}"
+        yield Entry(path_text(place), f"{len(value)} rows", ends)
+    else:
+        for index, row in enumerate(value):
+            yield from _entries(row, node.child(index), (*place, index), dimension)
+
+
+def _map_entries(value: dict[str, Any], node: Node, place: tuple[Key, ...]) -> Iterator[Entry]:
+    for name, item in value.items():
+        if isinstance(item, ColumnSection):
+            below = node.child(name)
+            given = DEFAULT if below is None else below.as_written()
+            yield Entry(path_text((*place, name)), given, item.meaning)
+        elif isinstance(item, tuple):
+            yield from _entries(item, node.child(name), (*place, name), NUMBER)
+
+
+def _has_rows(value: object) -> bool:
+    return isinstance(value, tuple) and bool(value) and isinstance(value[0], tuple)
+
+
+def _in_SI(value: Any, dimension: Dimension) -> str:
+    if value is None or value in ((), {}):
+        return "none"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return format_SI(value, dimension)
+    if isinstance(value, tuple):
+        return f"[{', '.join(_in_SI(item, NUMBER) for item in value)}] {dimension.unit}".rstrip()
+    return str(value)
+
+
+def _dimension(info: FieldInfo) -> Dimension:
+    """Return the dimension of a field's numbers, wherever in its type it stands."""
+    quantity = _quantity_in((info.annotation, *info.metadata))
+    return NUMBER if quantity is None else quantity.dimension
+
+
+def _quantity_in(parts: tuple[Any, ...]) -> Quantity | None:
+    for part in parts:
+        found = part if isinstance(part, Quantity) else _quantity_in(get_args(part))
+        if found is not None:
+            return found
+    return None

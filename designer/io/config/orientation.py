@@ -1,0 +1,133 @@
+"""Orientation of a pose in the config: rotation vector, unit quaternion, or Euler angles."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from scipy.spatial.transform import Rotation as SpatialRotation
+
+from designer.arrays import FloatArray
+from designer.documents.fields import ListOf, Rotation, Turn, bounded, refusal
+from designer.documents.section import Section
+from designer.units import describe
+
+FORMS = ("rotation_vector", "quaternion", "euler")
+_LARGEST_NORM_ERROR = 1e-3
+_CONVENTION = re.compile(r"(?!.*(.)\1)(?:[XYZ]{3}|[xyz]{3})")
+_AXES = "three axes such as XYZ, which turn with the body, or xyz, which do not"
+
+
+def _of_unit_length(parts: tuple[float, float, float, float]) -> tuple[float, ...]:
+    length = math.hypot(*parts)
+    if abs(length - 1.0) > _LARGEST_NORM_ERROR:
+        raise refusal(f"the quaternion has length {length:.6g}", "length 1, as [w, x, y, z]")
+    return parts
+
+
+def _convention(given: object) -> str:
+    if not isinstance(given, str) or not _CONVENTION.fullmatch(given):
+        raise refusal(f"{describe(given)} is no order of axes", _AXES)
+    return given
+
+
+def only_one_form(given: object) -> object:
+    """Return the mapping of a pose unchanged, or refuse it if it has several orientations."""
+    return only_one_of(given, FORMS, "the pose")
+
+
+def only_one_of(given: object, names: tuple[str, ...], owner: str) -> object:
+    """Return a mapping unchanged, or refuse it if it has several of these fields."""
+    if isinstance(given, dict):
+        found = [name for name in names if given.get(name) is not None]
+        if len(found) > 1:
+            raise refusal(f"{owner} has {' and '.join(found)}", f"one of {', '.join(names)}")
+    return given
+
+
+_Number = Annotated[float, bounded("part of a quaternion")]
+Quaternion = Annotated[
+    tuple[_Number, _Number, _Number, _Number],
+    BeforeValidator(ListOf(4, 4, "four numbers [w, x, y, z]")),
+    AfterValidator(_of_unit_length),
+]
+Convention = Annotated[str, BeforeValidator(_convention)]
+
+
+class EulerSection(Section):
+    """Three turns, one after the other.
+
+    Capital letters name axes that turn with the body (intrinsic), small ones axes that stay
+    (extrinsic); the turns are made in the order of the letters.
+    """
+
+    convention: Convention = Field(description=_AXES)
+    angles: Rotation = Field(description="three angles, in the order of the axes")
+
+
+class OrientationSection(Section):
+    """How the platform is turned, in one of three forms."""
+
+    rotation_vector: Rotation = (0.0, 0.0, 0.0)
+    quaternion: Quaternion | None = None
+    euler: EulerSection | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, given: object) -> object:
+        return {"rotation_vector": given} if isinstance(given, list) else only_one_form(given)
+
+    def __str__(self) -> str:
+        """Return the rotation vector with its unit, for the table of inputs."""
+        return f"[{', '.join(f'{angle:.6g}' for angle in self.turn_rad)}] rad"
+
+    @property
+    def turn_rad(self) -> FloatArray:
+        """Rotation vector (3,) [rad]."""
+        return rotation_vector_rad(self.rotation_vector, self.quaternion, self.euler)
+
+
+class OrientationRangeSection(Section):
+    """Components of the rotation vector between two ends each; zero where left out."""
+
+    rx: Turn | None = None
+    ry: Turn | None = None
+    rz: Turn | None = None
+
+    @model_validator(mode="after")
+    def _has_a_component(self) -> OrientationRangeSection:
+        if self.rx is None and self.ry is None and self.rz is None:
+            raise refusal("the range is empty", "one or more of rx, ry and rz, as [lower, upper]")
+        return self
+
+    @property
+    def bounds_rad(self) -> FloatArray:
+        """Lowest and highest rotation vector (2, 3) [rad]."""
+        return np.array([one or (0.0, 0.0) for one in (self.rx, self.ry, self.rz)]).T
+
+
+def rotation_vector_rad(
+    vector: tuple[float, float, float],
+    quaternion: tuple[float, ...] | None,
+    euler: EulerSection | None,
+) -> FloatArray:
+    """Return the orientation as a rotation vector (3,) [rad], from the one form that is given.
+
+    Parameters
+    ----------
+    vector : tuple of float
+        Rotation vector [rad]; counts where the others are None.
+    quaternion : tuple of float or None
+        From body to world, scalar first; scaled to unit length.
+    euler : EulerSection or None
+        Angles and the axes that they turn about.
+    """
+    if quaternion is not None:
+        scalar_last = np.roll(quaternion, -1)
+        return np.asarray(SpatialRotation.from_quat(scalar_last).as_rotvec())
+    if euler is not None:
+        return np.asarray(SpatialRotation.from_euler(euler.convention, euler.angles).as_rotvec())
+    return np.array(vector)

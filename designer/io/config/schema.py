@@ -1,0 +1,358 @@
+"""The config file as pydantic models: which fields there are and what each may hold.
+
+Geometry, which needs several fields at once, is checked in `designer.io.config.checks`, and what is
+in ``effects`` in `designer.io.config.effects`.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import Annotated, Literal
+
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    StrictBool,
+    Tag,
+    model_validator,
+)
+
+from designer.documents.bounds import MOST_SAMPLES
+from designer.documents.fields import (
+    AxialStiffness,
+    BreakingLoad,
+    Clearance,
+    Corner,
+    Density,
+    Direction,
+    Distance,
+    Efficiency,
+    Forces,
+    FormatOf,
+    FreeMapping,
+    Interval,
+    Length,
+    LengthNoise,
+    LinearDensity,
+    ListOf,
+    Mass,
+    Modulus,
+    Moments,
+    OnlyWord,
+    Point,
+    RopeDiameter,
+    Rotation,
+    SafetyFactor,
+    SearchTime,
+    SheaveDiameter,
+    Stress,
+    Temperature,
+    Tension,
+    TensionNoise,
+    Text,
+    WholeNumber,
+    different,
+    in_brackets,
+    mapping,
+    not_empty,
+    refusal,
+)
+from designer.documents.formats import CONFIG_FORMAT
+from designer.documents.section import Section
+from designer.io.config.columns import Columns
+from designer.io.config.orientation import (
+    EulerSection,
+    OrientationRangeSection,
+    OrientationSection,
+    Quaternion,
+    only_one_form,
+    only_one_of,
+)
+from designer.study import HangsBelow, Objective, Reading, Sampling
+from designer.units import describe
+
+MOST_CABLES = 64
+_GRADES = "'all' or a list of grade ids"
+_ENDS = "'anchors' or two corners [[x, y], [x, y]]"
+_CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
+
+_points = ListOf(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
+_names = ListOf(0, 1000, "a list")
+_corners = ListOf(3, 1000, _CORNERS)
+_positions = ListOf(1, 50_000, "1 to 50000 positions [x, y, z]")
+_ends = ListOf(2, 2, _ENDS)
+_box = ListOf(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+
+Anchors = Annotated[tuple[Point, ...], BeforeValidator(_points)]
+Attachments = Annotated[tuple[Point, ...], BeforeValidator(_points)]
+Corners = Annotated[tuple[Corner, ...], BeforeValidator(_corners)]
+Ends = Annotated[tuple[Corner, Corner], BeforeValidator(_ends)]
+Positions = Annotated[tuple[Point, ...], BeforeValidator(_positions)]
+Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
+Objectives = Annotated[
+    tuple[Objective, ...],
+    BeforeValidator(ListOf(1, 5, "a list of objectives such as [mass, drum_diameter]")),
+    AfterValidator(different),
+]
+Readings = Annotated[
+    tuple[Reading, ...],
+    BeforeValidator(ListOf(0, 2, "a list of readings: length, tension or both")),
+    AfterValidator(different),
+]
+Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
+CableNumbers = Annotated[
+    tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
+    BeforeValidator(ListOf(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]")),
+]
+Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
+
+
+def _word_or_list(given: object) -> str:
+    return "a word" if isinstance(given, str) else "a list"
+
+
+ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
+TurnList = Annotated[
+    tuple[OrientationSection, ...],
+    BeforeValidator(ListOf(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]")),
+]
+PrismBase = Annotated[
+    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _CORNERS)), Tag("a word")]
+    | Annotated[Corners, Tag("a list")],
+    Discriminator(_word_or_list),
+]
+RectangleBase = Annotated[
+    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _ENDS)), Tag("a word")]
+    | Annotated[Ends, Tag("a list")],
+    Discriminator(_word_or_list),
+]
+GradeIds = Annotated[
+    Annotated[Literal["all"], BeforeValidator(OnlyWord("all", _GRADES)), Tag("a word")]
+    | Annotated[tuple[Text, ...], BeforeValidator(ListOf(1, 1000, _GRADES)), Tag("a list")],
+    Discriminator(_word_or_list),
+]
+
+
+class WrenchSection(Section):
+    """Constant load beside gravity, along the axes of the world frame."""
+
+    force: Forces = (0.0, 0.0, 0.0)
+    moment: Moments = (0.0, 0.0, 0.0)
+
+
+class PlatformSection(Section):
+    """What the cables carry."""
+
+    mass: Mass = Field(description="a mass such as '4000 kg'")
+    attachments: Attachments | None = None
+    centre_of_mass: Point = (0.0, 0.0, 0.0)
+    hull: Box | None = None
+    wrench: WrenchSection = WrenchSection()
+
+
+class RobotSection(Section):
+    """The machine."""
+
+    anchors: Anchors = Field(description="at least 3 exit points [x, y, z]")
+    platform: PlatformSection = Field(description="a mapping with the platform's mass")
+    gravity: Direction = (0.0, 0.0, -1.0)
+    planar: StrictBool = False
+    tension_min: Tension = 0.0
+
+
+class CableSection(Section):
+    """The continuous family of cables in which the optimum is computed."""
+
+    density: Density = Field(description="a density such as '7800 kg/m^3'")
+    youngs_modulus: Modulus = Field(description="a modulus such as '200 GPa'")
+    allowable_stress: Stress = Field(description="a stress such as '180 MPa'")
+
+
+class GradeCableSection(Section):
+    """The continuous family of a rope grade."""
+
+    grade: Text = Field(description="a grade id from `designer catalog list`")
+    safety_factor: SafetyFactor | None = None
+
+
+def _cable_tag(given: object) -> str:
+    names_grade = isinstance(given, dict | GradeCableSection) and "grade" in dict(given)
+    return "grade of a cable" if names_grade else "figures of a cable"
+
+
+ConfiguredCable = Annotated[
+    Annotated[CableSection, Tag("figures of a cable")]
+    | Annotated[GradeCableSection, Tag("grade of a cable")],
+    Discriminator(_cable_tag),
+]
+
+
+class PoseSection(Section):
+    """One pose of the platform."""
+
+    position: Point = Field(description="three lengths [x, y, z]")
+    rotation_vector: Rotation = (0.0, 0.0, 0.0)
+    quaternion: Quaternion | None = None
+    euler: EulerSection | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_list(cls, given: object) -> object:
+        if in_brackets(given):
+            raise refusal(f"{describe(given)} is not a list", "[x, y, z]" + in_brackets(given))
+        return {"position": given} if isinstance(given, list) else only_one_form(given)
+
+
+class PrismSection(Section):
+    """An upright prism over the anchors or over corners of one's own."""
+
+    prism: PrismBase = Field(description=_CORNERS)
+    inset: Distance = 0.0
+    z: Interval = Field(description="[lower, upper]")
+
+
+class BoxSection(Section):
+    """An axis-parallel box."""
+
+    box: Box = Field(description="[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+
+
+class PointsSection(Section):
+    """A list of positions."""
+
+    points: Positions = Field(description="a list of positions [x, y, z]")
+
+
+class RectangleSection(Section):
+    """An upright rectangle over the line between two corners, or over anchors on a line."""
+
+    rectangle: RectangleBase = Field(description=_ENDS)
+    inset: Distance = 0.0
+    z: Interval = Field(description="[lower, upper]")
+
+
+REGION_KINDS: dict[str, type[Section]] = {
+    "prism": PrismSection,
+    "box": BoxSection,
+    "points": PointsSection,
+    "rectangle": RectangleSection,
+}
+_KINDS = "prism, box, points and rectangle"
+
+
+def _kinds_named(region: dict[str, object]) -> list[str]:
+    """Return the kinds of region that the fields stand for, misspelt ones if there is no other."""
+    names = [name for name, value in region.items() if value is not None]
+    nearest = [kind for name in names for kind in get_close_matches(name, REGION_KINDS, n=1)]
+    return [kind for kind in REGION_KINDS if kind in names] or nearest
+
+
+def _of_one_kind(given: object) -> object:
+    if not isinstance(given, dict):
+        raise refusal(f"{describe(given)} is not a mapping", f"one of {_KINDS} in it")
+    kinds = _kinds_named(given)
+    if len(kinds) != 1:
+        found = " and ".join(kinds) or "none of the kinds"
+        raise refusal(f"the region has {found}", f"exactly one of {_KINDS}")
+    return given
+
+
+def _region_tag(given: dict[str, object]) -> str:
+    return f"{_kinds_named(given)[0]} region"
+
+
+Region = Annotated[
+    Annotated[PrismSection, Tag("prism region")]
+    | Annotated[BoxSection, Tag("box region")]
+    | Annotated[PointsSection, Tag("points region")]
+    | Annotated[RectangleSection, Tag("rectangle region")],
+    Discriminator(_region_tag),
+    BeforeValidator(_of_one_kind),
+]
+
+
+class WorkspaceSection(Section):
+    """Which poses the cable must serve."""
+
+    region: Region = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
+    samples: Annotated[int, WholeNumber(1, MOST_SAMPLES)] = 20_000
+    sampling: Sampling = "low_discrepancy"
+    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
+    hangs_below: HangsBelow = "include"
+    clearance: Clearance | None = None
+    floor: Length | None = None
+    orientation: OrientationSection | None = None
+    orientations: TurnList | None = None
+    orientation_range: OrientationRangeSection | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_kind_of_orientation(cls, given: object) -> object:
+        return only_one_of(given, ORIENTATION_KINDS, "the workspace")
+
+
+class SelectionSection(Section):
+    """How a product is chosen."""
+
+    grades: GradeIds = "all"
+    safety_factor: SafetyFactor = 5.0
+    objectives: Objectives = ("mass", "drum_diameter", "max_tension")
+    termination_efficiency: Efficiency = 1.0
+    sheave_diameter: SheaveDiameter | None = None
+    groups: Groups | None = None
+    max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
+
+
+class MeasuredCableSection(Section):
+    """The cable that is on the machine."""
+
+    linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
+    axial_stiffness: AxialStiffness = Field(description="a force such as '3.3 MN'")
+    diameter: RopeDiameter | None = None
+    minimum_breaking_load: BreakingLoad | None = None
+
+
+class NoiseSection(Section):
+    """Standard deviations of the measured values."""
+
+    length: LengthNoise | None = None
+    tension: TensionNoise | None = None
+    estimated: Readings = ()
+
+
+class MeasurementsSection(Section):
+    """Data measured on the built machine."""
+
+    file: Text = Field(description="the name of a CSV file")
+    columns: Columns = Field(default_factory=dict)
+    settled: StrictBool = True
+    unknown: Names = ()  # checked by designer.io.config.measured_checks
+    cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
+    noise: NoiseSection = NoiseSection()
+    search_time: SearchTime = 600.0
+
+
+class SurroundingsSection(Section):
+    """What the laws of effects are given in a design."""
+
+    temperature: Temperature = 20.0
+
+
+class StudySection(Section):
+    """The whole file."""
+
+    name: Text | None = None
+    robot: RobotSection = Field(description="a mapping with anchors and platform")
+    cable: ConfiguredCable = Field(
+        description="{density: …, youngs_modulus: …, allowable_stress: …} or {grade: ID}"
+    )
+    pose: PoseSection | None = None
+    workspace: WorkspaceSection | None = None
+    selection: SelectionSection | None = None
+    catalogues: Names = ()
+    measurements: MeasurementsSection | None = None
+    effects: FreeMapping = Field(default_factory=dict)  # checked by designer.io.config.effects
+    surroundings: SurroundingsSection = SurroundingsSection()
+    format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1

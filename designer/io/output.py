@@ -1,0 +1,191 @@
+"""Writing results: whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import shutil
+from collections.abc import Container, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from designer.errors import OutputError
+from designer.io.process import Undo, undone_at_end
+
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
+
+_HIDDEN = ".designer-"
+_NEW, _OLD, _LOCK = "new", "old", "lock"
+"""In the hidden folder: what is being made, what it replaces, and what tells that a run lives."""
+
+_FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", None))  # Windows knows no quota by this name
+
+
+@contextmanager
+def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
+    """Hand out a temporary folder; on success its files appear in ``folder``, else nothing does.
+
+    Parameters
+    ----------
+    folder : Path
+        May exist; files of other names stay in it.
+    outdated : iterable of str
+        Names of files that an earlier run may have left there: gone where this one has none.
+
+    Raises
+    ------
+    OutputError
+        If ``folder`` is a file, cannot be written, or has a folder where a file is to go.
+    """
+    with undone_at_end() as undo:
+        with _explained(folder):
+            building = _begin(folder, undo)
+        with _explained(folder, only=_FULL):
+            yield building
+        with _explained(folder), undone_at_end() as back:
+            aside = _move(building, folder, outdated, back)
+            back.forget()
+            # In one step: from here on a run that is killed has nothing to give back.
+            aside.replace(aside.with_name("outdated"))
+
+
+@contextmanager
+def _explained(folder: Path, only: Container[int | None] | None = None) -> Iterator[None]:
+    """Turn the system's refusal to write, or only some kinds of it, into a line for the user."""
+    try:
+        yield
+    except OSError as error:
+        if only is not None and error.errno not in only:
+            raise
+        raise OutputError(_not_writable(folder, error)) from error
+
+
+def _begin(folder: Path, undo: Undo) -> Path:
+    """Return a new folder to build in; what is made for it goes again at the end."""
+    from filelock import FileLock
+
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder}: is a file (expected a folder to write into)")
+    for missing in reversed([one for one in (folder, *folder.parents) if not one.exists()]):
+        undo.add(partial(_remove_empty, missing))
+    folder.mkdir(parents=True, exist_ok=True)
+    clear_left_overs(folder)
+    # Inside it, so that a folder which cannot be written shows before the work and not after, and
+    # the final move stays on one file system.
+    hidden = folder / f"{_HIDDEN}{secrets.token_hex(4)}"
+    lock = FileLock(hidden / _LOCK)
+    undo.add(partial(_remove_hidden, hidden, lock))
+    hidden.mkdir(mode=0o700)
+    with suppress(NotImplementedError):  # a file system without locks
+        lock.acquire()
+    building = hidden / _NEW
+    building.mkdir()
+    return building
+
+
+def _remove_hidden(hidden: Path, lock: BaseFileLock) -> None:
+    lock.release()  # Windows removes no file that is open
+    shutil.rmtree(hidden, ignore_errors=True)
+
+
+def clear_left_overs(folder: Path) -> None:
+    """Remove what runs left in a folder that were killed; what they had put aside comes back.
+
+    A run that lives holds the lock in its hidden folder, which ends with the process.
+    """
+    from filelock import FileLock, Timeout
+
+    for lock_file in folder.glob(f"{_HIDDEN}*/{_LOCK}"):
+        hidden, lock = lock_file.parent, FileLock(lock_file)
+        with suppress(Timeout, NotImplementedError, OSError), lock.acquire(timeout=0):
+            for file in (hidden / _OLD).glob("*"):
+                file.replace(folder / file.name)
+            shutil.rmtree(hidden, ignore_errors=True)
+            if os.name == "nt":
+                _remove_hidden(hidden, lock)
+
+
+def _move(building: Path, folder: Path, outdated: Iterable[str], back: Undo) -> Path:
+    """Put all new files in place, or none; old ones wait in the folder that is returned."""
+    new = list(building.iterdir())
+    in_the_way = [file.name for file in new if file.is_file() and (folder / file.name).is_dir()]
+    if in_the_way:
+        place = folder / in_the_way[0]
+        raise OutputError(f"{place}: is a folder (expected a file, or nothing)")
+    aside = building.with_name(_OLD)
+    aside.mkdir()
+    for name in {*(file.name for file in new), *outdated}:
+        if (folder / name).is_file():
+            _move_one(folder / name, aside / name, back)
+    for file in new:
+        _move_one(file, folder / file.name, back)
+    return aside
+
+
+def _move_one(source: Path, target: Path, back: Undo) -> None:
+    back.add(partial(_put_back, target, source))
+    source.replace(target)
+
+
+def _put_back(source: Path, target: Path) -> None:
+    with suppress(OSError):  # was not moved yet
+        source.replace(target)
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):  # somebody has put something in
+        folder.rmdir()
+
+
+def _not_writable(path: Path, error: OSError) -> str:
+    file = next((one for one in path.parents if _is_file(one)), None)
+    reason = f"{file} is a file" if file else error.strerror
+    if isinstance(error, FileExistsError) and path.is_symlink():
+        reason = "it is a link that leads nowhere"
+    return f"{path}: cannot be written ({reason})"
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # such as a name longer than the file system takes
+        return False
+
+
+def file_names(folder: Path) -> list[str]:
+    """Return the names of the files in a folder, sorted."""
+    return sorted(file.name for file in folder.iterdir() if file.is_file())
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file under another name in its folder, then rename it."""
+    unfinished = path.with_name(f".{path.name}.part")
+    try:
+        unfinished.write_bytes(content)
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def write_new_file(path: Path, text: str) -> None:
+    """Write a file that must not exist yet.
+
+    Raises
+    ------
+    OutputError
+        If it exists, or cannot be written.
+    """
+    try:
+        with ExitStack() as undo, path.open("x", encoding="utf-8") as file:
+            undo.callback(path.unlink)
+            file.write(text)
+            file.flush()
+            undo.pop_all()
+    except FileExistsError as error:
+        raise OutputError(f"{path}: exists already (expected a new file)") from error
+    except OSError as error:
+        raise OutputError(_not_writable(path, error)) from error

@@ -1,0 +1,93 @@
+"""Measured poses, lengths and tensions, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.model.robot import Poses
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """Rows of measured data, in the order in which the poses were visited.
+
+    Parameters
+    ----------
+    poses : Poses
+        Measured poses (n_rows,).
+    length_m : array (n_rows, n_cables)
+        Unstrained lengths by the winches' own scales [m]; NaN where missing.
+    tension_N : array (n_rows, n_cables)
+        Tensions at the winches [N]; NaN where missing.
+    settled : bool
+        Whether each row is a pose at rest; False for samples of a slow motion.
+    time_s, temperature_C : array (n_rows,) or None
+        Time [s] and temperature [°C], where there is such a column.
+    wind_m_per_s : array (n_rows, 3) or None
+        Wind velocity, base frame [m/s].
+    covariates : mapping of str to array (n_rows,)
+        Every other numeric column, by its own name.
+    row_numbers : array (n_rows,)
+        Number of each row in the file, the first row below the head being 1.
+    notes : tuple of str
+        What the reader of a report should know: columns that were left out, and why.
+    sha256 : str
+        Digest of the file's bytes; empty where there is no file.
+    """
+
+    poses: Poses
+    length_m: FloatArray
+    tension_N: FloatArray
+    settled: bool
+    time_s: FloatArray | None = None
+    temperature_C: FloatArray | None = None
+    wind_m_per_s: FloatArray | None = None
+    covariates: Mapping[str, FloatArray] = field(default_factory=dict)
+    row_numbers: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    notes: tuple[str, ...] = ()
+    sha256: str = ""
+
+    @property
+    def n_rows(self) -> int:
+        """Number of rows."""
+        return len(self.length_m)
+
+    @property
+    def columns(self) -> frozenset[str]:
+        """Kinds of surroundings that were recorded: ``time``, ``temperature``, ``wind``."""
+        found = {"time": self.time_s, "temperature": self.temperature_C, "wind": self.wind_m_per_s}
+        return frozenset(name for name, values in found.items() if values is not None)
+
+    def without_readings(self, rows: BoolArray) -> Measured:
+        """Return the same rows, with no reading in some of them (n_rows,)."""
+        hidden = rows[:, None]
+        return replace(
+            self,
+            length_m=np.where(hidden, np.nan, self.length_m),
+            tension_N=np.where(hidden, np.nan, self.tension_N),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard deviation of one reading.
+
+    Parameters
+    ----------
+    length_m, tension_N : float
+        Of a length [m] and of a tension [N].
+    source : str
+        ``declared``, or how it was estimated.
+    """
+
+    length_m: float
+    tension_N: float
+    source: str
+
+
+EVEN = Noise(1.0, 1.0, "none")
+"""A metre and a newton alike: before anything is known of the noise."""

@@ -1,0 +1,289 @@
+"""Frozen values of a robot, its platform and its poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import (
+    FloatArray,
+    IntArray,
+    finite_array,
+    frozen_array,
+    require_number,
+)
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+
+_NO_ROTATION = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Platform:
+    """What the cables carry.
+
+    Parameters
+    ----------
+    mass_kg : float
+        Mass [kg].
+    attachments_m : array (n_cables, 3) or None
+        Attachment points in the body frame [m]; None for a point mass with 3 degrees of freedom.
+    centre_of_mass_m : array (3,)
+        Centre of mass in the body frame [m].
+    hull_m : array (n_corners, 3) or None
+        Corners of the body's convex hull in the body frame [m]; None for that of the attachments.
+    wrench_N : array (6,)
+        Constant force on the body at the origin of its frame and moment about it, beside gravity,
+        along the axes of the world frame [N, N·m].
+    """
+
+    mass_kg: float
+    attachments_m: FloatArray | None = None
+    centre_of_mass_m: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
+    hull_m: FloatArray | None = None
+    wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
+
+    def __post_init__(self) -> None:
+        require_number("mass_kg", self.mass_kg, least=0.0)
+        shapes: dict[str, tuple[int | None, ...]] = {
+            "attachments_m": (None, 3),
+            "centre_of_mass_m": (3,),
+            "hull_m": (None, 3),
+            "wrench_N": (6,),
+        }
+        for name, shape in shapes.items():
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Robot:
+    """A cable-driven parallel robot.
+
+    Parameters
+    ----------
+    exit_points_m : array (n_cables, 3)
+        Points where the cables leave the base, world frame [m].
+    platform : Platform
+        The load.
+    pulley_radius_m : float
+        Radius of the swivelling pulleys at the exit points [m]; see `designer.physics.pulley`.
+        A fit takes its slope at zero from both sides, so it may be negative.
+    tilt_rad : array (2,)
+        The base is turned by the rotation vector (rx, ry, 0) against the vertical, x and y of the
+        upright frame [rad].
+    tension_min_N : float
+        Least tension anywhere in any cable, where there are more cables than degrees of freedom:
+        at its lower end, or at its lowest point where that hangs below both ends [N].
+    gravity_direction : array (3,)
+        Where things fall, world frame; its length does not count.
+    is_planar : bool
+        Whether everything lies in one vertical plane, in which the platform moves and turns.
+    """
+
+    exit_points_m: FloatArray
+    platform: Platform
+    pulley_radius_m: float = 0.0
+    tilt_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(2)))
+    tension_min_N: float = 0.0
+    gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
+    is_planar: bool = False
+
+    def __post_init__(self) -> None:
+        shapes: dict[str, tuple[int | None, ...]] = {
+            "exit_points_m": (None, 3),
+            "tilt_rad": (2,),
+            "gravity_direction": (3,),
+        }
+        for name, shape in shapes.items():
+            object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
+        require_number("pulley_radius_m", self.pulley_radius_m)
+        require_number("tension_min_N", self.tension_min_N, least=0.0)
+        if not self.gravity_direction.any():
+            raise ValueError("gravity_direction must not be zero")
+        if self.attachments_m.shape[0] != self.n_cables:
+            raise ValueError(
+                f"every cable needs an exit point and an attachment: there are {self.n_cables} "
+                f"exit points and {self.attachments_m.shape[0]} attachments"
+            )
+
+    @property
+    def n_cables(self) -> int:
+        """Number of cables."""
+        return len(self.exit_points_m)
+
+    @property
+    def is_point_mass(self) -> bool:
+        """Whether all cables meet in one point and the platform cannot turn."""
+        return self.platform.attachments_m is None
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """3 for a point mass, 6 otherwise; in a plane 2 and 3."""
+        return len(self.balance_rows)
+
+    @property
+    def balance_rows(self) -> IntArray:
+        """Which of force x, y, z and moment x, y, z the cables balance, in the upright frame."""
+        if self.is_planar:
+            return np.array([0, 2] if self.is_point_mass else [0, 2, 4])
+        return np.arange(3 if self.is_point_mass else 6)
+
+    @property
+    def is_square(self) -> bool:
+        """Whether there are as many cables as degrees of freedom."""
+        return self.n_cables == self.degrees_of_freedom
+
+    @property
+    def has_enough_cables(self) -> bool:
+        """Whether there are at least as many cables as degrees of freedom."""
+        return self.n_cables >= self.degrees_of_freedom
+
+    @property
+    def is_redundant(self) -> bool:
+        """Whether there are more cables than degrees of freedom, so that tensions can be chosen."""
+        return self.n_cables > self.degrees_of_freedom
+
+    @property
+    def has_one_branch(self) -> bool:
+        """Whether a pose has one equilibrium only: a point mass on as few cables as hold it.
+
+        All pulls are then one number times the barycentric weights of the position, and the lift
+        grows with that number.
+        """
+        return self.is_point_mass and self.is_square and self.pulley_radius_m == 0.0
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the base frame surely is the upright frame, so that nothing has to be turned."""
+        down = self.gravity_direction
+        falls_down = not down[:2].any() and down[2] < 0.0
+        return falls_down and not self.is_planar and not self.tilt_rad.any()
+
+    @property
+    def upright(self) -> FloatArray:
+        """Rotation (3, 3) from the base frame to the upright frame.
+
+        Its z axis is the true vertical; a planar robot lies in its x-z plane.
+        """
+        if self.is_upright:
+            return np.eye(3)
+        vertical = vertical_frame(self.gravity_direction)
+        if self.is_planar:
+            vertical = _heading_frame(self.exit_points_m @ vertical.T) @ vertical
+        tilt = Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix()
+        return np.asarray(tilt @ vertical)
+
+    @property
+    def attachments_m(self) -> FloatArray:
+        """Attachment points in the body frame, zeros for a point mass (n_cables, 3) [m]."""
+        if self.platform.attachments_m is None:
+            return frozen_array(np.zeros((self.n_cables, 3)))
+        return self.platform.attachments_m
+
+    @property
+    def weight_N(self) -> float:
+        """Weight of the platform [N]."""
+        return self.platform.mass_kg * STANDARD_GRAVITY_M_PER_S2
+
+    @property
+    def pull_N(self) -> FloatArray:
+        """What the cables have to pull with, force and moment (6,), upright frame [N, N·m].
+
+        Against weight and wrench, about the origin of the body frame; without the moment of the
+        weight, which turns with the platform.
+        """
+        applied = self.platform.wrench_N.reshape(2, 3) @ self.upright.T
+        pull = -applied.ravel()
+        pull[2] += self.weight_N
+        return np.asarray(pull)
+
+    def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
+        """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""
+        pull = self.pull_N[None]
+        return pull if force_N is None else pull - np.pad(force_N, ((0, 0), (0, 3)))
+
+
+def vertical_frame(gravity_direction: FloatArray) -> FloatArray:
+    """Return the rotation (3, 3) to a frame whose z axis is the vertical, by the shortest way."""
+    up = -np.asarray(gravity_direction) / np.linalg.norm(gravity_direction)
+    axis = np.cross(up, [0.0, 0.0, 1.0])
+    sine, cosine = float(np.linalg.norm(axis)), float(up[2])
+    if sine == 0.0:
+        return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
+    return np.asarray(Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix())
+
+
+def _heading_frame(points_m: FloatArray) -> FloatArray:
+    """Return the rotation about z that turns the line of the points, seen from above, into x."""
+    plan = points_m[:, :2] - points_m[:, :2].mean(axis=0)
+    x, y = np.linalg.svd(plan)[2][0]
+    if (x, y) < (0.0, 0.0):
+        x, y = -x, -y
+    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Poses:
+    """A batch of platform poses, over any leading axes.
+
+    Parameters
+    ----------
+    position_m : array (..., 3)
+        Origin of the body frame in the world frame [m].
+    rotation : array (..., 3, 3)
+        Rotation from the body frame to the world frame; may be one matrix (3, 3) for all. NaN,
+        as in positions, where a pose was not found.
+    """
+
+    position_m: FloatArray
+    rotation: FloatArray
+
+    def __post_init__(self) -> None:
+        position, rotation = self.position_m, self.rotation
+        if position.ndim < 1 or position.shape[-1] != 3:
+            raise ValueError(f"position_m must have the shape (…, 3), not {position.shape}")
+        if rotation.shape[-2:] != (3, 3):
+            raise ValueError(f"rotation must have the shape (…, 3, 3), not {rotation.shape}")
+        have, want = rotation.shape[:-2], position.shape[:-1]
+        pairs = zip(reversed(have), reversed(want), strict=False)
+        if len(have) > len(want) or not all(h in (1, w) for h, w in pairs):
+            raise ValueError(f"rotations for {have} poses do not fit positions for {want}")
+        # The squares of its entries add up to three; cheap enough for every batch.
+        size = np.einsum("...ij,...ij->...", rotation, rotation)
+        if np.any(np.abs(size - 3.0) > _NO_ROTATION):
+            raise ValueError("rotation must consist of rotation matrices")
+
+    @classmethod
+    def at(cls, position_m: ArrayLike, rotation_vector_rad: ArrayLike | None = None) -> Poses:
+        """Return poses from positions (..., 3) [m] and rotation vectors (..., 3) [rad].
+
+        Both may stand in one array (..., 6).
+        """
+        position = frozen_array(position_m)
+        if position.shape[-1] == 6:
+            return cls.at(position[..., :3], position[..., 3:])
+        if rotation_vector_rad is None:
+            return cls(position, frozen_array(np.eye(3)))
+        vectors = np.array(rotation_vector_rad, dtype=np.float64)  # SciPy refuses read-only ones
+        matrices = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+        return cls(position, frozen_array(matrices.reshape(*vectors.shape[:-1], 3, 3)))
+
+    @property
+    def place(self) -> FloatArray:
+        """Position and rotation vector in one array (..., 6) [m, rad]; see `at`."""
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3)).as_rotvec()
+        turn = np.broadcast_to(turn.reshape(*self.rotation.shape[:-2], 3), self.position_m.shape)
+        return np.concatenate([self.position_m, turn], axis=-1)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading axes of the batch."""
+        return self.position_m.shape[:-1]
+
+    def attachment_points_m(self, robot: Robot) -> FloatArray:
+        """Return the attachment points in the world frame (..., n_cables, 3) [m]."""
+        levers = np.einsum("...ij,nj->...ni", self.rotation, robot.attachments_m)
+        return np.asarray(self.position_m[..., None, :] + levers, dtype=np.float64)

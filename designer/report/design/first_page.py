@@ -1,0 +1,341 @@
+"""The first page: the answer, what it rests on, and what to do where it is no."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings
+from designer.arrays import FloatArray
+from designer.report import format as fmt
+from designer.report.design.confidence import confidence
+from designer.report.design.groups import groups_hold, groups_statement
+from designer.report.design.negative import actions, objections, reasons
+from designer.report.design.sag_cost import SagCost, sag_cost
+from designer.report.design.selection import product_name
+from designer.report.material_class import class_of
+from designer.report.parts import Fact, Picture, Statement
+from designer.selection.groups.result import Assigned, GroupChoice
+from designer.selection.objectives import MEANINGS
+from designer.selection.result import Candidate, SelectionResult
+from designer.sizing.newton import size_poses
+from designer.study import CableGroup
+
+_MOST_SIZES = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """The answer at a glance.
+
+    Parameters
+    ----------
+    heading : str
+        What the card is about, such as ``Chosen rope``.
+    size : str
+        The size, set large.
+    metric : str
+        The diameter in millimetres where the size is not; may be empty.
+    product : str
+        Name and maker, or what the size refers to.
+    facts : tuple of Fact
+        The figures that a reviewer looks for first.
+    """
+
+    heading: str
+    size: str
+    metric: str
+    product: str
+    facts: tuple[Fact, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FirstPage:
+    """The first page.
+
+    Parameters
+    ----------
+    verdict : Statement
+        The answer in one or two sentences.
+    card : Card or None
+        The chosen rope, or the diameter that is needed; None where there is neither.
+    reasons : tuple of Statement
+        Why the answer is no, and where; empty if it is yes.
+    actions : tuple of str
+        What could be done about it.
+    sag : SagCost or None
+        What ignoring sag would have cost; None where there is nothing to compare.
+    groups : Statement or None
+        What ropes for groups of cables save; None if the study has no groups.
+    confidence : tuple of Statement
+        How sure the answer is.
+    picture : Picture or None
+        The robot.
+    """
+
+    verdict: Statement
+    card: Card | None
+    reasons: tuple[Statement, ...]
+    actions: tuple[str, ...]
+    sag: SagCost | None
+    groups: Statement | None
+    confidence: tuple[Statement, ...]
+    picture: Picture | None
+
+
+def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) -> FirstPage:
+    """Return the first page."""
+    return FirstPage(
+        verdict=_verdict(analysis, findings),
+        card=_card(analysis),
+        reasons=reasons(analysis, findings),
+        actions=actions(analysis, findings),
+        sag=sag_cost(analysis, findings),
+        groups=groups_statement(analysis.groups) if analysis.groups else None,
+        confidence=confidence(analysis, findings),
+        picture=picture,
+    )
+
+
+def _verdict(analysis: Analysis, findings: Findings) -> Statement:
+    chosen = analysis.selection.chosen if analysis.selection else None
+    found = analysis.groups if analysis.has_groups else None
+    against = [*_open_points(analysis), *objections(analysis)]
+    if analysis.has_cable:
+        text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
+    elif found is not None:
+        text = groups_hold(found)
+    elif chosen is not None and analysis.has_products:
+        text = _holds(chosen)
+    else:
+        return Statement("No", _negative(analysis), "bad")
+    text += "" if found is not None else _of_metal(analysis.selection, chosen)
+    if against:
+        return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
+    return Statement("Yes", text, "good")
+
+
+def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
+    """Name the best rope of steel beside a chosen one of fibre."""
+    if selection is None or chosen is None or class_of(chosen.grade) != "fibre":
+        return ""
+    solved = [o for o in selection.outcomes if class_of(o.grade) in ("steel", "stainless steel")]
+    if not solved:
+        return ""
+    text = f" It is a rope of {chosen.grade.material} fibre."
+    holding = [o.best for o in solved if o.best is not None]
+    if not holding:
+        return f"{text} No rope of steel that the study allows holds."
+    first = selection.objectives[0]
+    best = min(holding, key=lambda candidate: candidate.figures.burden(first))
+    kind = "stainless steel" if class_of(best.grade) == "stainless steel" else "steel"
+    most = "largest" if MEANINGS[first].more_is_better else "least"
+    return (
+        f"{text} The rope of {kind} that holds with the {most} {MEANINGS[first].word} is "
+        f"{best.size.id} of {best.grade.id}: {fmt.kilograms(best.total_mass_kg)} in all instead of "
+        f"{fmt.kilograms(chosen.total_mass_kg)}."
+    )
+
+
+def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
+    workspace, pose = analysis.workspace, analysis.pose
+    if analysis.groups is not None:
+        return groups_hold(analysis.groups)
+    if chosen is not None:
+        return f"{_holds(chosen)} {_load(chosen)}"
+    if workspace is not None and workspace.sagging is not None:
+        worst = workspace.sagging
+        return (
+            f"A cable of {fmt.millimetres(worst.diameter_m)} of the configured family holds every "
+            f"pose of the workspace. Its largest tension is {fmt.newtons(worst.max_tension_N)}."
+        )
+    assert pose is not None
+    return (
+        f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} of the configured family "
+        "holds the configured pose. Its largest tension is "
+        f"{fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
+    )
+
+
+def _exception(analysis: Analysis, findings: Findings) -> str:
+    """Say on the first line how much of the volume does not count."""
+    workspace = analysis.study.workspace
+    if workspace is None or workspace.hangs_below == "include" or not findings.hanging:
+        return ""
+    return f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
+
+
+def _holds(chosen: Candidate) -> str:
+    name = f"{chosen.grade.product} ({chosen.grade.id})"
+    return f"The {chosen.size.id} size of {name} holds every pose of the workspace."
+
+
+def _load(chosen: Candidate) -> str:
+    found = chosen.verification
+    text = (
+        f"Its largest tension is {fmt.newtons(found.max_tension_N)}, "
+        f"{fmt.utilisation(found.utilisation)} of what the safety factor allows."
+    )
+    return f"{text} There is hardly any reserve beyond it." if found.utilisation > 0.97 else text
+
+
+def _open_points(analysis: Analysis) -> Iterator[str]:
+    pose, workspace = analysis.pose, analysis.workspace
+    if pose is not None and not pose.sizing.statics.is_solved:
+        yield "no cable of the configured family can hold the configured pose"
+    elif workspace is not None and not workspace.is_feasible:
+        yield "no cable of the configured family can serve the whole workspace"
+
+
+def _negative(analysis: Analysis) -> str:
+    workspace, selection = analysis.workspace, analysis.selection
+    if workspace is not None and not workspace.is_feasible:
+        if selection is not None:
+            return (
+                "The workspace cannot be served as it is: neither a cable of the configured "
+                "family nor a rope of the allowed grades holds every pose."
+            )
+        return "The workspace cannot be served: no cable of the configured family is enough."
+    if analysis.groups is not None:
+        return "No ropes that the study allows were found that hold every pose of the workspace."
+    if selection is not None:
+        need = ""
+        if workspace is not None and workspace.sagging is not None:
+            worst = workspace.sagging
+            diameter = fmt.millimetres(worst.diameter_m)
+            need = f" A cable of the configured family would need {diameter}."
+        return f"None of the ropes that the study allows holds every pose of the workspace.{need}"
+    return "The configured pose cannot be held by any cable of the configured family."
+
+
+def _card(analysis: Analysis) -> Card | None:
+    chosen = analysis.selection.chosen if analysis.selection else None
+    if analysis.groups is not None and analysis.groups.chosen is not None:
+        return _groups_card(analysis, analysis.groups, analysis.groups.chosen)
+    if chosen is not None:
+        return _rope_card(analysis, chosen)
+    workspace, pose = analysis.workspace, analysis.pose
+    if workspace is not None:
+        worst = workspace.sagging
+        return (
+            None
+            if worst is None
+            else Card(
+                diameter_heading(analysis, "workspace"),
+                fmt.millimetres(worst.diameter_m),
+                "",
+                "of the configured cable family",
+                (
+                    Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
+                    Fact("At the position", fmt.position(worst.place)),
+                ),
+            )
+        )
+    if pose is None or not pose.sizing.statics.is_solved:
+        return None
+    statics = pose.sizing.statics
+    return Card(
+        diameter_heading(analysis, "pose"),
+        fmt.millimetres(float(pose.sizing.diameter_m)),
+        "",
+        "of the configured cable family",
+        (
+            Fact("Largest tension", fmt.newtons(float(statics.largest_tension_N))),
+            Fact("At the position", fmt.position(statics.poses.position_m)),
+        ),
+    )
+
+
+def diameter_heading(analysis: Analysis, what: str) -> str:
+    """Return ``Diameter that the pose needs`` only where no thinner cable is proved to hold it."""
+    workspace, pose, study = analysis.workspace, analysis.pose, analysis.study
+    sizing = pose.sizing if pose is not None else None
+    if what == "workspace" and workspace is not None and workspace.sagging is not None:
+        sizing = size_poses(analysis.built.robot, workspace.sagging.pose, study.material)
+    if sizing is not None and sizing.is_thinnest:
+        return f"Diameter that the {what} needs"
+    return f"Thinnest diameter found for the {what}"
+
+
+def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
+    assert analysis.study.selection is not None
+    size, found = chosen.size, chosen.verification
+    required = fmt.trimmed(analysis.study.selection.safety_factor)
+    actual = chosen.efficiency * size.minimum_breaking_load_N / found.max_tension_N
+    breaking, allowable, largest = fmt.newtons_alike(
+        size.minimum_breaking_load_N, chosen.cable.allowable_tension_N, found.max_tension_N
+    )
+    return Card(
+        heading="Chosen rope",
+        size=size.id,
+        metric="" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m),
+        product=product_name(chosen.grade),
+        facts=(
+            Fact("Grade", chosen.grade.id),
+            Fact("Minimum breaking load", breaking),
+            Fact("Allowable tension", allowable, _from_breaking(chosen.efficiency, required)),
+            Fact("Largest tension", largest),
+            Fact("At the position", fmt.position(found.worst_position_m)),
+            Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
+            Fact("Utilisation", fmt.utilisation(found.utilisation)),
+            Fact("Mass", *_mass(chosen)),
+            Fact(
+                "Longest, each cable", _lengths(found.longest_m, math.ceil), "unstrained, no spare"
+            ),
+            Fact("Shortest", _lengths(found.shortest_m, math.floor), "unstrained"),
+            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+        ),
+    )
+
+
+def _mass(chosen: Candidate) -> tuple[str, str]:
+    """Return the mass per length on this machine, and that of the table where it differs."""
+    built, table = chosen.cable.linear_density_kg_per_m, chosen.size.linear_density_kg_per_m
+    is_same = math.isclose(built, table, rel_tol=1e-9)
+    note = "" if is_same else f"with the declared effects; {fmt.kilograms_per_metre(table)} bare"
+    return fmt.kilograms_per_metre(built), note
+
+
+def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:
+    """Return lengths in decimetres, rounded to the side on which a rope is long enough."""
+    each = [fmt.fixed(rounded(10.0 * float(x)) / 10.0, 1) for x in length_m]
+    return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
+
+
+def _groups_card(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Card:
+    assert analysis.study.selection is not None
+    required = fmt.trimmed(analysis.study.selection.safety_factor)
+    sizes = [*dict.fromkeys(product.size.id for product in chosen.products)]
+    distinct = fmt.plural(len({*chosen.products}), "product")
+    groups = zip(choice.groups, chosen.products, chosen.verification.utilisation, strict=True)
+    return Card(
+        heading="Ropes for groups of cables",
+        size=fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
+        metric="",
+        product=f"{distinct} for {fmt.plural(len(choice.groups), 'group')}",
+        facts=(
+            *(
+                Fact(group.name, product.label, _of_group(group, chosen, float(used)))
+                for group, product, used in groups
+            ),
+            Fact("Safety factor required", required, "on the breaking load"),
+            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+        ),
+    )
+
+
+def _of_group(group: CableGroup, chosen: Assigned, used: float) -> str:
+    """Return which cables a group has, how much of what is allowed it uses, and its lengths."""
+    noun = "cable" if len(group.cables) == 1 else "cables"
+    longest = chosen.verification.longest_m[[cable - 1 for cable in group.cables]]
+    cables = fmt.listing(str(cable) for cable in group.cables)
+    at_most = _lengths(longest, math.ceil)
+    return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"
+
+
+def _from_breaking(efficiency: float, required: str) -> str:
+    """Return how the allowable tension follows from the breaking load."""
+    share = ", no loss," if efficiency == 1.0 else f" times {fmt.trimmed(efficiency, 3)}"
+    return f"breaking load{share} over {required}"

@@ -1,0 +1,222 @@
+"""Products for groups of cables: what each gets, what it saves, what is proved, what was tried."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.analysis.analyse import Analysis
+from designer.arrays import FloatArray
+from designer.report import format as fmt
+from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.selection.groups.result import Assigned, GroupChoice, Proposal
+
+_MOST_ROWS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class GroupsSection:
+    """Products for groups of cables.
+
+    Parameters
+    ----------
+    verdict : Statement
+        What was found.
+    facts : tuple of Fact
+        Mass, saving and proof.
+    chosen : Table or None
+        What each group gets; None if nothing was found.
+    plan : Picture or None
+        The robot from above with the cables of each group.
+    how : str
+        How the choice was made.
+    proposals : Table or None
+        What was tried; None where there was nothing to try.
+    """
+
+    verdict: Statement
+    facts: tuple[Fact, ...]
+    chosen: Table | None
+    plan: Picture | None
+    how: str
+    proposals: Table | None
+
+
+def groups_section(analysis: Analysis, plan: Picture | None) -> GroupsSection | None:
+    """Return the section on groups; None if the study has none."""
+    choice = analysis.groups
+    if choice is None:
+        return None
+    return GroupsSection(
+        verdict=groups_statement(choice),
+        facts=_facts(choice),
+        chosen=_chosen(choice, choice.chosen) if choice.chosen else None,
+        plan=plan,
+        how=_how(choice),
+        proposals=_proposals(choice) if choice.proposals else None,
+    )
+
+
+def groups_statement(choice: GroupChoice) -> Statement:
+    """Return what was found for the groups, and what it saves."""
+    if choice.chosen is None:
+        return Statement("No products were found for the groups", choice.proof_sentence, "bad")
+    distinct = len({id(product) for product in choice.chosen.products})
+    text = f"{fmt.plural(len(choice.groups), 'group')} with {fmt.plural(distinct, 'product')}"
+    if choice.saving_kg is None or choice.single is None:
+        return Statement("Products were found for the groups", f"{text}.", "good")
+    share = choice.saving_kg / choice.single.total_mass_kg
+    if abs(share) < 1e-9:
+        text = "One product for all cables is best; different ones save nothing."
+        return Statement("The groups need no products of their own", text)
+    word = "less" if share > 0.0 else "more"
+    text += (
+        f" weigh {fmt.kilograms(abs(choice.saving_kg))} ({fmt.percent(abs(share))}) {word} than "
+        "the best single product for all cables."
+    )
+    return Statement("Products were found for the groups", text, "good")
+
+
+def groups_hold(choice: GroupChoice) -> str:
+    """Return which products hold together, and how much they are used; empty if none do."""
+    if choice.chosen is None:
+        return ""
+    found = choice.chosen
+    each = [
+        f"{product.label} for {group.name}"
+        for group, product in zip(choice.groups, found.products, strict=True)
+    ]
+    if len({*found.products}) == 1:
+        each = [f"Ropes of {found.products[0].label} for all groups"]
+    most = float(found.verification.utilisation.max())
+    tight = " There is hardly any reserve beyond it." if most > 0.97 else ""
+    return (
+        f"{fmt.listing(each)} hold every pose of the workspace together. The most used of them "
+        f"reaches {fmt.utilisation(most)} of what the safety factor allows.{tight}"
+    )
+
+
+def _facts(choice: GroupChoice) -> tuple[Fact, ...]:
+    limit = fmt.plural(choice.most_distinct, "product")
+    facts = [Fact("Different products", f"at most {limit}")]
+    if choice.chosen is not None:
+        facts.append(Fact("All cables", fmt.kilograms(choice.chosen.total_mass_kg)))
+        if choice.objective == "cost":
+            facts.append(Fact("Cost", f"{fmt.number(choice.chosen.total)} {choice.unit}"))
+    if choice.single is not None:
+        facts.append(Fact("One product for all", fmt.kilograms(choice.single.total_mass_kg)))
+    if choice.gap is not None:
+        unit = f"{fmt.number(choice.bound)} {choice.unit}"
+        facts.append(Fact("Bound", f"{unit}, gap {fmt.percent(choice.gap)}"))
+    proof = {"optimal": "best", "stopped": "not finished", "infeasible": "none holds"}
+    facts.append(Fact("Proof", proof[choice.proof], choice.proof_sentence))
+    return tuple(facts)
+
+
+_HEAD = (
+    Column("Group", is_number=False),
+    Column("Cables", is_number=False),
+    Column("Product", is_number=False),
+    Column("Diameter", "mm"),
+    Column("Mass", "kg/m"),
+    Column("Allowable", "kN"),
+    Column("Used"),
+    Column("Most at", "m", is_number=False),
+)
+
+
+def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
+    found = chosen.verification
+    decimals = fmt.decimals(one.cable.allowable_tension_N / 1e3 for one in chosen.products)
+    rows = [
+        Row(
+            (
+                group.name,
+                ", ".join(str(cable) for cable in group.cables),
+                product.label,
+                fmt.fixed(1e3 * product.size.diameter_m, 1),
+                fmt.fixed(product.cable.linear_density_kg_per_m, 3),
+                fmt.fixed(product.cable.allowable_tension_N / 1e3, decimals),
+                fmt.utilisation(float(found.utilisation[k])),
+                _place(found.worst_place[k]),
+            ),
+            note=f"Doubtful figures: {fmt.printed(product.size.doubt)}"
+            if product.size.doubt
+            else "",
+        )
+        for k, (group, product) in enumerate(zip(choice.groups, chosen.products, strict=True))
+    ]
+    caption = (
+        "What each group gets. All cables together were verified over the whole workspace, each "
+        "with its own mass, stiffness and breaking load, and each group's worst pose was searched "
+        "between the samples."
+    )
+    return Table.of(caption, _HEAD, *rows)
+
+
+def _place(place: FloatArray) -> str:
+    numbers = ", ".join(f"{value:.4g}" for value in place[:3])
+    return f"({numbers})".replace("-", "\N{MINUS SIGN}")
+
+
+def _how(choice: GroupChoice) -> str:
+    steps = (
+        f"A mixed-integer programme proposes the assignment with the least {choice.objective} that "
+        "nothing speaks against; it is then solved with all its cables. "
+    )
+    if choice.by_balance:
+        steps += (
+            "The balance of forces in the worst poses met so far is part of the programme, with a "
+            "catenary's forces held between bounds that every cable obeys. "
+        )
+    if choice.by_weight:
+        steps += (
+            "With three cables on a point mass a heavier or stiffer cable raises the tension of "
+            "every other one, so what overloads a cable excludes all heavier company with it. "
+        )
+    return (
+        f"{steps}A product is offered if no other one is at once as light, as soft and as strong: "
+        f"{fmt.count(choice.offered)} of {fmt.count(choice.catalogued)}."
+    )
+
+
+def _proposals(choice: GroupChoice) -> Table:
+    shown = choice.proposals[:_MOST_ROWS]
+    more = len(choice.proposals) - len(shown)
+    caption = "Assignments that were tried, in order, after one product for all."
+    if more:
+        caption += f" {fmt.plural(more, 'more')} are in result.json."
+    columns = (
+        Column("No."),
+        *(Column(group.name, is_number=False) for group in choice.groups),
+        Column("At least", choice.unit),
+        Column("Excluded"),
+        Column("Outcome", is_number=False),
+    )
+    rows = (_row(k, one, choice) for k, one in enumerate(shown, start=1))
+    return Table.of(caption, columns, *rows)
+
+
+def _row(number: int, one: Proposal, choice: GroupChoice) -> Row:
+    cells = (
+        str(number),
+        *(product.size.id for product in one.products),
+        fmt.number(one.bound),
+        fmt.count(one.excluded) if one.outcome != "holds" else fmt.MISSING,
+        _outcome(one, choice),
+    )
+    is_chosen = choice.chosen is not None and one.products == choice.chosen.products
+    return Row(cells, "good" if is_chosen else "muted" if one.outcome != "holds" else "")
+
+
+def _outcome(one: Proposal, choice: GroupChoice) -> str:
+    if one.outcome == "holds":
+        assert one.total is not None
+        return f"holds: {fmt.number(one.total)} {choice.unit}"
+    if one.outcome == "not_better":
+        return "no better with the lengths that it needs"
+    assert one.group is not None
+    assert one.place is not None
+    name = choice.groups[one.group].name
+    if one.utilisation is None or one.utilisation == float("inf"):
+        return f"cannot be held at {_place(one.place)}"
+    return f"{name} {fmt.utilisation(one.utilisation)} at {_place(one.place)}"

@@ -1,0 +1,198 @@
+"""Why the answer is no, where, and what could be done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings, Unserved
+from designer.model.verdict import Verdict
+from designer.report import format as fmt
+from designer.report.design.clearance import clearance_statement
+from designer.report.design.groups import groups_statement
+from designer.report.design.stiffness import stiffness_statement
+from designer.report.parts import Statement
+from designer.workspace.result import WorkspaceMap
+
+_MOST_NAMES = 4
+_STRIP = 0.5  # of the inradius: what reaches deeper is no strip along the sides
+_LAYER = 0.1  # of the height: what reaches lower is no layer at the top
+
+
+def reasons(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
+    """Return why the answer is no, one statement for each part of it; empty if it is yes."""
+    found = [*_pose_reason(analysis), *_workspace_reason(analysis, findings)]
+    return (*found, *_selection_reason(analysis), *_quality_reasons(analysis))
+
+
+def objections(analysis: Analysis) -> Iterator[str]:
+    """Yield what speaks against a rope that holds, such as ``the clearance is not kept``."""
+    for reason in _quality_reasons(analysis):
+        yield f"{reason.title[0].lower()}{reason.title[1:]}"
+
+
+def _quality_reasons(analysis: Analysis) -> Iterator[Statement]:
+    """Yield what the cables of the design make of the robot, where it is bad."""
+    found = analysis.qualities
+    if found is not None and found.interference is not None and found.interference.is_violated:
+        yield clearance_statement(found.interference)
+    if found is not None and found.stiffness is not None and found.stiffness.unstable:
+        yield stiffness_statement(found.stiffness)
+
+
+def _pose_reason(analysis: Analysis) -> Iterator[Statement]:
+    pose = analysis.pose
+    if pose is None or pose.sizing.statics.is_solved:
+        return
+    statics = pose.sizing.statics
+    where = fmt.position(statics.poses.position_m)
+    why = Verdict(int(statics.verdict)).clause
+    yield Statement("The configured pose", f"At {where} {why}.", "bad")
+
+
+def _workspace_reason(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
+    workspace = analysis.workspace
+    if workspace is None or workspace.is_feasible:
+        return
+    parts = [*_shares(analysis, workspace)]
+    if not parts:
+        parts = [
+            "Every sample is served, but the search between the samples met poses that no cable "
+            "of the configured family can hold."
+        ]
+    if workspace.infeasible_example_m is not None:
+        parts.append(f"One such position is {fmt.position(workspace.infeasible_example_m)}.")
+    if findings.unserved is not None:
+        parts.append(_whereabouts(analysis, findings.unserved))
+    yield Statement("The workspace", " ".join(parts), "bad")
+
+
+def _shares(analysis: Analysis, workspace: WorkspaceMap) -> Iterator[str]:
+    assert analysis.study.workspace is not None
+    census = workspace.census
+    left_out = analysis.study.workspace.hangs_below == "exclude"
+    for verdict in Verdict:
+        amount = census.statuses[verdict.label]
+        is_fine = verdict is Verdict.SOLVED or (verdict is Verdict.NO_FINITE_CABLE and left_out)
+        if amount > 0 and not is_fine:
+            yield f"In {fmt.share(amount, census.samples)} of its volume {verdict.clause}."
+
+
+def _whereabouts(analysis: Analysis, unserved: Unserved) -> str:
+    text = "All samples that are not served lie"
+    if _is_layer(analysis, unserved):
+        text += f" above z = {fmt.metres(unserved.lowest_z_m)} and"
+    return f"{text} within {fmt.metres(unserved.depth_m)} of the sides."
+
+
+def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
+    assert analysis.study.workspace is not None
+    low, high = analysis.study.workspace.region.bounds_m[:, 2]
+    return bool(unserved.lowest_z_m > low + _LAYER * (high - low))
+
+
+def _selection_reason(analysis: Analysis) -> Iterator[Statement]:
+    selection = analysis.selection
+    if selection is None or analysis.has_products:
+        return
+    if analysis.groups is not None:
+        yield groups_statement(analysis.groups)
+    if not selection.reason:
+        return
+    text = f"{selection.reason[0].upper()}{selection.reason[1:]}."
+    yield Statement("The ropes", text, "bad")
+
+
+def actions(analysis: Analysis, findings: Findings) -> tuple[str, ...]:
+    """Return what could be done about a no, the most direct first; empty if the answer is yes."""
+    workspace = analysis.workspace
+    advice = [*_other_grades(analysis), *_move_pose(analysis)]
+    if workspace is not None and not workspace.is_feasible:
+        advice += [
+            *_real_figures(findings),
+            *_change_region(analysis, findings.unserved),
+            *_leave_out_hanging(findings),
+            "Raise the exit points (higher masts), or lower the top of the region.",
+            "Use a cable with more strength for its weight.",
+        ]
+    advice += _keep_clear(analysis)
+    if not advice and not analysis.is_positive:
+        advice.append("Add a grade with thicker sizes to the catalogue, or carry less mass.")
+    return tuple(advice)
+
+
+def _other_grades(analysis: Analysis) -> Iterator[str]:
+    selection = analysis.selection
+    if selection is None or analysis.has_products:
+        return
+    fitting = [o.best for o in selection.alternatives if o.best is not None]
+    if not fitting:
+        return
+    fitting.sort(key=lambda candidate: candidate.total_mass_kg)
+    names = [f"{c.grade.id} ({c.size.id})" for c in fitting[:_MOST_NAMES]]
+    more = len(fitting) - _MOST_NAMES
+    if more > 0:
+        names.append(fmt.plural(more, "other"))
+    yield (
+        "Allow other grades. These hold the whole workspace, the lightest first: "
+        f"{fmt.listing(names)}."
+    )
+
+
+def _move_pose(analysis: Analysis) -> Iterator[str]:
+    pose = analysis.pose
+    if pose is not None and not pose.sizing.statics.is_solved:
+        yield Verdict(int(pose.sizing.statics.verdict)).advice
+
+
+def _keep_clear(analysis: Analysis) -> Iterator[str]:
+    found = analysis.qualities
+    if found is None or found.interference is None or not found.interference.is_violated:
+        return
+    worst = found.interference.worst
+    assert worst is not None
+    yield (
+        f"Move exit points or attachments of {fmt.listing(worst.names)} apart, make the region "
+        "smaller, or ask for less clearance."
+    )
+
+
+def _real_figures(findings: Findings) -> Iterator[str]:
+    outcome = findings.chosen_outcome
+    if outcome is None:
+        return
+    family = outcome.family
+    yield (
+        f"Configure the cable as a real rope. {outcome.grade.id} holds where the configured "
+        "family does not; on the nominal circle it has "
+        f"{fmt.kilograms_per_cubic_metre(family.density_kg_per_m3)}, "
+        f"{fmt.pascals(family.youngs_modulus_Pa)} and an allowable stress of "
+        f"{fmt.pascals(family.allowable_stress_Pa)}."
+    )
+
+
+def _change_region(analysis: Analysis, unserved: Unserved | None) -> Iterator[str]:
+    if unserved is None:
+        yield "Make the region smaller where poses are not served."
+        return
+    if unserved.depth_m < _STRIP * unserved.inradius_m:
+        yield (
+            f"Move the sides of the region inward (a larger inset) by clearly more than "
+            f"{fmt.metres(unserved.depth_m)}: toward the poses that are not served the needed "
+            "diameter grows without bound."
+        )
+    if _is_layer(analysis, unserved):
+        yield f"Keep the top of the region below z = {fmt.metres(unserved.lowest_z_m)}."
+
+
+def _leave_out_hanging(findings: Findings) -> Iterator[str]:
+    other = findings.other_policy
+    if other is None or other.hangs_below != "exclude" or other.map.sagging is None:
+        return
+    worst, census = other.map.sagging, other.map.census
+    yield (
+        "Leave out poses in which a cable hangs below the platform (hangs_below: exclude). The "
+        f"worst of the others needs {fmt.millimetres(worst.diameter_m)} of the configured family "
+        f"and meets {fmt.newtons(worst.max_tension_N)}. That gives up "
+        f"{fmt.share(census.excluded, census.samples)} of the volume."
+    )

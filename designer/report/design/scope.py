@@ -1,0 +1,110 @@
+"""What the answer covers: orientations, the strength of ropes that counts, the configured pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from designer.analysis.analyse import Analysis
+from designer.grades.grade import Grade, Size
+from designer.model.space import Orientations
+from designer.report import format as fmt
+from designer.report.parts import Fact, Statement, Tone
+from designer.selection.efficiency import Allowance
+from designer.statics.inverse import solve_sagging
+from designer.study import Selection, Study
+
+_MOST_LISTED = 6
+
+
+def describe_orientations(orientations: Orientations) -> str:
+    """Return in words how the platform is turned at every position."""
+    if orientations.is_level:
+        return "level only"
+    turns = np.degrees(orientations.turns_rad)
+    if orientations.range_rad is None:
+        listed = "; ".join(fmt.degrees(turn) for turn in turns[:_MOST_LISTED])
+        more = f"; {len(turns) - _MOST_LISTED} more" if len(turns) > _MOST_LISTED else ""
+        return f"turned by {listed}{more}" if len(turns) == 1 else f"each of {listed}{more}"
+    low, high = np.degrees(orientations.range_rad)
+    return f"all between {fmt.degrees(low)} and {fmt.degrees(high)}"
+
+
+def orientation_fact(study: Study) -> Iterator[Fact]:
+    """Yield which orientations were checked; nothing of a point mass, which has none."""
+    if study.workspace is None or study.robot.is_point_mass:
+        return
+    orientations = study.workspace.orientations
+    yield Fact("Orientation", describe_orientations(orientations), _how_tried(orientations))
+
+
+def _how_tried(orientations: Orientations) -> str:
+    if orientations.is_level:
+        return "the platform was not turned"
+    if orientations.range_rad is None:
+        return "rotation vectors, the worst of them counts" if orientations.count > 1 else ""
+    return f"{orientations.count} of them at each sample, the worst searched between"
+
+
+def orientation_statement(study: Study) -> Iterator[Statement]:
+    """Yield the same for the first page."""
+    for fact in orientation_fact(study):
+        text = f"{fact.value[0].upper()}{fact.value[1:]}{fact.note and ': '}{fact.note}."
+        yield Statement("Orientations checked", text)
+
+
+def strength_statement(
+    selection: Selection | None, ropes: Iterable[tuple[Grade, Size]]
+) -> Iterator[Statement]:
+    """Yield what end fittings and bending are taken to leave of the breaking loads."""
+    if selection is None:
+        return
+    share, sheave_m = selection.termination_efficiency, selection.sheave_diameter_m
+    if share == 1.0 and sheave_m is None:
+        text = "No loss assumed: end fittings 100\u00a0%, bending 100\u00a0% of the breaking load."
+        yield Statement("Losses of strength", text, "doubt")
+        return
+    ends = f"End fittings {fmt.percent(share)}{' (none assumed)' if share == 1.0 else ''}, bending "
+    if sheave_m is None:
+        bends = "100\u00a0% (none assumed) of the breaking load"
+    else:
+        left = _after_bending(Allowance.of(selection), ropes)
+        bends = f"over {fmt.millimetres(sheave_m)}{left}; the smaller share counts"
+    is_assumed = share == 1.0 or sheave_m is None
+    yield Statement("Losses of strength", f"{ends}{bends}.", "doubt" if is_assumed else "")
+
+
+def _after_bending(allowance: Allowance, ropes: Iterable[tuple[Grade, Size]]) -> str:
+    assert allowance.sheave_diameter_m is not None
+    parts = [
+        f"{fmt.percent(allowance.bending_efficiency(grade, size.diameter_m))} for {size.id} "
+        f"(D/d {fmt.trimmed(allowance.sheave_diameter_m / size.diameter_m, 3)})"
+        for grade, size in ropes
+    ]
+    return f" {fmt.listing(parts)} of the breaking load" if parts else ""
+
+
+def pose_statement(analysis: Analysis) -> Iterator[Statement]:
+    """Yield where the configured pose is not one of the workspace, and what holds there."""
+    outside = analysis.study.pose_outside
+    if not outside:
+        return
+    text = f"It {outside}."
+    tone, used = _used_there(analysis)
+    yield Statement("The configured pose is not in the workspace", f"{text}{used}", tone)
+
+
+def _used_there(analysis: Analysis) -> tuple[Tone, str]:
+    pose, qualities = analysis.study.pose, analysis.qualities
+    if pose is None or qualities is None:
+        return "doubt", ""
+    cable, name = qualities.cable.cable, qualities.cable.name
+    statics = solve_sagging(analysis.built.robot, pose, cable)
+    if not statics.is_solved:
+        return "bad", f" With {name} no equilibrium was found there."
+    used = float((statics.cable_tension_N / cable.allowable_tension_N).max())
+    return (
+        "bad" if used > 1.0 else "doubt",
+        f" There, {name} is used to {fmt.utilisation(used)} of what is allowed.",
+    )

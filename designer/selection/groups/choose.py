@@ -1,0 +1,386 @@
+"""Which product for which group of cables: propose the best, verify, cut off, propose again.
+
+A mixed-integer programme proposes the assignment with the least mass (or cost) that nothing speaks
+against yet. It is solved at the poses that have refuted others, then over the whole workspace, with
+each cable's own figures. One that fails is cut off with all others that the same pose refutes (see
+`designer.selection.groups.blocks`). First a linearisation of the tensions guides the proposals, to
+find a good answer soon; then proposals go on without it, until none is left below that answer. So
+the linearisation decides how fast the answer is found, and only cuts decide what it is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import prod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade
+from designer.model.robot import Robot
+from designer.progress import Reporter, Silent
+from designer.selection.efficiency import Allowance
+from designer.selection.groups.balance import balance_at, is_sound
+from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
+from designer.selection.groups.master import Assignment, Block, Guide, Master
+from designer.selection.groups.offer import Product, priced, undominated
+from designer.selection.groups.result import (
+    Assigned,
+    GroupChoice,
+    GroupObjective,
+    Outcome,
+    Proof,
+    Proposal,
+)
+from designer.selection.groups.trials import Refutation, Trials
+from designer.selection.groups.verify import GroupVerification, verify_groups
+from designer.selection.select import is_allowed
+from designer.study import CableGroup, Selection, Workspace
+
+if TYPE_CHECKING:
+    from designer.selection.result import Candidate
+
+MOST_PROPOSALS = 100
+"""Where to stop and report a gap."""
+_MOST_GUIDED = 30
+_MOST_BALANCES = 6
+_MOST_TRIALS_OF_A_BLOCK = 300
+_MOST_TRIALS = 100_000
+_EQUAL = 1e-9
+
+Progress = Callable[[], None]
+"""Called after each proposal."""
+
+
+def choose_groups(
+    robot: Robot,
+    workspace: Workspace,
+    groups: Sequence[CableGroup],
+    products: Sequence[Product],
+    *,
+    most_distinct: int | None = None,
+    objective: GroupObjective = "mass",
+    single: Product | None = None,
+    progress: Progress = lambda: None,
+    most_proposals: int = MOST_PROPOSALS,
+) -> GroupChoice:
+    """Choose a product for each group.
+
+    Parameters
+    ----------
+    robot, workspace
+        The study, the robot as built.
+    groups : sequence of CableGroup
+        Every cable is in exactly one of them.
+    products : sequence of Product
+        What is sold.
+    most_distinct : int, optional
+        How many different products there may be; one for each group if left out.
+    objective : str
+        ``mass``, or ``cost`` of the products that have a price.
+    single : Product, optional
+        The best product for all cables together: where the search starts from.
+    progress : callable
+        Called after each proposal.
+    most_proposals : int
+        Where to stop.
+    """
+    by_price = objective == "cost"
+    products = priced(products) if by_price else tuple(products)
+    offered = undominated(products, by_price=by_price)
+    if single is not None and single not in offered:
+        offered = (*offered, single)
+    distinct = min(most_distinct or len(groups), len(groups))
+    search = _Search(robot, workspace, groups, offered, distinct, by_price, progress)
+    if offered:
+        search.start(single)
+        search.run(most_proposals)
+    return GroupChoice(
+        groups=tuple(groups),
+        most_distinct=distinct,
+        chosen=search.best,
+        single=search.single,
+        objective=objective,
+        unit=(products[0].grade.currency or "") if by_price and products else "kg",
+        bound=search.bound,
+        proof=search.proof,
+        by_balance=search.has_balances,
+        by_weight=search.by_weight,
+        lengths_are_bounds=search.lengths_are_bounds,
+        offered=len(offered),
+        catalogued=len(products),
+        proposals=tuple(search.proposals),
+        trials=search.trials.count,
+    )
+
+
+def choose_groups_of(
+    workspace: Workspace,
+    selection: Selection,
+    grades: Sequence[Grade],
+    built: AsBuilt,
+    single: Candidate | None,
+    reporter: Reporter | None = None,
+) -> GroupChoice:
+    """Choose a product for each group of a study, among the grades that it allows.
+
+    Parameters
+    ----------
+    workspace, selection
+        The study; cost is minimised where it is the first objective, mass otherwise.
+    grades : sequence of Grade
+        The whole catalogue; ``selection.grades`` narrows it.
+    built : AsBuilt
+        The robot as built, and by how much its cables differ from their data sheet.
+    single : Candidate or None
+        The best product for all cables.
+    reporter : Reporter, optional
+        Shows progress.
+    """
+    allowance, named = Allowance.of(selection), selection.grades
+    products = [
+        Product(grade, size, built.cable(allowance.cable(grade, size)))
+        for grade in grades
+        if is_allowed(grade, named)
+        for size in grade.sizes
+        if not math.isnan(allowance.efficiency(grade, size.diameter_m))
+    ]
+    is_single = (one for one in products if single and one.size is single.size)
+    with (reporter or Silent()).task("groups", MOST_PROPOSALS) as advance:
+        return choose_groups(
+            built.robot,
+            workspace,
+            selection.groups,
+            products,
+            most_distinct=selection.max_distinct_products,
+            objective="cost" if selection.objectives[0] == "cost" else "mass",
+            single=next(is_single, None),
+            progress=lambda: advance(1),
+        )
+
+
+class _Search:
+    """The state of the search; see the module."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        workspace: Workspace,
+        groups: Sequence[CableGroup],
+        products: tuple[Product, ...],
+        most_distinct: int,
+        by_price: bool,
+        progress: Progress,
+    ) -> None:
+        self.robot, self.workspace, self.products = robot, workspace, products
+        self.members = [np.array(group.cables, dtype=np.int64) - 1 for group in groups]
+        self.trials = Trials(robot, workspace, products, self.members)
+        self.by_weight = is_monotone(robot, workspace)
+        self.per_metre = np.array([_per_metre(one, by_price) for one in products])
+        # Blocks by weight exclude as much, and a programme without balances is solved faster.
+        self.has_balances = is_sound(robot, workspace) and not self.by_weight
+        self.lengths_are_bounds = workspace.hangs_below == "include"
+        self.master = Master(self._least_cost(self.trials.reach_m), most_distinct)
+        self.progress = progress
+        self.best: Assigned | None = None
+        self.single: Assigned | None = None
+        self.bound = np.inf
+        self.proof: Proof = "infeasible"
+        self.proposals: list[Proposal] = []
+        self._guides: list[Guide] = []
+        self._settled: set[Assignment] = set()
+
+    def start(self, single: Product | None) -> None:
+        """Verify one product for all cables: the given one, or else the strongest."""
+        strength = [one.cable.allowable_tension_N for one in self.products]
+        at = int(np.argmax(strength)) if single is None else self.products.index(single)
+        assignment = (at,) * len(self.members)
+        found = verify_groups(
+            self.robot, self.workspace, self.trials.cables(assignment), self.members
+        )
+        self._learn(found.worst_place)
+        if not self.lengths_are_bounds and found.longest_m.all():
+            # Which samples count depends on the cables; those of the first answer are a fair guess.
+            cost = self._least_cost(found.longest_m)
+            self.master = Master(cost, self.master.most_distinct)
+        self._guide(assignment)
+        if found.holds:
+            self.master.cut(_alone(assignment))
+            self.best = self._assigned(assignment, found)
+            self.single = self.best if single is not None else None
+
+    def run(self, most_proposals: int) -> None:
+        """Propose with the linearisation while it leads to something better, then without."""
+        while len(self.proposals) < min(_MOST_GUIDED, most_proposals):
+            assignment = self.master.propose(self._guides)
+            if assignment is None or not self._could_be_better(assignment):
+                break
+            outcome = self._examine(assignment, guided=True).outcome
+            if outcome == "not_better":
+                break
+            if outcome == "fails":
+                self._guide(assignment)
+        while True:
+            assignment = self.master.propose()
+            if assignment is None or not self._could_be_better(assignment):
+                self.proof = "infeasible" if self.best is None else "optimal"
+                self.bound = np.inf if self.best is None else self.best.total
+                return
+            self.bound = self.master.cost_of(assignment)
+            if self.best is not None:
+                self.bound = min(self.bound, self.best.total)
+            if len(self.proposals) >= most_proposals:
+                self.proof = "stopped"
+                return
+            self._examine(assignment, guided=False)
+
+    def _examine(self, assignment: Assignment, *, guided: bool) -> Proposal:
+        """Try a proposal, cut it off with what fails with it, and note it."""
+        proposal, block = self._tried(assignment, guided)
+        self.master.cut(block)
+        if not guided and prod(len(products) for products in block) == 1:
+            beside = self._cut_beside(assignment)
+            proposal = replace(proposal, excluded=proposal.excluded + beside)
+        self.proposals.append(proposal)
+        self.progress()
+        return proposal
+
+    def _cut_beside(self, assignment: Assignment) -> int:
+        """Cut off those that differ in one group and cannot be the answer; return how many."""
+        before = self.master.n_cuts
+        for g in range(len(assignment)):
+            for p in range(len(self.products)):
+                other = (*assignment[:g], p, *assignment[g + 1 :])
+                if p == assignment[g] or other in self._settled:
+                    continue
+                if not self._could_be_better(other) or self.trials.count > _MOST_TRIALS:
+                    continue
+                if self.trials.is_refuted(other) or self._is_no_better(other):
+                    self._settled.add(other)
+                    self.master.cut(_alone(other))
+        return self.master.n_cuts - before
+
+    def _is_no_better(self, assignment: Assignment) -> bool:
+        """Tell whether the lengths at the far poses alone cost as much as what is known to hold."""
+        if self.best is None or not self.lengths_are_bounds:
+            return False
+        least = self._total(assignment, self.trials.least_length_m(assignment))
+        return least >= self.best.total * (1.0 - _EQUAL)
+
+    def _tried(self, assignment: Assignment, guided: bool) -> tuple[Proposal, Block]:
+        refuted = self.trials.refutation(assignment)
+        alone = _alone(assignment)
+        if refuted is not None:
+            return self._failed(assignment, refuted, guided)
+        if self._is_no_better(assignment):
+            return self._noted(assignment, guided, "not_better"), alone
+        cables = self.trials.cables(assignment)
+        found = verify_groups(self.robot, self.workspace, cables, self.members)
+        self._learn(found.worst_place)
+        group = int(np.argmax(found.utilisation))
+        worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
+        if not found.holds:
+            return self._failed(assignment, worst, guided)
+        held = self._assigned(assignment, found)
+        is_better = self.best is None or held.total < self.best.total
+        self.best = held if is_better else self.best
+        outcome: Outcome = "holds" if is_better else "not_better"
+        return self._noted(assignment, guided, outcome, worst, total=held.total), alone
+
+    def _failed(
+        self, assignment: Assignment, refuted: Refutation, guided: bool
+    ) -> tuple[Proposal, Block]:
+        block = _alone(assignment)
+        if self.by_weight:
+            block = block_by_weight(self.trials, assignment, refuted.group)
+        if block == _alone(assignment):
+            room = min(_MOST_TRIALS_OF_A_BLOCK, _MOST_TRIALS - self.trials.count)
+            block = block_by_trial(
+                self.trials, assignment, refuted.group, self._could_be_better, room
+            )
+        excluded = prod(len(products) for products in block)
+        return self._noted(assignment, guided, "fails", refuted, excluded=excluded), block
+
+    def _noted(
+        self,
+        assignment: Assignment,
+        guided: bool,
+        outcome: Outcome,
+        worst: Refutation | None = None,
+        *,
+        total: float | None = None,
+        excluded: int = 1,
+    ) -> Proposal:
+        return Proposal(
+            products=tuple(self.products[p] for p in assignment),
+            bound=self.master.cost_of(assignment),
+            total=total,
+            outcome=outcome,
+            group=worst.group if worst else None,
+            utilisation=worst.utilisation if worst else None,
+            place=worst.place if worst else None,
+            excluded=excluded,
+            guided=guided,
+        )
+
+    def _could_be_better(self, assignment: Assignment) -> bool:
+        if not self.master.is_allowed(assignment):
+            return False
+        limit = np.inf if self.best is None else self.best.total * (1.0 - _EQUAL)
+        return self.master.cost_of(assignment) < limit
+
+    def _learn(self, some: FloatArray) -> None:
+        """Remember the worst places of an assignment."""
+        self.trials.add_witnesses(some)
+        if not self.has_balances:
+            return
+        for place in some[np.isfinite(some).all(axis=1)]:
+            balance = balance_at(self.robot, place, self.products, self.members)
+            if balance is not None and len(self.master.balances) < _MOST_BALANCES:
+                self.master.balances.append(balance)
+
+    def _guide(self, assignment: Assignment) -> None:
+        """Add the linearised tension of each cable, where it is used most, as a guide."""
+        load, slope = self.trials.slopes(assignment)
+        weight = np.array([one.cable.weight_N_per_m for one in self.products])
+        allowable = np.array([one.cable.allowable_tension_N for one in self.products])
+        for g, cables in enumerate(self.members):
+            for c in cables:
+                solved = np.isfinite(load.utilisation[:, c])
+                at = int(np.argmax(np.where(solved, load.utilisation[:, c], -np.inf)))
+                slopes = slope[:, at, c]
+                if not np.isfinite(slopes).all():
+                    continue
+                row = slopes[:, None] * weight
+                row[g] -= allowable
+                here = float(slopes @ weight[list(assignment)])
+                self._guides.append((row, here - float(load.tension_N[at, c])))
+
+    def _least_cost(self, reach_m: FloatArray) -> FloatArray:
+        """Return what each product costs on each group at the least, (n_groups, n_products)."""
+        strain = np.array([one.largest_strain for one in self.products])
+        reach = np.array([reach_m[cables].sum() for cables in self.members])
+        return np.asarray(reach[:, None] * (self.per_metre / (1.0 + strain)))
+
+    def _assigned(self, assignment: Assignment, found: GroupVerification) -> Assigned:
+        products = tuple(self.products[p] for p in assignment)
+        density = self.trials.cables(assignment).linear_density_kg_per_m
+        mass = float(density @ found.longest_m)
+        return Assigned(products, found, mass, self._total(assignment, found.longest_m))
+
+    def _total(self, assignment: Assignment, length_m: FloatArray) -> float:
+        each = zip(self.members, assignment, strict=True)
+        return float(sum(self.per_metre[p] * length_m[cables].sum() for cables, p in each))
+
+
+def _alone(assignment: Assignment) -> Block:
+    return tuple(frozenset({p}) for p in assignment)
+
+
+def _per_metre(product: Product, by_price: bool) -> float:
+    """Return what a metre adds to the objective."""
+    return (product.size.price_per_m or 0.0) if by_price else product.cable.linear_density_kg_per_m

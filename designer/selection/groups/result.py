@@ -1,0 +1,171 @@
+"""What the choice for groups of cables came to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from designer.arrays import FloatArray
+from designer.selection.groups.offer import Product
+from designer.selection.groups.verify import GroupVerification
+from designer.study import CableGroup
+
+Outcome = Literal["holds", "fails", "not_better"]
+Proof = Literal["optimal", "stopped", "infeasible"]
+GroupObjective = Literal["mass", "cost"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """An assignment that was tried.
+
+    Parameters
+    ----------
+    products : tuple of Product
+        Of each group.
+    bound : float
+        Mass or cost that it cannot fall below: straight cables stretched as far as they may be.
+    total : float or None
+        The same with the lengths that it needs; None where that was not computed.
+    outcome : str
+        ``holds``, ``fails``, or ``not_better`` than what was known to hold.
+    group : int or None
+        The group that is used most; None where its loads decided nothing.
+    utilisation : float or None
+        Of that group.
+    place : array (n_coordinates,) or None
+        Where, see `designer.model.space` [m, rad].
+    excluded : int
+        How many assignments the cut excludes, the proposal among them.
+    guided : bool
+        Whether the linearisation had a say in it.
+    """
+
+    products: tuple[Product, ...]
+    bound: float
+    total: float | None
+    outcome: Outcome
+    group: int | None
+    utilisation: float | None
+    place: FloatArray | None
+    excluded: int
+    guided: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assigned:
+    """An assignment that holds everywhere.
+
+    Parameters
+    ----------
+    products : tuple of Product
+        Of each group.
+    verification : GroupVerification
+        What it meets.
+    total_mass_kg : float
+        Mass of all cables, each at the longest length that it needs [kg].
+    total : float
+        What was minimised: that mass, or the cost of these lengths.
+    """
+
+    products: tuple[Product, ...]
+    verification: GroupVerification
+    total_mass_kg: float
+    total: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroupChoice:
+    """The choice for groups, and what is proved of it.
+
+    Parameters
+    ----------
+    groups : tuple of CableGroup
+        The groups.
+    most_distinct : int
+        How many different products were allowed.
+    chosen : Assigned or None
+        The lightest (or cheapest) assignment that holds; None if none was found.
+    single : Assigned or None
+        The lightest single product for all cables, where the selection found one.
+    objective : str
+        ``mass`` or ``cost``.
+    unit : str
+        Of the objective: ``kg``, or a currency.
+    bound : float
+        No assignment of what was offered that holds has less of it.
+    proof : str
+        ``optimal``; ``stopped`` at the limit of proposals; ``infeasible``.
+    by_balance : bool
+        Whether the balance of poses excluded assignments (`designer.selection.groups.balance`).
+    by_weight : bool
+        Whether cuts were proved by weight (`designer.selection.groups.blocks`), else by trial.
+    lengths_are_bounds : bool
+        Whether the bound's lengths cannot be undercut. Not so where poses are left out.
+    offered, catalogued : int
+        Products that no other one beats, and all of them.
+    proposals : tuple of Proposal
+        What was tried, in order.
+    trials : int
+        How many times cables were solved at the witnesses.
+    """
+
+    groups: tuple[CableGroup, ...]
+    most_distinct: int
+    chosen: Assigned | None
+    single: Assigned | None
+    objective: GroupObjective
+    unit: str
+    bound: float
+    proof: Proof
+    by_balance: bool
+    by_weight: bool
+    lengths_are_bounds: bool
+    offered: int
+    catalogued: int
+    proposals: tuple[Proposal, ...]
+    trials: int
+
+    @property
+    def gap(self) -> float | None:
+        """What was minimised over the bound on it, less one; None if nothing was found."""
+        return None if self.chosen is None else self.chosen.total / self.bound - 1.0
+
+    @property
+    def proof_sentence(self) -> str:
+        """What is proved, and on what condition, for the reader of a report."""
+        kind = "cheaper" if self.objective == "cost" else "lighter"
+        of = f"the {self.offered} products that no other one beats, out of {self.catalogued},"
+        if self.proof == "infeasible":
+            return f"No assignment of {of} holds the whole workspace."
+        if self.proof == "stopped":
+            count = len(self.proposals)
+            if self.chosen is None:
+                return f"Stopped after {count} proposals, none of which holds."
+            return (
+                f"Stopped after {count} proposals: no assignment of {of} that holds has less than "
+                f"{self.bound:.4g} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
+            )
+        return f"No assignment of {of} is {kind} and holds. {self._grounds}"
+
+    @property
+    def _grounds(self) -> str:
+        means = "by poses that the solver showed they cannot hold"
+        if self.by_weight:
+            means += ", where heavier company of an overloaded cable does not help it"
+        if self.by_balance:
+            means += ", by the balance of forces in a pose"
+        text = f"All that would be were excluded {means}, or by the lengths that they need."
+        if self.lengths_are_bounds:
+            return text
+        return (
+            f"{text} This is for the lengths of the first answer: which poses count, and so how "
+            "long a cable must be, depends on the cables themselves."
+        )
+
+    @property
+    def saving_kg(self) -> float | None:
+        """What the groups save against one product for all cables [kg]."""
+        if self.chosen is None or self.single is None:
+            return None
+        return self.single.total_mass_kg - self.chosen.total_mass_kg

@@ -1,0 +1,331 @@
+"""The smallest distance among the cables of a pose, and between them and the platform.
+
+Each cable is taken in its true shape. A first pass over coarse pieces with a bound on what these
+cut off finds which cables can come nearest; a second one looks at finer pieces there. Distances
+are from axis to axis: half the diameters are not taken off.
+
+Cables that share an exit point or an attachment are not compared: they hang in two vertical planes
+that meet in the upright line through that point, and there they part. A cable is compared with the
+platform's hull but for its last piece, which is meant to be near: see `cable_margin_m`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.calling import plain
+from designer.model.robot import Poses, Robot
+from designer.statics.geometry import upright_poses
+from designer.statics.inverse import Statics
+from designer.workspace.hull import Hull, platform_hull
+from designer.workspace.shapes import Curves, Polylines
+
+PLATFORM = -1
+"""Stands for the platform where a pair is a cable and the platform."""
+
+_COARSE, _FINE = 24, 12
+_FINER_PASSES = 3
+_COINCIDENT = 1e-9
+_OWN_SHARE = 0.25
+_CHUNK = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Clearance:
+    """How near things come in each pose; NaN where the pose is not solved or nothing is compared.
+
+    Parameters
+    ----------
+    distance_m : array (...)
+        Smallest distance [m].
+    pair : array (..., 2) of int
+        Between which: numbers of two cables from 0, or of a cable and `PLATFORM`.
+    place_m : array (..., 3)
+        Where, base frame [m].
+    error_m : array (...)
+        The true distance is smaller than ``distance_m`` by no more than this [m].
+    """
+
+    distance_m: FloatArray
+    pair: IntArray
+    place_m: FloatArray
+    error_m: FloatArray
+
+    @classmethod
+    def nothing(cls, count: int) -> Clearance:
+        """Return the result of poses (count,) in which nothing is compared."""
+        return cls(
+            np.full(count, np.nan),
+            np.full((count, 2), PLATFORM),
+            np.full((count, 3), np.nan),
+            np.full(count, np.nan),
+        )
+
+    def reshaped(self, shape: tuple[int, ...]) -> Clearance:
+        """Return the same over other leading axes."""
+        return Clearance(
+            self.distance_m.reshape(shape),
+            self.pair.reshape(*shape, 2),
+            self.place_m.reshape(*shape, 3),
+            self.error_m.reshape(shape),
+        )
+
+    def nearer(self, other: Clearance) -> Clearance:
+        """Return in each pose the one of two whose distance is smaller."""
+        ours = ~(other.distance_m < np.nan_to_num(self.distance_m, nan=np.inf))
+        return Clearance(
+            np.where(ours, self.distance_m, other.distance_m),
+            np.where(ours[..., None], self.pair, other.pair),
+            np.where(ours[..., None], self.place_m, other.place_m),
+            np.where(ours, self.error_m, other.error_m),
+        )
+
+
+def clearance_among_cables(statics: Statics) -> Clearance:
+    """Return how near two cables come to each other in poses (...)."""
+    return _in_chunks(statics, _among_cables)
+
+
+def clearance_to_platform(statics: Statics) -> Clearance:
+    """Return how near a cable comes to the platform in poses (...), but for its last piece."""
+    return _in_chunks(statics, _to_hull)
+
+
+def smallest_clearance(statics: Statics) -> Clearance:
+    """Return the smaller of `clearance_among_cables` and `clearance_to_platform` in poses (...)."""
+    return clearance_among_cables(statics).nearer(clearance_to_platform(statics))
+
+
+def _in_chunks(statics: Statics, near: Callable[[Statics, Curves], _Near | None]) -> Clearance:
+    shape = statics.verdict.shape
+    found = Clearance.nothing(int(np.prod(shape, dtype=np.int64)))
+    solved = np.flatnonzero(statics.is_solved)
+    for at in range(0, len(solved), _CHUNK):
+        rows = solved[at : at + _CHUNK]
+        some = _some(statics, rows)
+        part = near(some, Curves.of(some))
+        if part is not None:
+            _fill(found, rows, part, statics.robot)
+    return found.reshaped(shape)
+
+
+def cable_pairs(robot: Robot) -> list[tuple[int, int]]:
+    """Return the pairs of cables that share neither an exit point nor an attachment."""
+    size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0)))
+
+    def apart(points: FloatArray, i: int, j: int) -> bool:
+        return bool(np.linalg.norm(points[i] - points[j]) > _COINCIDENT * size)
+
+    return [
+        (i, j)
+        for i, j in combinations(range(robot.n_cables), 2)
+        if apart(robot.exit_points_m, i, j) and apart(robot.attachments_m, i, j)
+    ]
+
+
+def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
+    """Return how much of each cable, from its attachment, is not compared with the hull [m].
+
+    A quarter of the hull's largest extent, and the way out of the hull for an attachment inside
+    it. A straight cable that leaves the hull at an angle ψ is then told if the clearance is more
+    than sin ψ times that quarter.
+
+    Returns
+    -------
+    array (n_cables,)
+    """
+    return np.asarray(_OWN_SHARE * hull.extent_m + hull.depth_m(robot.attachments_m))
+
+
+def _some(statics: Statics, rows: IntArray) -> Statics:
+    """Return some poses of a batch as a batch of one axis."""
+    n = statics.robot.n_cables
+    shape = statics.verdict.shape
+
+    def chosen(values: FloatArray, *rest: int) -> FloatArray:
+        return np.broadcast_to(values, (*shape, *rest)).reshape(-1, *rest)[rows]
+
+    run = statics.run
+    return Statics(
+        robot=statics.robot,
+        poses=Poses(chosen(statics.poses.position_m, 3), chosen(statics.poses.rotation, 3, 3)),
+        verdict=statics.verdict.reshape(-1)[rows],
+        weight_N_per_m=chosen(statics.weight_N_per_m, n),
+        axial_stiffness_N=chosen(statics.axial_stiffness_N, n),
+        length_m=chosen(statics.length_m, n),
+        force_x_N=chosen(statics.force_x_N, n),
+        force_z_N=chosen(statics.force_z_N, n),
+        run=type(run)(chosen(run.exit_points_m, n, 3), chosen(run.wrap_m, n)),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Near:
+    """Candidates for the smallest distance: a pose, a pair, a distance, a place, a bound."""
+
+    row: IntArray
+    pair: IntArray
+    distance_m: FloatArray
+    place_m: FloatArray
+    error_m: FloatArray
+
+
+def _fill(found: Clearance, rows: IntArray, part: _Near, robot: Robot) -> None:
+    """Enter the smallest distance of each pose into the result."""
+    # In descending order the last entry of each pose, its smallest, is what stays.
+    order = np.argsort(-part.distance_m, kind="stable")
+    row = rows[part.row[order]]
+    found.distance_m[row] = part.distance_m[order]
+    found.pair[row] = part.pair[order]
+    found.place_m[row] = part.place_m[order] @ robot.upright
+    found.error_m[row] = part.error_m[order]
+
+
+def _among_cables(statics: Statics, curves: Curves) -> _Near | None:
+    robot = statics.robot
+    pairs = np.array(cable_pairs(robot), dtype=np.int64).reshape(-1, 2)
+    if len(pairs) == 0:
+        return None
+    n, count = robot.n_cables, len(statics.verdict)
+    everything = np.arange(count * n)
+    coarse = _whole(curves, everything, _COARSE)
+    row, kind = _candidates(coarse, n, pairs)
+    first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
+    distance, middle, at = _between(_pick(coarse, first), _pick(coarse, second))
+    error = coarse.sagitta_m[first].max(axis=-1) + coarse.sagitta_m[second].max(axis=-1)
+    pieces = [_pick(coarse, first), _pick(coarse, second)]
+    for _ in range(_FINER_PASSES):
+        pieces = [
+            curves.polylines(which, *_around(piece, index), _FINE)
+            for which, piece, index in zip((first, second), pieces, at, strict=True)
+        ]
+        distance, middle, at = _between(*pieces)
+    return _Near(row, pairs[kind], distance, middle, error)
+
+
+def _candidates(coarse: Polylines, n: int, pairs: IntArray) -> tuple[IntArray, IntArray]:
+    """Return pose and pair where the cables can come nearer than any others surely do.
+
+    A cable is nowhere farther from its chord than its lowest point and what a piece cuts off.
+    """
+    points = coarse.points_m.reshape(-1, n, *coarse.points_m.shape[1:])
+    start, end = points[:, :, 0], points[:, :, -1]
+    chord = end - start
+    unit = chord / np.linalg.norm(chord, axis=-1, keepdims=True)
+    off = points - start[:, :, None]
+    off = off - np.einsum("pnsk,pnk->pns", off, unit)[..., None] * unit[:, :, None]
+    sag = np.linalg.norm(off, axis=-1).max(axis=-1)
+    sag = sag + coarse.sagitta_m.max(axis=-1).reshape(-1, n)
+    i, j = pairs.T
+    chords = np.stack([start, end], axis=-2)
+    straight, _, _ = _pieces(chords[:, i].reshape(-1, 2, 3), chords[:, j].reshape(-1, 2, 3))
+    straight = straight.reshape(-1, len(pairs))
+    both = sag[:, i] + sag[:, j]
+    surely = (straight + both).min(axis=-1, keepdims=True)
+    row, kind = np.nonzero(straight - both <= surely)
+    return row, kind
+
+
+def _to_hull(statics: Statics, curves: Curves) -> _Near | None:
+    robot = statics.robot
+    hull = platform_hull(robot)
+    if hull is None:
+        return None
+    n, count = robot.n_cables, len(statics.verdict)
+    shown = 1.0 - np.tile(cable_margin_m(robot, hull), count) / curves.length_m
+    which = np.flatnonzero(shown > 0.0)
+    coarse = curves.polylines(which, np.zeros(len(which)), shown[which], _COARSE)
+    poses = upright_poses(robot, statics.poses)
+    body = _in_body(coarse.points_m, poses, which // n)
+    at, segment = _near_hull(hull, body, coarse.sagitta_m, which // n)
+    which, error = which[at], coarse.sagitta_m.max(axis=-1)[at]
+    low, high = coarse.share[at, segment], coarse.share[at, segment + 1]
+    row = which // n
+    for _ in range(_FINER_PASSES):
+        piece = curves.polylines(which, low, high, _FINE)
+        distance, place, nearest = _hull_distance(hull, _in_body(piece.points_m, poses, row))
+        low, high = _around(piece, nearest)
+    world = np.einsum("nb,nkb->nk", place, poses.rotation[row]) + poses.position_m[row]
+    pair = np.stack([which % n, np.full(len(which), PLATFORM)], axis=-1)
+    return _Near(row, pair, distance, world, error)
+
+
+def _in_body(points_m: FloatArray, poses: Poses, row: IntArray) -> FloatArray:
+    """Return points (n, ·, 3) of poses ``row`` in the body frame [m]."""
+    away = points_m - poses.position_m[row, None]
+    return np.asarray(np.einsum("nsk,nkb->nsb", away, poses.rotation[row]))
+
+
+def _near_hull(
+    hull: Hull, body_m: FloatArray, sagitta_m: FloatArray, row: IntArray
+) -> tuple[IntArray, IntArray]:
+    """Return polylines and their pieces that can come nearer than the nearest of the last points.
+
+    A straight piece is nowhere nearer to the body than to the face that both its ends are beyond.
+    """
+    surely, _, _ = _faces(body_m[:, [-1, -1]], hull.triangles_m)
+    least = np.full(int(row.max(initial=-1)) + 1, np.inf)
+    np.minimum.at(least, row, surely)
+    heights = hull.heights_m(body_m)
+    lowest = np.minimum(heights[:, :-1], heights[:, 1:]).max(axis=-1) - sagitta_m
+    line, piece = np.nonzero(lowest <= least[row, None])
+    return line, piece
+
+
+def _hull_distance(hull: Hull, body_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return distance, place and number of the nearest piece of polylines (n, segments + 1, 3)."""
+    distance, place, at = _faces(body_m, hull.triangles_m)
+    inside = hull.heights_m(body_m).max(axis=-1) < 0.0
+    rows = np.flatnonzero(inside.any(axis=-1))
+    first = inside[rows].argmax(axis=-1)
+    distance[rows], place[rows] = 0.0, body_m[rows, first]
+    at[rows] = np.minimum(first, body_m.shape[1] - 2)
+    return distance, place, at
+
+
+def _between(
+    first: Polylines, second: Polylines
+) -> tuple[FloatArray, FloatArray, tuple[IntArray, IntArray]]:
+    """Return distance, middle and nearest pieces of polylines, one by one."""
+    distance, middle, at = _pieces(first.points_m, second.points_m)
+    return distance, middle, (at[:, 0], at[:, 1])
+
+
+def _pieces(first_m: FloatArray, second_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    from designer.kernel.distance import nearest_pieces
+
+    count = len(first_m)
+    distance, middle = np.empty(count), np.empty((count, 3))
+    at = np.zeros((count, 2), dtype=np.int64)
+    nearest_pieces(plain(first_m), plain(second_m), distance, middle, at)
+    return distance, middle, at
+
+
+def _faces(lines_m: FloatArray, triangles_m: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    from designer.kernel.distance import nearest_faces
+
+    count = len(lines_m)
+    distance, place = np.empty(count), np.empty((count, 3))
+    at = np.zeros(count, dtype=np.int64)
+    nearest_faces(plain(lines_m), plain(triangles_m), distance, place, at)
+    return distance, place, at
+
+
+def _around(piece: Polylines, at: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the part of a polyline from the piece before the nearest to the one after it."""
+    rows = np.arange(len(at))
+    last = piece.share.shape[1] - 1
+    return piece.share[rows, np.maximum(at - 1, 0)], piece.share[rows, np.minimum(at + 2, last)]
+
+
+def _whole(curves: Curves, which: IntArray, segments: int) -> Polylines:
+    return curves.polylines(which, np.zeros(len(which)), np.ones(len(which)), segments)
+
+
+def _pick(lines: Polylines, which: IntArray) -> Polylines:
+    return Polylines(lines.points_m[which], lines.share[which], lines.sagitta_m[which])

@@ -1,0 +1,144 @@
+"""Whether the cables keep clear of each other and of the platform in the whole workspace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses, Robot
+from designer.statics.inverse import Statics, solve_sagging
+from designer.study import Workspace
+from designer.workspace.clearance import (
+    PLATFORM,
+    Clearance,
+    clearance_among_cables,
+    clearance_to_platform,
+)
+from designer.workspace.refine import LIGHT, Demand, refine_over_branches
+from designer.workspace.samples import thinned
+
+MOST_SAMPLES = 1000
+"""Poses that are looked at before the search between them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nearest:
+    """The pose in which two things come nearest to each other.
+
+    Parameters
+    ----------
+    distance_m : float
+        How near [m].
+    error_m : float
+        The true distance there is smaller by no more than this [m].
+    pair : tuple of int
+        Two cables, from 0, or a cable and `designer.workspace.clearance.PLATFORM`.
+    place : array (n_coordinates,)
+        Where the platform is and how it is turned, see `designer.model.space` [m, rad].
+    point_m : array (3,)
+        Where the two are nearest, base frame [m].
+    """
+
+    distance_m: float
+    error_m: float
+    pair: tuple[int, int]
+    place: FloatArray
+    point_m: FloatArray
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of the two, cables counted from 1."""
+        first, second = self.pair
+        return (
+            f"cable {first + 1}",
+            "the platform" if second == PLATFORM else f"cable {second + 1}",
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Interference:
+    """Clearances over the workspace.
+
+    Parameters
+    ----------
+    clearance_m : float
+        What is asked for [m].
+    samples, violating : int
+        Poses that were looked at and solved, and those of them that keep less.
+    among_cables : Nearest or None
+        Worst pose for two cables; None where no two cables can be compared.
+    to_platform : Nearest or None
+        Worst pose for a cable and the platform; None for a point mass.
+    """
+
+    clearance_m: float
+    samples: int
+    violating: int
+    among_cables: Nearest | None
+    to_platform: Nearest | None
+
+    @property
+    def worst(self) -> Nearest | None:
+        """The nearer of the two."""
+        found = [one for one in (self.among_cables, self.to_platform) if one is not None]
+        return min(found, key=lambda one: one.distance_m, default=None)
+
+    @property
+    def is_violated(self) -> bool:
+        """Whether less than the clearance is kept somewhere, as far as was looked."""
+        return self.worst is not None and self.worst.distance_m < self.clearance_m
+
+
+def survey(
+    robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
+) -> Interference:
+    """Look for the smallest clearances in a workspace: samples first, then between them.
+
+    Parameters
+    ----------
+    robot, workspace, cable
+        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
+    clearance_m : float
+        What is asked for [m].
+    """
+
+    some = thinned(workspace, MOST_SAMPLES)
+    statics = solve_sagging(robot, Poses.at(some), cable)
+    cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
+
+    def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
+        def clearance(places: FloatArray, seeks_better: bool = True) -> Clearance:
+            poses = Poses.at(places)
+            return among(solve_sagging(robot, poses, cable, seeks_better=seeks_better))
+
+        def nearness_with(seeks_better: bool) -> Demand:
+            return lambda at: -np.nan_to_num(clearance(at, seeks_better).distance_m, nan=np.inf)
+
+        if np.isnan(sampled.distance_m).all():
+            return None
+        (worst,) = refine_over_branches(workspace.space, nearness_with, some, LIGHT)
+        return _nearest(worst.place, clearance(worst.place[None]))
+
+    return Interference(
+        clearance_m=clearance_m,
+        samples=int(statics.is_solved.sum()),
+        violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
+        among_cables=nearest(clearance_among_cables, cables),
+        to_platform=nearest(clearance_to_platform, platform),
+    )
+
+
+def _nearest(place: FloatArray, found: Clearance) -> Nearest:
+    """Return what is nearest in the one pose of a batch."""
+    first, second = (int(number) for number in found.pair[0])
+    return Nearest(
+        distance_m=float(found.distance_m[0]),
+        error_m=float(found.error_m[0]),
+        pair=(first, second),
+        place=place,
+        point_m=found.place_m[0],
+    )

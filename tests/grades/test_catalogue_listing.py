@@ -1,0 +1,132 @@
+from __future__ import annotations
+
+import pytest
+from grade_samples import GRADE_TEXT, write_grade
+
+from designer.grades.listing import (
+    Wanted,
+    check_path,
+    facts,
+    list_rows,
+    materials,
+    size_rows,
+    split_nominal,
+    summary,
+)
+from designer.grades.registry import load_catalogue
+
+
+def test_each_grade_is_one_row_with_its_ranges(tmp_path):
+    catalogue = load_catalogue([write_grade(tmp_path / "acme.yaml")])
+
+    rows = {row.id: row for row in list_rows(catalogue.grades)}
+    row = rows["acme-7x19"]
+
+    assert len(rows) == len(catalogue.grades)
+    assert (row.manufacturer, row.construction, row.trust) == ("Acme", "7x19", "A")
+    assert (row.n_sizes, row.n_doubtful, row.origin) == (4, 0, "acme.yaml")
+    assert row.diameter_m == pytest.approx((0.004, 0.010))
+    assert row.minimum_breaking_load_N == pytest.approx((11.2e3, 68.6e3))
+    assert row.youngs_modulus_Pa == pytest.approx(60e9)
+    assert rows["unirope-7x19-galvanised"].n_doubtful == 3
+
+
+def test_the_table_of_a_grade_has_stiffness_and_doubts():
+    grade = load_catalogue().grade("unirope-6x36-iwrc-1960")
+
+    rows = {row.id: row for row in size_rows(grade)}
+
+    assert len(rows) == 17
+    assert "misprint" in rows["12 mm"].doubt
+    assert rows["10 mm"].doubt == ""
+    assert rows["10 mm"].axial_stiffness_N == pytest.approx(61.0e9 * 7.853982e-5, rel=1e-6)
+
+
+def test_facts_name_the_lender_of_a_borrowed_figure_and_the_gaps():
+    galvanised = dict(facts(load_catalogue().grade("unirope-7x19-galvanised")))
+    stainless = dict(facts(load_catalogue().grade("unirope-6x19-iwrc-stainless-316")))
+
+    assert "62.7 GPa on the nominal circle, ±15%, borrowed: Strand Core" in galvanised["modulus"]
+    assert galvanised["wire grade"] == "not given"
+    assert galvanised["came in by"] == "builtin (unirope-7x19-galvanised.yaml)"
+    assert stainless["thermal expansion"] == "not given"
+    assert stainless["standard"] == "not given"
+
+
+def test_checking_a_sound_file_finds_nothing(tmp_path):
+    assert check_path(write_grade(tmp_path / "acme.yaml")) == []
+
+
+def test_checking_a_folder_finds_the_faults_of_every_file(tmp_path):
+    write_grade(tmp_path / "a.yaml", GRADE_TEXT.replace("60 GPa", "60 mm"))
+    write_grade(tmp_path / "b.yaml", GRADE_TEXT.replace("0.244", "0.164"))
+
+    faults = check_path(tmp_path)
+
+    assert [fault.field for fault in faults] == ["modulus.value", "sizes[2].linear_mass"]
+
+
+def test_checking_a_folder_without_grades_does_not_pass(tmp_path):
+    (fault,) = check_path(tmp_path)
+
+    assert "no grade file" in fault.problem
+
+
+@pytest.mark.parametrize(
+    ("wanted", "some", "none"),
+    [
+        (Wanted(construction="7X19"), "lg-7x19-wsc-galvanised-2070", "unirope-19x7-eips"),
+        (Wanted(construction="9x7"), None, "unirope-19x7-eips"),
+        (Wanted(construction="6x36ws"), "unirope-6x36-iwrc-1960", "unirope-8x36-iwrc-1960"),
+        (Wanted(construction="braid"), "yale-ultrex-hmpe", "superline-hmpe"),
+        (Wanted(material="hmpe"), "superline-hmpe", "yale-pobon-pbo"),
+        (Wanted(material="steel"), "gost-6x19s-iwrc-1960", "unirope-7x19-stainless-302-304"),
+        (Wanted(maker="robline"), "robline-rapallo-polyester", "yale-yalon-nylon"),
+        (Wanted(diameter_m=0.112), "superline-hmpe", "unirope-7x19-galvanised"),
+    ],
+)
+def test_the_list_can_be_narrowed(wanted, some, none):
+    found = {grade.id for grade in wanted.among(load_catalogue().grades)}
+
+    assert some is None or some in found
+    assert none not in found
+
+
+def test_a_wanted_diameter_keeps_the_sizes_that_have_it():
+    grades = Wanted(construction="7x19", diameter_m=0.0032).among(load_catalogue().grades)
+
+    sizes = {grade.id: [size.id for size in grade.sizes] for grade in grades}
+    assert sizes == {
+        "lg-7x19-wsc-galvanised-2070": ["3.2 mm"],
+        "unirope-7x19-galvanised": ["1/8 in"],
+        "unirope-7x19-stainless-302-304": ["1/8 in"],
+    }
+
+
+def test_facts_tell_what_is_not_the_source_s_own():
+    catalogue = load_catalogue()
+    wire = dict(facts(catalogue.grade("unirope-python-power9-v-1960")))
+    fibre = dict(facts(catalogue.grade("superline-hmpe")))
+    nominal = dict(facts(catalogue.grade("en12385-6x36ws-iwrc-1960")))
+
+    assert wire["borrowed"] == "modulus, thermal expansion"
+    assert wire["computed"] == "area factor"
+    assert "1.10 times the mass printed" in wire["computed linear mass"]
+    assert fibre["stiffness"].startswith("EA is 10.5, 28.6, 30.8, 30.8, 33.3 times the breaking")
+    assert "at 0.1, 0.3, 0.5, 0.7, 0.9 of it, ±50%, computed" in fibre["stiffness"]
+    assert fibre["creep"].startswith("high;")
+    assert fibre["doubtful sizes"] == "120 mm"
+    assert "no product" in nominal["by name only"]
+    assert "nominal" not in wire
+
+
+def test_products_and_nominal_grades_are_told_apart_and_counted():
+    catalogue = load_catalogue()
+    products, nominal = split_nominal(catalogue.grades)
+
+    assert {grade.is_nominal for grade in nominal} == {True}
+    assert {grade.is_nominal for grade in products} == {False}
+    assert summary(catalogue).startswith(
+        f"{len(products)} grades of products and {len(nominal)} nominal ones from "
+    )
+    assert {"steel", "HMPE", "PBO"} <= set(materials(products))

@@ -1,0 +1,344 @@
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from grade_samples import GRADE_TEXT, write_grade
+from plugin_samples import hook, install_plugin
+
+import designer
+from designer.cli.commands import main
+from designer.grades import files
+from designer.grades.registry import CatalogueSource, load_catalogue
+from designer.plugins import find, guard, hookspecs
+
+
+def _folder_hook(folder: Path) -> str:
+    return hook(f"return [{str(folder)!r}]")
+
+
+def test_a_plugin_brings_a_folder_of_grades(site, tmp_path):
+    write_grade(tmp_path / "ropes" / "a.yaml", grade_id="acme-a")
+    write_grade(tmp_path / "ropes" / "b.yaml", grade_id="acme-b")
+    install_plugin(site, "acme-folder", _folder_hook(tmp_path / "ropes"))
+
+    catalogue = load_catalogue()
+
+    assert catalogue.problems == ()
+    assert catalogue.grade("acme-b").origin == "acme-folder"
+    assert CatalogueSource("acme-folder", "acme-folder 1.2", 2) in catalogue.sources
+    assert catalogue.grade("unirope-7x19-galvanised").origin == "builtin"
+
+
+def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
+    path = write_grade(tmp_path / "a.yaml", grade_id="acme-file")
+    code = hook(
+        "from dataclasses import replace; from pathlib import Path; "
+        f"from designer.grades.files import read_grade; path = Path({str(path)!r}); "
+        "return [path, replace(read_grade(path), id='acme-python', file='')]"
+    )
+    install_plugin(site, "acme-mixed", code)
+
+    catalogue = load_catalogue()
+
+    assert catalogue.problems == ()
+    assert {grade.id for grade in catalogue.grades if grade.origin == "acme-mixed"} == {
+        "acme-file",
+        "acme-python",
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "words"),
+    [
+        ("acme-import", "raise RuntimeError('no licence')", "cannot be loaded: RuntimeError: no"),
+        ("acme-syntax", "def :", "cannot be loaded: SyntaxError"),
+        ("acme-exit", "raise SystemExit(3)", "cannot be loaded: SystemExit: 3"),
+        ("acme-hook", hook("raise KeyError('rope')"), "fails in register_grades(): KeyError"),
+        ("acme-quit", hook("import sys; sys.exit(0)"), "register_grades(): SystemExit: 0"),
+        (
+            "acme-break",
+            hook("raise KeyboardInterrupt"),
+            "register_grades(): KeyboardInterrupt: left",
+        ),
+        ("acme-misspelt", hook("return []", "register_grade"), "unknown hook 'register_grade'"),
+        ("acme-number", hook("return 7"), "it returned int, not a list"),
+        ("acme-nothing", hook("return None"), "it returned NoneType, not a list"),
+        ("acme-items", hook("return [7]"), "gave int, not a path or a Grade"),
+        ("acme-relative", hook("return ['ropes']"), "gave the relative path 'ropes'"),
+        ("acme-absent", hook("return ['/no/such/folder/of/ropes']"), "there is no such file"),
+        ("acme-hookless", "x = 1", "it has no hook register_grades() or register_effects()"),
+        ("acme-lazy", hook("yield 'a rope'"), "it returned generator, not a list"),
+        (
+            "acme-arguments",
+            hook("return []").replace("register_grades()", "register_grades(colour)"),
+            "cannot be loaded: PluginValidationError",
+        ),
+        (
+            "acme-unreadable",
+            "class Bad(Exception):\n    def __str__(self):\n        raise ValueError\nraise Bad",
+            "an error without a readable message",
+        ),
+    ],
+)
+def test_a_broken_plugin_is_one_line_with_its_name_and_the_rest_works(site, name, code, words):
+    n_shipped = len(load_catalogue(with_plugins=False).grades)
+    install_plugin(site, name, code)
+
+    catalogue = load_catalogue()
+
+    (problem,) = catalogue.problems
+    assert problem.startswith(f"plugin {name} ({name} 1.2)")
+    assert words in problem
+    assert problem.endswith(": left out")
+    assert "\n" not in problem
+    assert len(catalogue.grades) == n_shipped
+
+
+def test_an_entry_point_that_leads_nowhere_is_reported(site):
+    install_plugin(site, "acme-lost", "x = 1", entry="acme_lost_module")
+
+    (problem,) = load_catalogue().problems
+
+    assert problem.startswith("plugin acme-lost (acme-lost 1.2) cannot be loaded: ModuleNotFound")
+
+
+def test_an_entry_point_that_is_none_is_reported(site):
+    install_plugin(site, "acme-lost", "x = 1", entry="no such thing!")
+
+    (problem,) = load_catalogue().problems
+
+    assert problem.endswith("its entry point 'no such thing!' names no module: left out")
+
+
+def test_an_entry_point_to_what_a_module_has_not_is_reported(site):
+    install_plugin(site, "acme-lost", "x = 1", entry="acme_lost:plugin")
+
+    (problem,) = load_catalogue().problems
+
+    assert problem.startswith("plugin acme-lost (acme-lost 1.2) cannot be loaded: AttributeError")
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "failure"),
+    [
+        ("acme-import", "import time; time.sleep(3)", "cannot be loaded"),
+        ("acme-hook", hook("import time; time.sleep(3)"), "fails in register_grades()"),
+        (
+            "acme-busy",
+            hook("from time import time\nend = time() + 3\nwhile time() < end: pass"),
+            "fails in register_grades()",
+        ),
+    ],
+)
+def test_a_plugin_that_hangs_is_left_behind(site, tmp_path, monkeypatch, name, code, failure):
+    write_grade(tmp_path / "ropes" / "a.yaml", grade_id="acme-a")
+    install_plugin(site, name, code)
+    install_plugin(site, "acme-works", _folder_hook(tmp_path / "ropes"))
+    monkeypatch.setattr(guard, "LONGEST_WAIT_S", 0.5)
+
+    catalogue = load_catalogue()
+
+    (problem,) = catalogue.problems
+    assert problem == (
+        f"plugin {name} ({name} 1.2) {failure}: TimeoutError: no answer within 0.5 s: left out"
+    )
+    assert catalogue.grade("acme-a").origin == "acme-works"
+
+
+def test_a_folder_of_thousands_of_files_is_one_line_and_none_is_read(site, tmp_path, monkeypatch):
+    ropes = tmp_path / "ropes"
+    ropes.mkdir()
+    for number in range(files.MOST_FILES + 500):
+        (ropes / f"{number}.yaml").touch()
+    install_plugin(site, "acme-many", _folder_hook(ropes))
+    read = []
+    monkeypatch.setattr(files, "read_document", read.append)
+
+    (problem,) = load_catalogue(plugins=_only("acme-many")).problems
+
+    assert problem.startswith(f"plugin acme-many (acme-many 1.2): {ropes}: the folder holds too")
+    assert read == []
+
+
+def test_links_in_a_circle_trap_nobody(site, tmp_path):
+    ropes = tmp_path / "ropes"
+    write_grade(ropes / "a.yaml", grade_id="acme-a")
+    (ropes / "round").symlink_to(ropes, target_is_directory=True)
+    (ropes / "b.yaml").symlink_to(ropes / "c.yaml")
+    (ropes / "c.yaml").symlink_to(ropes / "b.yaml")
+    install_plugin(site, "acme-circle", _folder_hook(ropes))
+
+    catalogue = load_catalogue()
+
+    assert catalogue.grade("acme-a").origin == "acme-circle"
+    assert CatalogueSource("acme-circle", "acme-circle 1.2", 1) in catalogue.sources
+    for name, problem in zip(("b.yaml", "c.yaml"), catalogue.problems, strict=True):
+        assert problem.startswith(f"plugin acme-circle (acme-circle 1.2): {ropes / name}: ")
+
+
+def _only(name: str) -> find.Plugins:
+    found = find.find_plugins()
+    return find.Plugins(tuple(plugin for plugin in found.found if plugin.name == name))
+
+
+def test_a_faulty_grade_is_left_out_and_its_neighbours_stay(site, tmp_path):
+    write_grade(tmp_path / "ropes" / "good.yaml", grade_id="acme-good")
+    bad = write_grade(tmp_path / "ropes" / "bad.yaml", grade_id="acme-bad")
+    bad.write_text(bad.read_text().replace("0.244", "0.164"))
+    install_plugin(site, "acme-half", _folder_hook(tmp_path / "ropes"))
+
+    catalogue = load_catalogue()
+
+    (problem,) = catalogue.problems
+    assert problem.startswith(f"plugin acme-half (acme-half 1.2): {bad}:21: sizes[2].linear_mass")
+    assert CatalogueSource("acme-half", "acme-half 1.2", 1) in catalogue.sources
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("sizes=()", "sizes: there is no size"),
+        ("sizes='thick'", "a Grade is not usable"),
+        ("product=None", "product: is NoneType (expected a text)"),
+        ("trust='Z'", "trust: 'Z' is not known"),
+        ("product='a' + chr(27)", "not printable"),
+    ],
+)
+def test_a_grade_made_in_python_passes_the_same_checks(site, tmp_path, change, words):
+    path = write_grade(tmp_path / "a.yaml")
+    code = hook(
+        "from dataclasses import replace; from pathlib import Path; "
+        "from designer.grades.files import read_grade; "
+        f"return [replace(read_grade(Path({str(path)!r})), {change})]"
+    )
+    install_plugin(site, "acme-values", code)
+
+    (problem,) = load_catalogue().problems
+
+    assert problem.startswith("plugin acme-values (acme-values 1.2): ")
+    assert words in problem
+
+
+def test_one_id_of_two_plugins_names_both_and_keeps_the_first(site, tmp_path):
+    for name in ("acme-one", "acme-two"):
+        write_grade(tmp_path / name / f"{name}.yaml", grade_id="acme-same")
+        install_plugin(site, name, _folder_hook(tmp_path / name))
+
+    catalogue = load_catalogue()
+
+    assert catalogue.problems == (
+        "plugin acme-two (acme-two 1.2): grade 'acme-same' of 'acme-two' (acme-two.yaml) is in "
+        "'acme-one' (acme-one.yaml) already: left out",
+    )
+    assert catalogue.grade("acme-same").origin == "acme-one"
+
+
+def test_a_plugin_cannot_replace_a_shipped_grade_nor_our_own_plugin(site, tmp_path):
+    write_grade(tmp_path / "ropes" / "a.yaml", grade_id="unirope-7x19-galvanised")
+    install_plugin(site, "builtin", _folder_hook(tmp_path / "ropes"))
+
+    install_plugin(site, "acme-thief", _folder_hook(tmp_path / "ropes"))
+
+    catalogue = load_catalogue()
+
+    name, grade = catalogue.problems
+    assert name == (
+        f"plugin builtin (builtin 1.2) has the name of cdpr-designer {designer.__version__}: "
+        "left out"
+    )
+    assert "grade 'unirope-7x19-galvanised' of 'acme-thief' (a.yaml) is in 'builtin'" in grade
+    assert catalogue.grade("unirope-7x19-galvanised").file == "unirope-7x19-galvanised.yaml"
+
+
+def test_what_a_plugin_prints_is_reported_and_stays_off_standard_output(site, tmp_path, capfd):
+    write_grade(tmp_path / "ropes" / "a.yaml", grade_id="acme-loud-7x19")
+    code = "print('hello from import')\n" + hook(
+        "import os, sys; print('buy now'); os.system('echo from a child'); "
+        "print('past the door', file=sys.__stdout__); os.write(1, b'straight'); "
+        f"return [{str(tmp_path / 'ropes')!r}]"
+    )
+    install_plugin(site, "acme-loud", code)
+
+    catalogue = load_catalogue()
+
+    assert capfd.readouterr().out == ""
+    assert [problem.partition(" wrote ")[2] for problem in catalogue.problems] == [
+        "to standard output: 'hello from import'",
+        "to standard output: 'buy now'",
+    ]
+    assert catalogue.grade("acme-loud-7x19").origin == "acme-loud"
+
+
+def test_markup_in_a_grade_is_listed_as_text(site, tmp_path, capsys, monkeypatch):
+    text = GRADE_TEXT.replace("construction: 7x19", 'construction: "[red]<b>7x19</b>"')
+    write_grade(tmp_path / "ropes" / "a.yaml", text, grade_id="acme-a")
+    install_plugin(site, "acme-markup", _folder_hook(tmp_path / "ropes"))
+    monkeypatch.setattr(sys, "argv", ["designer", "catalog", "list", "--construction", "[red]"])
+
+    with pytest.raises(SystemExit) as stop:
+        main()
+
+    assert stop.value.code == 0
+    assert "[red]<b>7x19</b>" in capsys.readouterr().out
+
+
+def test_standard_output_works_after_a_loud_plugin(site, tmp_path):
+    puts = "import ctypes; ctypes.CDLL(None).puts(b'from C'); " if os.name == "posix" else ""
+    install_plugin(site, "acme-loud", hook(f"import os; os.system('echo child'); {puts}return []"))
+    code = (
+        "import json; from designer.grades.registry import load_catalogue; "
+        "print(json.dumps([s.name for s in load_catalogue().sources]))"
+    )
+    package = str(Path(designer.__file__).parents[1])
+
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.path[:0] = [{str(site)!r}, {package!r}]; {code}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+    assert "acme-loud" in json.loads(done.stdout)
+    assert "child" in done.stderr
+    assert not puts or "from C" in done.stderr
+
+
+def test_without_plugins_only_the_shipped_grades_remain(site, tmp_path, user_folder):
+    write_grade(tmp_path / "ropes" / "a.yaml", grade_id="acme-a")
+    install_plugin(site, "acme-folder", _folder_hook(tmp_path / "ropes"))
+    install_plugin(site, "acme-broken", "raise RuntimeError")
+    write_grade(user_folder / "mine.yaml", grade_id="mine")
+
+    catalogue = load_catalogue(with_plugins=False)
+
+    assert [source.name for source in catalogue.sources] == ["builtin"]
+    assert catalogue.problems == ()
+
+
+@pytest.mark.parametrize("with_plugins", [True, False])
+@pytest.mark.parametrize("entries", [find.OWN_ENTRIES, ()], ids=["installed", "checkout"])
+def test_the_shipped_grades_come_in_by_the_same_door(monkeypatch, entries, with_plugins):
+    monkeypatch.setattr(find, "entry_points", lambda group: entries)
+
+    catalogue = load_catalogue(with_plugins=with_plugins)
+
+    assert [source.name for source in catalogue.sources] == ["builtin"]
+    assert catalogue.problems == ()
+    assert catalogue.grade("unirope-7x19-galvanised").origin == "builtin"
+
+
+def test_our_entry_points_are_those_that_pyproject_declares():
+    pyproject = Path(designer.__file__).parents[1] / "pyproject.toml"
+    if not pyproject.is_file():
+        pytest.skip("runs from an installed wheel")
+    project = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]
+
+    declared = project["entry-points"][hookspecs.ENTRY_POINT_GROUP]
+
+    assert declared == {entry.name: entry.value for entry in find.OWN_ENTRIES}

@@ -1,0 +1,304 @@
+"""Clearances of poses: known geometry, true curves by an optimiser, bounds, batches, tilt."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_robots import COGIRO, ROPE, poses_under
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import frozen_array
+from designer.model.cable import Cable
+from designer.model.region import PointList, Prism
+from designer.model.robot import Platform, Poses, Robot
+from designer.physics import catenary
+from designer.statics.fixed_length import cables_of_length
+from designer.statics.inverse import Statics, solve_sagging
+from designer.study import Workspace
+from designer.workspace.clearance import (
+    PLATFORM,
+    cable_margin_m,
+    cable_pairs,
+    clearance_among_cables,
+    clearance_to_platform,
+    smallest_clearance,
+)
+from designer.workspace.hull import platform_hull
+from designer.workspace.interference import survey
+from designer.workspace.shapes import Curves
+
+LIGHT = Cable(0.01, 1e-6, 1e9, 1e6)
+
+
+def held_at(robot: Robot, poses: Poses, cable: Cable, slack: float) -> Statics:
+    """Cables of given slack in given poses, whether or not the platform would stay there."""
+    chord = np.linalg.norm(poses.attachment_points_m(robot) - robot.exit_points_m, axis=-1)
+    ones = np.ones((*chord.shape[:-1], 1))
+    return cables_of_length(
+        robot,
+        poses,
+        chord * (1.0 + slack),
+        cable.axial_stiffness_N * ones,
+        cable.weight_N_per_m * ones,
+    )
+
+
+def two_cables(height: float) -> Robot:
+    """Cable 1 along x at the level of the platform, cable 2 across it, higher by some height."""
+    exits = [[-10.0, 0, 0], [-4.0, 8.0, height], [12.0, 0, 0.5]]
+    attachments = [[0.0, 0, 0], [-4.0, -8.0, height], [2.0, 0, 0.5]]
+    return Robot(frozen_array(exits), Platform(100.0, frozen_array(attachments)))
+
+
+def test_two_crossing_cables() -> None:
+    statics = held_at(two_cables(0.7), Poses.at([[0, 0, 0.0], [0, 0, -0.2]]), LIGHT, -1e-6)
+    found = clearance_among_cables(statics)
+    assert found.distance_m[0] == pytest.approx(0.7, abs=1e-6)
+    assert list(found.pair[0]) == [0, 1]
+    assert np.allclose(found.place_m[0], [-4.0, 0.0, 0.35], atol=1e-4)
+    assert found.error_m[0] < 1e-6
+
+
+def test_a_hanging_cable_comes_nearer_than_its_chord() -> None:
+    """The crossing cable sags on the one below it by half a metre or so."""
+    robot = two_cables(0.7)
+    taut = replace_cable(held_at(robot, Poses.at([[0, 0, 0.0]]), LIGHT, -1e-6), robot)
+    found = clearance_among_cables(taut)
+    s = np.linspace(0.0, taut.length_m[0, 1], 20001)
+    x, z = catenary.position_m(
+        s,
+        taut.length_m[0, 1],
+        taut.force_x_N[0, 1],
+        taut.force_z_N[0, 1],
+        ROPE.axial_stiffness_N,
+        ROPE.weight_N_per_m,
+    )
+    at_crossing = np.interp(8.0, x, z)  # the chord is level and 16 m long
+    assert 0.1 < found.distance_m[0] < 0.5
+    assert found.distance_m[0] == pytest.approx(0.7 + at_crossing, abs=found.error_m[0] + 1e-4)
+
+
+def replace_cable(statics: Statics, robot: Robot) -> Statics:
+    """The second cable heavy and 0.2 % too long, the others light and taut."""
+    heavy = held_at(robot, statics.poses, ROPE, 2e-3)
+    second = np.array([False, True, False])
+    return replace(
+        statics,
+        length_m=np.where(second, heavy.length_m, statics.length_m),
+        force_x_N=np.where(second, heavy.force_x_N, statics.force_x_N),
+        force_z_N=np.where(second, heavy.force_z_N, statics.force_z_N),
+        weight_N_per_m=np.where(second, ROPE.weight_N_per_m, LIGHT.weight_N_per_m)[None],
+        axial_stiffness_N=np.where(second, ROPE.axial_stiffness_N, LIGHT.axial_stiffness_N)[None],
+    )
+
+
+@pytest.mark.parametrize("slack", [-5e-4, 0.01, 0.3])
+def test_true_curves_against_a_finer_and_finer_grid(slack: float) -> None:
+    """All pairs of cables of some poses: points on both, closer and closer about the nearest."""
+    rng = np.random.default_rng(3)
+    poses = Poses.at(rng.uniform([-3, -3, 0], [3, 3, 2], (3, 3)), rng.normal(0, 0.3, (3, 3)))
+    statics = held_at(COGIRO, poses, ROPE, slack)
+    found = clearance_among_cables(statics)
+    curves = Curves.of(statics)
+    for pose in range(3):
+        pairs = [(8 * pose + i, 8 * pose + j) for i, j in cable_pairs(COGIRO)]
+        best = min(nearest_points_m(curves, *pair) for pair in pairs)
+        assert found.distance_m[pose] == pytest.approx(best, abs=1e-5)
+        assert best >= found.distance_m[pose] - found.error_m[pose] - 1e-9
+
+
+def nearest_points_m(curves: Curves, first: int, second: int) -> float:
+    """Distance of two curves by points alone."""
+    ends = np.array([[0.0, 1.0], [0.0, 1.0]])
+    for _ in range(8):
+        lines = [
+            curves.polylines(np.array([which]), low, high, 120)
+            for which, (low, high) in zip((first, second), ends[..., None], strict=True)
+        ]
+        gaps = np.linalg.norm(lines[0].points_m[0][:, None] - lines[1].points_m[0], axis=-1)
+        at = np.unravel_index(np.argmin(gaps), gaps.shape)
+        for k in (0, 1):
+            share = lines[k].share[0]
+            ends[k] = share[max(at[k] - 8, 0)], share[min(at[k] + 8, 120)]
+    return float(gaps.min())
+
+
+def test_the_bound_covers_a_coarse_polyline() -> None:
+    statics = held_at(COGIRO, Poses.at([[0.5, 0, 1.0]], [[0, 0, 0]]), ROPE, 0.2)
+    curves = Curves.of(statics)
+    which, zero, one = np.arange(8), np.zeros(8), np.ones(8)
+    coarse, fine = (curves.polylines(which, zero, one, n) for n in (6, 600))
+    start, end = coarse.points_m[:, :-1, None], coarse.points_m[:, 1:, None]
+    parts = np.stack([fine.points_m[:, 100 * k : 100 * k + 101] for k in range(6)], axis=1)
+    along = end - start
+    share = np.sum((parts - start) * along, axis=-1) / np.sum(along**2, axis=-1)
+    foot = start + np.clip(share, 0.0, 1.0)[..., None] * along
+    strays = np.linalg.norm(parts - foot, axis=-1).max(axis=-1)
+    assert (strays <= coarse.sagitta_m + 1e-12).all()
+    assert (coarse.sagitta_m < 3.0 * strays + 1e-9).all()
+
+
+def test_cables_that_share_an_end_are_not_compared(fast_robot, six_cable_robot) -> None:
+    assert cable_pairs(fast_robot) == []
+    assert (0, 1) not in cable_pairs(six_cable_robot)  # one exit point
+    assert (0, 3) not in cable_pairs(six_cable_robot)  # one attachment
+    assert (0, 2) in cable_pairs(six_cable_robot)
+    statics = solve_sagging(fast_robot, Poses.at([[250.0, 200, -50]]), ROPE)
+    assert np.isnan(smallest_clearance(statics).distance_m).all()
+
+
+BOX = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-0.5, 0.0)])
+
+
+def boxed(exit_point: list[float]) -> Robot:
+    """One cable from the middle of the top of a box, and two that leave it straight up."""
+    exits = [exit_point, [-1.0, -1.0, 30.0], [-1.0, 1.0, 30.0]]
+    attachments = frozen_array([[0.0, 0, 0], [-1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]])
+    return Robot(frozen_array(exits), Platform(100.0, attachments, hull_m=frozen_array(BOX)))
+
+
+@pytest.mark.parametrize("angle_deg", [3.0, 30.0, 60.0])
+def test_a_cable_that_leaves_a_box_at_an_angle(angle_deg: float) -> None:
+    slope = np.radians(angle_deg)
+    robot = boxed([20.0 * np.cos(slope), 0.0, 20.0 * np.sin(slope)])
+    statics = held_at(robot, Poses.at([[0, 0, 0.0]], [[0, 0, 0]]), LIGHT, -1e-6)
+    found = clearance_to_platform(statics)
+    # A quarter of the diagonal of the box does not count.
+    margin = 0.25 * np.sqrt(2.0**2 + 2.0**2 + 0.5**2)
+    assert found.distance_m[0] == pytest.approx(margin * np.sin(slope), rel=1e-4)
+    assert list(found.pair[0]) == [0, PLATFORM]
+
+
+def test_a_cable_through_the_box_touches_it() -> None:
+    robot = boxed([20.0, 0.0, -3.0])
+    statics = held_at(robot, Poses.at([[0, 0, 0.0]], [[0, 0, 0]]), LIGHT, -1e-6)
+    assert clearance_to_platform(statics).distance_m[0] == 0.0
+
+
+def test_an_attachment_inside_the_box_gets_out_of_it_first() -> None:
+    robot = boxed([0.0, 0.0, 30.0])
+    lowered = replace(
+        robot,
+        platform=replace(
+            robot.platform, attachments_m=frozen_array(robot.attachments_m - [0, 0, 0.2])
+        ),
+    )
+    hull = platform_hull(lowered)
+    assert hull is not None
+    quarter = 0.25 * np.sqrt(2.0**2 + 2.0**2 + 0.5**2)
+    assert np.allclose(cable_margin_m(lowered, hull), quarter + np.array([0.2, 0.0, 0.0]))
+    statics = held_at(lowered, Poses.at([[0, 0, 0.0]], [[0, 0, 0]]), LIGHT, -1e-6)
+    found = clearance_to_platform(statics)
+    # The nearest are the other two, which run up the side of the box for 0.2 m at first.
+    assert found.distance_m[0] == pytest.approx(quarter - 0.2, rel=1e-4)
+    assert found.pair[0, 0] in (1, 2)
+
+
+def test_hull_of_the_attachments_flat_and_solid(six_cable_robot) -> None:
+    flat, solid = platform_hull(six_cable_robot), platform_hull(COGIRO)
+    assert flat is not None and solid is not None
+    assert np.allclose(flat.triangles_m[..., 2], 0.0)
+    middle = COGIRO.attachments_m.mean(axis=0)
+    assert solid.depth_m(middle) > 0.2
+    assert flat.depth_m(np.zeros(3)) == 0.0
+    assert np.allclose(flat.heights_m(six_cable_robot.attachments_m).max(axis=-1), 0.0, atol=1e-12)
+    assert flat.heights_m(np.array([0.0, 0, 2.0])).max() == pytest.approx(2.0)
+    line = frozen_array([[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]])
+    assert platform_hull(Robot(line, Platform(1.0, line))) is None
+
+
+def test_distance_to_the_hull_against_an_optimiser() -> None:
+    """Points of each cable against convex combinations of the attachments."""
+    rng = np.random.default_rng(5)
+    poses = Poses.at(rng.uniform([-3, -3, 0], [3, 3, 2], (2, 3)), rng.normal(0, 0.3, (2, 3)))
+    statics = held_at(COGIRO, poses, ROPE, 0.01)
+    found = clearance_to_platform(statics)
+    curves = Curves.of(statics)
+    hull = platform_hull(COGIRO)
+    assert hull is not None
+    margin = cable_margin_m(COGIRO, hull)
+    for pose in range(2):
+        corners = poses.attachment_points_m(COGIRO)[pose]
+        best = np.inf
+        for cable in range(8):
+            which = np.array([8 * pose + cable])
+            end = 1.0 - margin[cable] / curves.length_m[which]
+            points = curves.polylines(which, 0.9 * end, end, 60).points_m[0]
+            best = min(best, *(to_hull(point, corners) for point in points[-25:]))
+        assert found.distance_m[pose] == pytest.approx(best, abs=2e-4)
+
+
+def to_hull(point: np.ndarray, corners: np.ndarray) -> float:
+    """Distance of a point from the convex combinations of some corners, by an optimiser."""
+    result = minimize(
+        lambda share: float(np.sum((share @ corners - point) ** 2)),
+        np.full(8, 0.125),
+        jac=lambda share: 2.0 * corners @ (share @ corners - point),
+        bounds=[(0, 1)] * 8,
+        constraints={"type": "eq", "fun": lambda share: share.sum() - 1.0},
+        method="SLSQP",
+        options={"ftol": 1e-14, "maxiter": 300},
+    )
+    return float(np.sqrt(result.fun))
+
+
+def test_batch_equals_loop_and_tilt_and_turns_change_nothing(six_cable_robot) -> None:
+    poses = poses_under(six_cable_robot, 12, 6)
+    statics = solve_sagging(six_cable_robot, poses, ROPE)
+    batch = smallest_clearance(statics)
+    assert np.array_equal(np.isnan(batch.distance_m), ~statics.is_solved)
+    for k in np.flatnonzero(statics.is_solved):
+        one = solve_sagging(six_cable_robot, Poses(poses.position_m[k], poses.rotation[k]), ROPE)
+        alone = smallest_clearance(one)
+        assert alone.distance_m == pytest.approx(batch.distance_m[k], abs=1e-9)
+        assert list(alone.pair) == list(batch.pair[k])
+    Q = Rotation.from_rotvec([0.3, -0.2, 0.0]).as_matrix()
+    # The same machine, seen from a frame that leans: tilt takes it back upright.
+    leaning = replace(
+        six_cable_robot,
+        exit_points_m=frozen_array(six_cable_robot.exit_points_m @ Q),
+        tilt_rad=frozen_array([0.3, -0.2]),
+    )
+    seen = Poses(poses.position_m @ Q, Q.T @ poses.rotation)
+    again = smallest_clearance(solve_sagging(leaning, seen, ROPE))
+    good = statics.is_solved
+    assert np.allclose(again.distance_m[good], batch.distance_m[good], atol=1e-7)
+    assert np.allclose(again.place_m[good] @ Q.T, batch.place_m[good], atol=1e-3)
+
+
+@pytest.mark.slow
+def test_survey_finds_the_worst_pose_and_says_which_pair(six_cable_robot) -> None:
+    region = Prism.over(six_cable_robot.exit_points_m, 40.0, (-60.0, -30.0))
+    workspace = Workspace(region, samples=60)
+    found = survey(six_cable_robot, workspace, ROPE, 0.2)
+    assert found.samples > 50
+    assert found.among_cables is not None and found.to_platform is not None
+    worst = found.worst
+    assert worst is not None
+    assert worst.distance_m == min(found.among_cables.distance_m, found.to_platform.distance_m)
+    assert found.is_violated == (worst.distance_m < 0.2)
+    for nearest in (found.among_cables, found.to_platform):
+        statics = solve_sagging(six_cable_robot, Poses.at(nearest.place), ROPE)
+        again = (
+            clearance_to_platform(statics)
+            if nearest is found.to_platform
+            else clearance_among_cables(statics)
+        )
+        assert again.distance_m == pytest.approx(nearest.distance_m, abs=1e-9)
+        assert region.contains(nearest.place[:3])
+    assert found.to_platform.names[1] == "the platform"
+    samples = replace(workspace, region=PointList(frozen_array([found.to_platform.place[:3]])))
+    listed = survey(six_cable_robot, samples, ROPE, 0.2)
+    assert listed.to_platform is not None
+    assert listed.to_platform.distance_m == pytest.approx(found.to_platform.distance_m)
+
+
+def test_survey_of_a_point_mass_has_nothing_to_compare(fast_robot, steel) -> None:
+    workspace = Workspace(PointList(frozen_array([[250.0, 200, -50]])))
+    found = survey(fast_robot, workspace, steel.cable(0.03), 0.1)
+    assert found.worst is None
+    assert not found.is_violated
+    assert found.samples == 1
