@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 
 from designer import __version__
+from designer.analysis.verification import SecondAnswer, verify, verify_cables
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
+from designer.model.robot import Poses
 from designer.progress import SILENT, Reporter
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
@@ -26,7 +28,7 @@ from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import LoopSizing, size_by_loop
 from designer.sizing.newton import Sizing, size_poses
-from designer.statics.inverse import MasslessStatics, solve_massless
+from designer.statics.inverse import MasslessStatics, solve_massless, solve_sagging
 from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study, as_built_by, require_enough_cables
 from designer.workspace.hanging import HangingCables
@@ -145,6 +147,8 @@ class Analysis:
     section_m : float or None
         Diameter whose mass, stiffness and strength stand for the configured family; None where the
         declared effects leave it a family, see `designer.workspace.section` [m].
+    verification : tuple of SecondAnswer
+        The governing poses, solved again by other methods.
     scratch : Scratch or None
         Folder that goes with this value, where no other was given for the samples.
     """
@@ -158,6 +162,7 @@ class Analysis:
     groups: GroupChoice | None = None
     qualities: Qualities | None = None
     section_m: float | None = None
+    verification: tuple[SecondAnswer, ...] = ()
     scratch: Scratch | None = field(default=None, repr=False)
 
     @property
@@ -328,8 +333,34 @@ def analyse(
         groups,
         qualities,
         built.section_m,
+        _second_answers(study, built, pose, workspace, chosen),
         scratch,
     )
+
+
+def _second_answers(
+    study: Study,
+    built: AsBuilt,
+    pose: PoseAnalysis | None,
+    workspace: WorkspaceMap | None,
+    chosen: SelectionResult | None,
+) -> tuple[SecondAnswer, ...]:
+    """Verify the configured pose, the worst pose, and that of the chosen rope."""
+    found: list[SecondAnswer] = []
+    if pose is not None:
+        section_m = section_of_pose(built, pose.sizing.statics.poses, study.material)
+        material = built.material(study.material, section_m)
+        found += verify("configured pose", material, pose.sizing)
+    if workspace is not None and workspace.sagging is not None:
+        material = built.material(study.material)
+        sizing = size_poses(built.robot, workspace.sagging.pose, material)
+        found += verify("worst pose", material, sizing)
+    if chosen is not None and chosen.chosen is not None:
+        place = chosen.chosen.verification.worst_position_m
+        statics = solve_sagging(built.robot, Poses.at(place), chosen.chosen.cable)
+        if statics.is_solved:
+            found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))
+    return tuple(found)
 
 
 def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:

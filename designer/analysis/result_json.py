@@ -49,6 +49,18 @@ def result_dict(analysis: Analysis) -> Json:
             }
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
+        "verification": [
+            {
+                "method": one.method,
+                "quantity": one.quantity,
+                "unit": one.unit,
+                "ours": _number(one.ours),
+                "theirs": _number(one.theirs),
+                "difference": _number(one.difference),
+                "remark": one.remark,
+            }
+            for one in analysis.verification
+        ],
         "provenance": {
             **_origin(study),
             "catalogues": [

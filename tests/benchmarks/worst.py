@@ -41,6 +41,8 @@ _TOLERANCE = 1e-6
 _SLOW_SAMPLES = {"stiffness": 20_000, "clearance": 2_000}
 _CHUNK = 2**15
 _POLISHED = 3
+_TOUCHING_M = 1e-6
+"""Cables nearer than this touch."""
 
 
 def random_workspace(study: Study, rng: np.random.Generator) -> Workspace:
@@ -211,9 +213,9 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
 
         def nearness(places: FloatArray) -> FloatArray:
             distance = smallest_clearance(solve_sagging(robot, Poses.at(places), cable)).distance_m
-            return -np.nan_to_num(distance, nan=np.inf)
+            return -np.maximum(np.nan_to_num(distance, nan=np.inf), _TOUCHING_M)
 
-        told_near = -np.inf if near is None else -max(near.distance_m, 1e-6)
+        told_near = -np.inf if near is None else -max(near.distance_m, _TOUCHING_M)
         compare("clearance", told_near, nearness, _SLOW_SAMPLES["clearance"])
     return faults
 

@@ -1,0 +1,111 @@
+"""The governing poses solved a second time, by methods that share no code with the kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.model.cable import Material
+from designer.physics.quadrature import end_position_m
+from designer.sizing.newton import Sizing
+from designer.statics.inverse import Statics
+
+
+@dataclass(frozen=True, slots=True)
+class SecondAnswer:
+    """One number, ours and by another method.
+
+    Parameters
+    ----------
+    method : str
+        What found the other one.
+    quantity : str
+        What it is, and at which pose.
+    unit : str
+        Of both, SI.
+    ours, theirs : float
+        NaN where the other method found nothing, see ``remark``.
+    remark : str
+        Why there is nothing to compare, or what the other answer is worth.
+    """
+
+    method: str
+    quantity: str
+    unit: str
+    ours: float
+    theirs: float
+    remark: str = ""
+
+    @property
+    def difference(self) -> float:
+        """Theirs less ours."""
+        return self.theirs - self.ours
+
+
+def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:
+    """Find a needed diameter again by an optimiser, and where its cables end by quadrature.
+
+    The optimiser is SciPy's SLSQP on the unknowns of Riehl et al., ICRA 2010, section IV.C, or for
+    more cables than degrees of freedom a sequence of convex programmes in CVXPY; neither knows
+    pulleys.
+
+    Parameters
+    ----------
+    name : str
+        What pose it is, such as ``worst pose``.
+    material : Material
+        The family of cables.
+    sizing : Sizing
+        Ours, of one pose.
+    """
+    if not sizing.statics.is_solved:
+        return []
+    return [_diameter(name, material, sizing), verify_cables(name, sizing.statics)]
+
+
+def _diameter(name: str, material: Material, sizing: Sizing) -> SecondAnswer:
+    robot, pose = sizing.statics.robot, sizing.statics.poses
+    ours = float(sizing.diameter_m)
+    theirs, remark = np.nan, "did not converge"
+    method = "convex programmes (CVXPY)" if robot.is_redundant else "SLSQP (SciPy)"
+    try:
+        if robot.is_redundant:
+            from designer.sizing.scp import size_by_scp
+
+            theirs = size_by_scp(robot, pose, material).diameter_m
+        else:
+            from designer.sizing.nlp import size_by_nlp
+
+            theirs = size_by_nlp(robot, pose, material).diameter_m
+    except ValueError as error:
+        remark = str(error)
+    remark = "" if np.isfinite(theirs) else remark
+    return SecondAnswer(method, f"needed diameter, {name}", "m", ours, theirs, remark)
+
+
+def verify_cables(name: str, statics: Statics) -> SecondAnswer:
+    """Integrate the cable equation with our lengths and forces: how far off does a cable end?"""
+    geometry = statics.geometry()
+    weight, stiffness = (
+        np.broadcast_to(figure, statics.length_m.shape)
+        for figure in (statics.weight_N_per_m, statics.axial_stiffness_N)
+    )
+    each = zip(
+        statics.free_length_m,
+        statics.force_x_N,
+        statics.force_z_N,
+        stiffness,
+        weight,
+        strict=True,
+    )
+    ends = np.array([end_position_m(*map(float, cable)) for cable in each])
+    off = ends - np.stack([geometry.horizontal_distance_m, -geometry.drop_m], axis=-1)
+    farthest = float(np.hypot(*off.T).max())
+    return SecondAnswer(
+        "quadrature of the cable equation",
+        f"distance of a cable's end from its attachment, {name}",
+        "m",
+        0.0,
+        farthest,
+    )
