@@ -22,6 +22,7 @@ _HOMES = {
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
     "designer.model.verdict": "Verdict",
+    "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect Measurements Selection Study Workspace",
 }
 """Where the public names are defined, those of each module separated by spaces."""
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
     from designer.model.verdict import Verdict
+    from designer.resources import example_file, example_names
     from designer.study import (
         CableGroup,
         DeclaredEffect,
@@ -77,6 +79,8 @@ __all__ = [
     "analyse",
     "catalogue",
     "diagnose",
+    "example_file",
+    "example_names",
     "read_study",
     "size",
     "write_report",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -65,6 +66,32 @@ def test_a_study_made_in_python_is_analysed_without_a_folder(tmp_path, monkeypat
     assert not file.parent.exists()
 
 
+@pytest.mark.slow
+def test_the_readme_does_what_it_shows(tmp_path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = example_file("yard").read_text(encoding="utf-8")
+    (tmp_path / "my-crane.yaml").write_text(text.replace("samples: 20000", "samples: 200"))
+    readme = Path(designer.__file__).parents[1] / "README.md"
+    (snippet,) = re.findall(r"```python\n(.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)
+    exec(snippet, {})
+    assert " mm at [" in capsys.readouterr().out
+    assert (tmp_path / "my-crane-report" / "report.pdf").stat().st_size > 0
+
+
+@pytest.mark.slow
+def test_the_notebook_runs(monkeypatch, capsys) -> None:
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    file = example_file("yard").with_name("first-steps.ipynb")
+    cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+    space: dict[str, object] = {}
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), space)
+    diameters = re.findall(r"kg: (\d\.\d+) mm", capsys.readouterr().out)
+    assert len(diameters) == 5
+    assert diameters == sorted(diameters)
+
+
 def test_size_gives_what_the_command_prints(capsys, monkeypatch) -> None:
     file = str(example_file("fast"))
     found = designer.size(designer.read_study(file))
@@ -84,6 +111,7 @@ def test_a_study_without_a_pose_or_measurements_is_refused_in_one_line() -> None
         designer.diagnose(study)
 
 
+@pytest.mark.slow
 def test_a_report_is_written_whole_with_all_results(tmp_path: Path) -> None:
     analysis = designer.analyse(small(), designer.catalogue(with_plugins=False))
     designer.write_report(analysis, tmp_path / "out")
