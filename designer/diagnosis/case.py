@@ -35,7 +35,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     )
     machine = Machine(study.robot, cable, surroundings=study.surroundings)
     declared = declared_settings(study, machine)
-    fixed = [s for s in declared if not _is_given(s.effect, measurements)]
+    fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
     known = {setting.effect.key for setting in fixed}
     effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]
     recorded = _recorded(study, measured)
@@ -46,8 +46,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measurements,
         machine,
         measured,
-        tuple(e for e in shown if not _is_given(e, measurements)),
-        tuple(e for e in shown if _is_given(e, measurements)),
+        tuple(e for e in shown if not e.is_among(measurements.unknown)),
+        tuple(e for e in shown if e.is_among(measurements.unknown)),
         tuple(skipped),
         tuple(s for s in fixed if _acts(s.effect, recorded)),
         tuple(
@@ -78,11 +78,6 @@ def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
-
-
-def _is_given(effect: Effect, measurements: Measurements) -> bool:
-    by_id = effect.id in measurements.unknown
-    return by_id or (effect.id == "anchor_offset" and "anchors" in measurements.unknown)
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
