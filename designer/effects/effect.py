@@ -29,6 +29,11 @@ class Readings:
     length_m: FloatArray
     tension_N: FloatArray
 
+    @property
+    def stacked(self) -> FloatArray:
+        """Lengths, then tensions (n_rows, 2 n_cables)."""
+        return np.hstack([self.length_m, self.tension_N])
+
 
 @dataclass(frozen=True, slots=True)
 class Size:
@@ -222,6 +227,11 @@ class Effect:
     def neutral(self) -> dict[str, float]:
         """Values at which it does nothing."""
         return {p.name: p.neutral for p in self.parameters}
+
+    @property
+    def needs_motion(self) -> bool:
+        """Whether poses at rest do not show it."""
+        return "motion" in self.needs
 
     def is_among(self, names: Sequence[str]) -> bool:
         """Tell whether one of the names, as in ``measurements.unknown``, is its own."""

@@ -15,13 +15,13 @@ from twins.robots import YARD3
 from designer import effects
 from designer.cli.commands import main
 from designer.diagnosis.check import check
-from designer.diagnosis.plugin_effects import diagnose_study
+from designer.diagnosis.diagnose import diagnose_study
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.effects.registry import EFFECTS, SHIPPED
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosed_config, diagnosis_dict
+from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.plugins.find import find_plugins
 from designer.study import Study, as_built_by, declared_settings
@@ -120,7 +120,7 @@ def test_the_diagnosis_finds_it_and_the_config_keeps_it(site, tmp_path) -> None:
     estimate = finding.parameters["drift_N_per_K"]
     assert estimate.value == pytest.approx(2.0, abs=4.0 * estimate.std)
     assert not found.is_unexplained
-    assert diagnosis_dict(found)["left_out"] == []
+    assert found.to_dict()["left_out"] == []
 
     better = tmp_path / "config.diagnosed.yaml"
     better.write_text(diagnosed_config(found, tmp_path), encoding="utf-8")
@@ -324,7 +324,7 @@ def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, l
     assert study.measurements is not None
     found = diagnose_study(study, study.measurements, read_measured(study))
     assert found.findings == ()
-    (problem,) = diagnosis_dict(found)["left_out"]
+    (problem,) = found.to_dict()["left_out"]
     start = "plugin acme-broken (acme-broken 1.2): effect 'load_cell_drift' fails at work: "
     assert problem.startswith(start)
     assert words in problem

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.diagnosis.result import Estimate
-from designer.diagnosis.whereabouts import in_runs, strongest_channel, whereabouts
+from designer.diagnosis.trends import in_runs, strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter, Size
 from designer.report.diagnosis import words
 from designer.report.figures.diagnosis_carriers import running_median
