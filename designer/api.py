@@ -85,7 +85,7 @@ def diagnose(
     InputError
         If there is nothing to compare, or the data are not as they should be.
     """
-    from designer.diagnosis.plugin_effects import diagnose_study
+    from designer.diagnosis.diagnose import diagnose_study
     from designer.measured.read import read_measured
 
     if study.measurements is None:

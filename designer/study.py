@@ -338,7 +338,7 @@ def declared_settings(study: Study, machine: Machine | None = None) -> tuple[Set
     """
     wanted = {(effect.id, effect.cable): effect.parameters for effect in study.effects}
     ids = {effect_id for effect_id, _ in wanted}
-    known = KnownEffects(tuple(k for k in study.known_effects.kinds if k.name.id in ids))
+    known = KnownEffects(tuple(e for e in study.known_effects.effects if e.id in ids))
     settings = tuple(
         Setting(effect, wanted[effect.id, effect.cable])
         for effect in known.of(machine or declared_machine(study))

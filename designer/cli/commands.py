@@ -234,8 +234,8 @@ def diagnose(
     folder = output or Path(f"{config.stem}-diagnosis")
 
     from designer.diagnosis.design import with_design
-    from designer.diagnosis.plugin_effects import diagnose_study
-    from designer.io.diagnosis_files import diagnosed_config, diagnosis_text
+    from designer.diagnosis.diagnose import diagnose_study
+    from designer.io.diagnosis_files import diagnosed_config
     from designer.report.diagnosis.context import write_diagnosis
 
     with output_folder(folder) as building, Spinner("searching") as spinner:
@@ -244,7 +244,7 @@ def diagnose(
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
         write_diagnosis(diagnosis, building)
-        (building / "diagnosis.json").write_text(diagnosis_text(diagnosis), encoding="utf-8")
+        (building / "diagnosis.json").write_text(diagnosis.to_json(), encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
         written = file_names(building)
@@ -259,14 +259,13 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     from designer.cli.terminal import Spinner, announce_compiling
     from designer.cli.terminal_check import print_check
     from designer.diagnosis.check import check
-    from designer.io.diagnosis_files import check_dict, json_text
     from designer.io.output import file_names, output_folder
 
     assert study.measurements is not None
     announce_compiling()
     with output_folder(folder) as building, Spinner("checking") as spinner:
         found = check(study, study.measurements, measured, spinner)
-        (building / "diagnosis.json").write_text(json_text(check_dict(found)), encoding="utf-8")
+        (building / "diagnosis.json").write_text(found.to_json(), encoding="utf-8")
         written = file_names(building)
     print_check(found, folder, written)
     if not found.is_positive:

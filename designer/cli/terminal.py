@@ -283,7 +283,7 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
 
 def _against(diagnosis: Diagnosis) -> Iterator[tuple[str, str]]:
     """Yield what speaks against the model, and what was withdrawn."""
-    from designer.diagnosis.whereabouts import in_runs
+    from designer.diagnosis.trends import in_runs
 
     bad = "[bold red]{}[/]".format
     for what in diagnosis.not_tried:

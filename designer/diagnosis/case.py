@@ -2,16 +2,65 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.diagnosis.diagnose import Case
-from designer.effects.effect import NEEDS, Effect, as_built
+from designer.arrays import FloatArray
+from designer.diagnosis.predict import Predictor
+from designer.effects.effect import NEEDS, Effect, Setting, as_built
+from designer.errors import Fault, InputError
 from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.study import Measurements, Study, declared_settings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """What a diagnosis starts from.
+
+    Parameters
+    ----------
+    study, measurements, machine, measured
+        The study, its measurements, the machine as drawn, the data.
+    candidates : tuple of Effect
+        Effects that the data can show, in the order in which they act.
+    given : tuple of Effect
+        What is unknown from the start.
+    skipped : tuple of (effect, reason)
+        Effects that the data cannot show.
+    fixed : tuple of Setting
+        Declared effects that act on these data, less those that are unknown.
+    idle : tuple of (effect, reason)
+        Declared effects for which these data lack something.
+    """
+
+    study: Study
+    measurements: Measurements
+    machine: Machine
+    measured: Measured
+    candidates: tuple[Effect, ...]
+    given: tuple[Effect, ...]
+    skipped: tuple[tuple[str, str], ...]
+    fixed: tuple[Setting, ...] = ()
+    idle: tuple[tuple[str, str], ...] = ()
+
+    def predictor(self, measured: Measured | None = None) -> Predictor:
+        """Return the model as declared, for these rows or others."""
+        rows = self.measured if measured is None else measured
+        return Predictor(self.machine, rows, self.fixed, self.study.known_effects)
+
+    def fault(self, problem: str, expected: str) -> InputError:
+        """Return what is wrong with the data as a whole."""
+        return InputError([Fault(str(self.measurements.file), None, "", problem, expected)])
+
+    def check_held(self, predict: Predictor) -> None:
+        """Refuse poses most of which no cables hold: frames, units or exit points are mixed up."""
+        held = ~np.isnan(predict(()).length_m).any(axis=1)
+        if 2 * held.sum() < held.size:
+            problem = f"the robot as declared can hold {held.sum()} of {held.size} poses"
+            raise self.fault(problem, "poses between its exit points, in the same frame and unit")
 
 
 def case_of(study: Study, measurements: Measurements, measured: Measured) -> Case:
@@ -24,8 +73,13 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     study, measurements, measured
         As read.
     """
-    if measurements.estimated_noise:
-        measurements = _without_estimates(measurements)
+    estimated = measurements.estimated_noise
+    if estimated:  # by a diagnosis before: nobody declared it
+        measurements = replace(
+            measurements,
+            length_noise_m=None if "length" in estimated else measurements.length_noise_m,
+            tension_noise_N=None if "tension" in estimated else measurements.tension_noise_N,
+        )
     # The diagnosis asks no strength of the cable, and only laws of plugins ask its diameter.
     cable = Cable(
         diameter_m=measurements.diameter_m or float("nan"),
@@ -35,36 +89,22 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     )
     machine = Machine(study.robot, cable, surroundings=study.surroundings)
     declared = declared_settings(study, machine)
-    fixed = [s for s in declared if not _is_given(s.effect, measurements)]
+    fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
     known = {setting.effect.key for setting in fixed}
     effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]
     recorded = _recorded(study, measured)
-    skipped = [(e.key, missing) for e in effects if (missing := _missing(e, recorded))]
     shown = [e for e in effects if not _missing(e, recorded)]
+    idle = [s for s in fixed if not _acts(s.effect, recorded)]
     return Case(
         study,
         measurements,
         machine,
         measured,
-        tuple(e for e in shown if not _is_given(e, measurements)),
-        tuple(e for e in shown if _is_given(e, measurements)),
-        tuple(skipped),
-        tuple(s for s in fixed if _acts(s.effect, recorded)),
-        tuple(
-            (s.effect.key, _missing(s.effect, recorded))
-            for s in fixed
-            if not _acts(s.effect, recorded)
-        ),
-    )
-
-
-def _without_estimates(measurements: Measurements) -> Measurements:
-    """Leave out the noise that a diagnosis has estimated before: nobody declared it."""
-    is_length, is_tension = (kind in measurements.estimated_noise for kind in ("length", "tension"))
-    return replace(
-        measurements,
-        length_noise_m=None if is_length else measurements.length_noise_m,
-        tension_noise_N=None if is_tension else measurements.tension_noise_N,
+        candidates=tuple(e for e in shown if not e.is_among(measurements.unknown)),
+        given=tuple(e for e in shown if e.is_among(measurements.unknown)),
+        skipped=tuple((e.key, why) for e in effects if (why := _missing(e, recorded))),
+        fixed=tuple(s for s in fixed if s not in idle),
+        idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
     )
 
 
@@ -80,19 +120,14 @@ def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     return f"needs {NEEDS[missing[0]]}" if missing else ""
 
 
-def _is_given(effect: Effect, measurements: Measurements) -> bool:
-    by_id = effect.id in measurements.unknown
-    return by_id or (effect.id == "anchor_offset" and "anchors" in measurements.unknown)
-
-
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
-    found = set(measured.columns)
-    if not measured.settled:
-        found.add("motion")
-    if not study.robot.is_point_mass:
-        found.add("rotation")
-    if not np.isnan(measured.length_m).all():
-        found.add("length")
-    if not np.isnan(measured.tension_N).all():
-        found.add("tension")
-    return frozenset(found)
+    def has_any(readings: FloatArray) -> bool:
+        return not np.isnan(readings).all()
+
+    found = {
+        "motion": not measured.settled,
+        "rotation": not study.robot.is_point_mass,
+        "length": has_any(measured.length_m),
+        "tension": has_any(measured.tension_N),
+    }
+    return measured.columns | {name for name, is_there in found.items() if is_there}

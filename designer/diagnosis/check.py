@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.as_json import check_dict, json_text
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.case import case_of
-from designer.diagnosis.diagnose import Case, check_held
-from designer.diagnosis.errors_of import bootstrap, outliers_of
+from designer.diagnosis.errors_of import Interval, Outlier, bootstrap, outliers_of
 from designer.diagnosis.fit import fit
-from designer.diagnosis.foretell import foretell
+from designer.diagnosis.foretell import Foretold, foretell
 from designer.diagnosis.hold import structure_left
-from designer.diagnosis.noise import noise_of, rough_noise
-from designer.diagnosis.predict import Predictor
+from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import Foretold, Interval, Outlier
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured, Noise
@@ -120,6 +119,14 @@ class Check:
         kinds = ((model.length_m, self.noise.length_m), (model.tension_N, self.noise.tension_N))
         return sum((left.rms.value / noise) ** 2 for left, noise in kinds if left is not None)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``diagnosis.json`` holds; a missing number is None."""
+        return check_dict(self)
+
+    def to_json(self) -> str:
+        """Return the text of ``diagnosis.json``."""
+        return json_text(self.to_dict())
+
 
 def check(
     study: Study,
@@ -138,89 +145,61 @@ def check(
     """
     case = case_of(study, replace(measurements, unknown=()), measured)
     bare = case_of(replace(study, effects=()), measurements, measured)
-    everything = Predictor(case.machine, measured, case.fixed, study.known_effects)
-    check_held(case, everything)
-    noise = _noise(measurements, measured, everything)
-    declared = Problem(measured, everything, noise)
-    bare_predict = Predictor(case.machine, measured, (), study.known_effects)
-    without = Problem(measured, bare_predict, noise)
-    problems: dict[str, tuple[Problem, tuple[Setting, ...]]] = {
+    everywhere = np.ones(measured.n_rows, dtype=np.bool_)
+    predict = case.predictor()
+    case.check_held(predict)
+    noise = first_noise(measurements, measured, predict, everywhere)
+    if noise.source == "declared" and measurements.estimated_noise:
+        noise = replace(noise, source=CARRIED)
+    declared = Problem(measured, predict, noise)
+    without = Problem(measured, bare.predictor(), noise)
+    tried: dict[str, tuple[Problem, tuple[Setting, ...]]] = {
         "declared": (declared, ()),
         "without": (without, ()),
     }
-    if bare.given and _can_be_fitted(bare, without):
+    unknown = sum(len(effect.parameters) for effect in bare.given)
+    # A check holds no rows out: as many readings as unknowns are enough.
+    if unknown and without.free_readings(np.isfinite(without.readings)) > unknown:
         progress("what is unknown, fitted without the effects")
-        problems["fitted"] = (without, _fitted(bare, without))
-    models = _models(problems, case.fixed, progress)
+        tried["fitted"] = (without, fit(without, bare.given, everywhere).settings)
+    held = {name: _held(*model) for name, model in tried.items()}
+    compared = np.asarray(np.all([*held.values()], axis=0))
+    models = {}
+    for name, (problem, settings) in tried.items():
+        progress(f"poses by the lengths alone, {name}")
+        models[name] = _model(problem, settings, held[name], compared)
     progress("what is left")
     return Check(
         study=study,
         measured=measured,
         noise=noise,
         without=models["without"],
-        declared=models["declared"],
+        declared=replace(models["declared"], settings=case.fixed),
         fitted=models.get("fitted"),
         idle=case.idle,
-        n_compared=int(_held(problems).sum()),
-        structure=structure_left(declared, (), np.ones(measured.n_rows, dtype=np.bool_)),
+        n_compared=int(compared.sum()),
+        structure=structure_left(declared, (), everywhere),
         outliers=outliers_of(declared.residual(()), measured.row_numbers),
     )
 
 
-def _noise(measurements: Measurements, measured: Measured, predict: Predictor) -> Noise:
-    rough = Problem(measured, predict, rough_noise(measured))
-    noise = noise_of(measurements, measured, rough.residual(()) * rough.sigma)
-    is_carried = noise.source == "declared" and measurements.estimated_noise
-    return replace(noise, source=CARRIED) if is_carried else noise
-
-
-def _can_be_fitted(bare: Case, problem: Problem) -> bool:
-    """Tell whether there are more readings than unknowns; a check needs no such rows."""
-    unknown = sum(len(effect.parameters) for effect in bare.given)
-    return problem.free_readings(np.isfinite(problem.readings)) > unknown
-
-
-def _fitted(bare: Case, problem: Problem) -> tuple[Setting, ...]:
-    everywhere = np.ones(bare.measured.n_rows, dtype=bool)
-    return fit(problem, bare.given, everywhere).settings
-
-
-Problems = Mapping[str, tuple[Problem, tuple[Setting, ...]]]
-
-
-def _held(problems: Problems) -> BoolArray:
-    """Return the rows that every model holds (n_rows,)."""
-    return np.asarray(np.all([_holds(*problem) for problem in problems.values()], axis=0))
-
-
-def _holds(problem: Problem, settings: Sequence[Setting]) -> BoolArray:
+def _held(problem: Problem, settings: tuple[Setting, ...]) -> BoolArray:
     return np.asarray(np.isfinite(problem.predicted(settings).length_m).all(axis=1))
 
 
-def _models(
-    problems: Problems, fixed: tuple[Setting, ...], progress: Callable[[str], None]
-) -> dict[str, Model]:
-    rows = _held(problems)
-    answer = {}
-    for name, (problem, settings) in problems.items():
-        progress(f"poses by the lengths alone, {name}")
-        answer[name] = _model(problem, settings, rows)
-    answer["declared"] = replace(answer["declared"], settings=fixed)
-    return answer
-
-
-def _model(problem: Problem, settings: tuple[Setting, ...], rows: BoolArray) -> Model:
-    predicted = problem.predicted(settings)
-    residual = problem.readings - np.hstack([predicted.length_m, predicted.tension_N])
-    n = residual.shape[1] // 2
+def _model(
+    problem: Problem, settings: tuple[Setting, ...], held: BoolArray, compared: BoolArray
+) -> Model:
+    residual = problem.readings - problem.predicted(settings).stacked
+    length_m, tension_N = np.hsplit(residual, 2)
     has_lengths = np.isfinite(problem.measured.length_m).all(axis=1)
     return Model(
         settings=settings,
         residual=residual,
-        n_not_held=int((~_holds(problem, settings)).sum()),
-        length_m=_left(residual[:, :n], rows),
-        tension_N=_left(residual[:, n:], rows),
-        foretold=foretell(problem, settings, rows & has_lengths),
+        n_not_held=int((~held).sum()),
+        length_m=_left(length_m, compared),
+        tension_N=_left(tension_N, compared),
+        foretold=foretell(problem, settings, compared & has_lengths),
     )
 
 

@@ -17,12 +17,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import FloatArray
 from designer.diagnosis.blocks import block_of
 
 _LAGS = 8
+"""Rows back that a decay is taken from: farther back correlations are mostly chance."""
 _LONGEST = 0.98
+"""Largest decay: what lasts over more than fifty rows is a drift, and tested as such."""
 _DISTINCT = 3.0
+"""Standard deviations of a correlation of independent rows from which on it is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,8 @@ INDEPENDENT = Lasting(0.0, 0.0)
 def lasting(residual: FloatArray) -> Lasting:
     """Return how the residual (n_rows, n_channels) lasts, over all its channels; gaps are NaN."""
     known = ~np.isnan(residual)
-    centred = np.where(known, residual - _mean(residual), 0.0)
+    mean = np.nan_to_num(residual).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    centred = np.where(known, residual - mean, 0.0)
     lags = range(1, min(_LAGS, len(residual) - 2) + 1)
     square = float(np.sum(centred**2)) / max(int(known.sum()), 1)
     if square == 0.0 or len(lags) < 2:
@@ -93,7 +97,8 @@ def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[Floa
     filled = np.nan_to_num(residual)
     rows = np.einsum("rcp,rc->rp", slopes, filled)
     yield rows.T @ rows
-    blocks = _sums(rows, block_of(len(rows)))
+    block = block_of(len(rows))
+    blocks = np.stack([rows[block == k].sum(axis=0) for k in np.unique(block)])
     used = int(blocks.any(axis=1).sum())
     yield blocks.T @ blocks * (used / max(used - 1, 1))
     count = np.maximum((~np.isnan(residual)).T.astype(float) @ ~np.isnan(residual), 1.0)
@@ -102,12 +107,3 @@ def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[Floa
     spread = np.einsum("rcp,cd->rdp", slopes, root)
     mixed = lasting(residual).correlation(len(rows)) @ spread.reshape(len(rows), -1)
     yield np.einsum("rdp,rdq->pq", spread, mixed.reshape(spread.shape))
-
-
-def _sums(rows: FloatArray, block: IntArray) -> FloatArray:
-    return np.stack([rows[block == k].sum(axis=0) for k in np.unique(block)])
-
-
-def _mean(residual: FloatArray) -> FloatArray:
-    known = ~np.isnan(residual)
-    return np.asarray(np.nan_to_num(residual).sum(axis=0) / np.maximum(known.sum(axis=0), 1))

@@ -2,69 +2,74 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray
 from designer.diagnosis.blocks import heldout_rows
-from designer.diagnosis.correction import smooth_correction
-from designer.diagnosis.errors_of import outliers_of, stage, without_outliers
+from designer.diagnosis.case import Case, case_of
+from designer.diagnosis.errors_of import Stage, outliers_of, stage
 from designer.diagnosis.fit import Fit, fit
 from designer.diagnosis.foretell import foretell, with_sound_lengths
-from designer.diagnosis.hold import Outcome, search_and_hold, structure_left
-from designer.diagnosis.noise import noise_of, rescaled, rough_noise
+from designer.diagnosis.hold import (
+    Gain,
+    Outcome,
+    keep_what_helps,
+    search_and_hold,
+    structure_left,
+)
+from designer.diagnosis.noise import first_noise, rescaled
 from designer.diagnosis.pace import Pace
 from designer.diagnosis.physical import imbalance_of
-from designer.diagnosis.predict import Predictor
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.propose import propose
-from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal, Stage
-from designer.diagnosis.structure import Structure, covariates_of
-from designer.diagnosis.unseen import Gain, keep_what_helps
-from designer.diagnosis.whereabouts import Whereabouts, whereabouts
-from designer.effects.effect import Effect, Setting
-from designer.errors import Fault, InputError
-from designer.model.machine import Machine
+from designer.diagnosis.propose import Proposal, propose
+from designer.diagnosis.result import Diagnosis, Estimate, Finding
+from designer.diagnosis.robust import without_outliers
+from designer.diagnosis.structure import covariates_of
+from designer.diagnosis.trends import smooth_correction, whereabouts
+from designer.effects.effect import Effect
+from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2
+"""Searches where noise is estimated: a third has never another noise by `_NOISE_CHANGE`."""
 _NOISE_CHANGE = 0.15
+"""Relative change of the noise that is worth another search: chances hardly move by less."""
 _UNKNOWN = 10.0
 """How many times as far as a finding that which is declared unknown may be from the drawing."""
+_RIVALS_PARTED = 2
+"""Rivals of a finding for which a proposal is made, the best first."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Case:
-    """What a diagnosis starts from.
+def diagnose_study(
+    study: Study,
+    measurements: Measurements,
+    measured: Measured,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Diagnosis:
+    """Diagnose; an effect of a plugin that fails at work is left out, and all is done again.
 
-    Parameters
-    ----------
-    study, measurements, machine, measured
-        The study, its measurements, the machine as drawn, the data.
-    candidates : tuple of Effect
-        Effects that the data can show, in the order in which they act.
-    given : tuple of Effect
-        What is unknown from the start.
-    skipped : tuple of (effect, reason)
-        Effects that the data cannot show.
-    fixed : tuple of Setting
-        Declared effects that act on these data, less those that are unknown.
-    idle : tuple of (effect, reason)
-        Declared effects for which these data lack something.
+    The study of the answer says in ``known_effects.problems`` what was left out.
+
+    Raises
+    ------
+    EffectError
+        If the config itself asks for the effect that fails.
+    InputError
+        See `diagnose`.
     """
-
-    study: Study
-    measurements: Measurements
-    machine: Machine
-    measured: Measured
-    candidates: tuple[Effect, ...]
-    given: tuple[Effect, ...]
-    skipped: tuple[tuple[str, str], ...]
-    fixed: tuple[Setting, ...] = ()
-    idle: tuple[tuple[str, str], ...] = ()
+    asked_for = {effect.id for effect in study.effects} | set(measurements.unknown)
+    while True:
+        try:
+            return diagnose(case_of(study, measurements, measured), progress)
+        except EffectError as failure:
+            if failure.effect_id in asked_for:
+                raise
+            known = study.known_effects.without(failure.effect_id, f"{failure}: left out")
+            study = replace(study, known_effects=known)
 
 
 def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
@@ -88,8 +93,8 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     measured = case.measured
     heldout = heldout_rows(measured.n_rows)
     _check_size(case, heldout)
-    predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
-    check_held(case, predict)
+    predict = case.predictor()
+    case.check_held(predict)
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
     outcome = _with_settled_noise(seen, ~heldout, progress)
@@ -104,6 +109,11 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
     findings = tuple(_finding(outcome, e, gains[e.key]) for e in search.found)
+    where = correction = None
+    if outcome.structure.present:
+        name = outcome.structure.present[0].name
+        where = whereabouts(after, covariates[name], measured.row_numbers)
+        correction = smooth_correction(after, name, covariates[name], heldout)
     return Diagnosis(
         study=case.study,
         machine=case.machine,
@@ -123,8 +133,8 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         predicted=predicted,
         covariates=covariates,
         outliers=outliers_of(after, measured.row_numbers),
-        left_in=_left_in(after, outcome.structure, covariates, measured),
-        correction=smooth_correction(after, outcome.structure, covariates, heldout),
+        left_in=where,
+        correction=correction,
         proposals=_proposals(case, outcome, findings),
         doubts=tuple(_doubts(case, search.fit)),
         foretold_before=foretell(problem, base.settings, compared),
@@ -136,11 +146,8 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
 
 def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     """Search; where noise is estimated, search again with what the better model leaves of it."""
-    measured = case.measured
-    predict = Predictor(case.machine, measured, case.fixed, case.study.known_effects)
-    rough = Problem(measured, predict, rough_noise(measured))
-    left = rough.residual(_given_fit(rough, case, rows)) * rough.sigma
-    noise = noise_of(case.measurements, measured, left)
+    measured, predict = case.measured, case.predictor()
+    noise = first_noise(case.measurements, measured, predict, rows, case.given)
     outcome: Outcome | None = None
     for _ in range(_NOISE_ROUNDS):
         problem = Problem(measured, predict, noise)
@@ -165,42 +172,22 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     return outcome
 
 
-def _given_fit(rough: Problem, case: Case, rows: BoolArray) -> tuple[Setting, ...]:
-    return fit(rough, case.given, rows).settings if case.given else ()
-
-
 def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
     search, searcher = outcome.search, outcome.searcher
     rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
-    parameters = _estimates(search.fit)[effect.key]
+    found = _estimates(search.fit)[effect.key]
+    is_near = all(
+        abs(found[p.name].value - p.neutral) < 2 * found[p.name].std for p in effect.parameters
+    )
+    doubt = "no value of it is further from doing nothing than twice its standard deviation"
     return Finding(
         effect=effect,
-        parameters=parameters,
+        parameters=found,
         rivals=tuple(dict.fromkeys(r.key for r in rivals)),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
-        warnings=tuple(_warnings(effect, parameters)),
+        warnings=(doubt,) * is_near,
     )
-
-
-def _left_in(
-    residual: FloatArray,
-    structure: Structure,
-    covariates: Mapping[str, FloatArray],
-    measured: Measured,
-) -> Whereabouts | None:
-    if not structure.present:
-        return None
-    return whereabouts(residual, covariates[structure.present[0].name], measured.row_numbers)
-
-
-def _warnings(effect: Effect, parameters: Mapping[str, Estimate]) -> Iterator[str]:
-    near = all(
-        abs(parameters[p.name].value - p.neutral) < 2 * parameters[p.name].std
-        for p in effect.parameters
-    )
-    if near:
-        yield "no value of it is further from doing nothing than twice its standard deviation"
 
 
 def _doubts(case: Case, model: Fit) -> Iterator[str]:
@@ -218,27 +205,24 @@ def _doubts(case: Case, model: Fit) -> Iterator[str]:
 
 
 def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
-    answer: dict[str, dict[str, Estimate]] = {}
-    at = 0
-    for setting in model.settings:
-        answer[setting.effect.key] = {}
-        for name, value in setting.values.items():
-            answer[setting.effect.key][name] = Estimate(value, float(model.std[at]))
-            at += 1
-    return answer
+    std = iter(model.std.tolist())
+    return {
+        setting.effect.key: {
+            name: Estimate(value, next(std)) for name, value in setting.values.items()
+        }
+        for setting in model.settings
+    }
 
 
 def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
     """Errors as declared, then with the found effects one after the other."""
+    found, last = outcome.search.found, outcome.search.fit
     label = "as declared, unknowns fitted" if base.settings else "as declared"
-    sound = ~np.isnan(without_outliers(problem.residual(outcome.search.fit.settings)))
+    sound = ~np.isnan(without_outliers(problem.residual(last.settings)))
     stages = [stage(problem, label, base.settings, heldout, sound)]
-    added: list[Effect] = []
     near = base
-    for effect in outcome.search.found:
-        added.append(effect)
-        last = len(added) == len(outcome.search.found)
-        near = outcome.search.fit if last else outcome.searcher.fit(added, near)
+    for count, effect in enumerate(found, start=1):
+        near = last if count == len(found) else outcome.searcher.fit(found[:count], near)
         stages.append(stage(problem, f"+ {effect.key}", near.settings, heldout, sound))
     return tuple(stages)
 
@@ -246,23 +230,16 @@ def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -
 def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
     region = case.study.workspace.region if case.study.workspace else None
     by_key = {effect.key: effect for effect in case.candidates}
+    problem = replace(outcome.problem, measured=case.measured)
+    search = outcome.search
     answer = []
     for finding in findings:
-        rest = [e for e in outcome.search.found if e.key != finding.effect.key]
-        for rival in finding.rivals[:2]:
-            swapped = outcome.searcher.fit([*rest, by_key[rival]], outcome.search.fit)
-            names = (finding.effect.key, rival)
-            answer.append(
-                propose(
-                    outcome.problem.predict,
-                    case.measured,
-                    outcome.problem.noise,
-                    region,
-                    outcome.search.fit.settings,
-                    swapped.settings,
-                    names,
-                )
-            )
+        own = finding.effect.key
+        rest = [effect for effect in search.found if effect.key != own]
+        for rival in finding.rivals[:_RIVALS_PARTED]:
+            swapped = outcome.searcher.fit([*rest, by_key[rival]], search.fit)
+            pair = (search.fit.settings, swapped.settings)
+            answer.append(propose(problem, region, *pair, (own, rival)))
     return tuple(answer)
 
 
@@ -272,23 +249,5 @@ def _check_size(case: Case, heldout: BoolArray) -> None:
     known = int(np.sum(~np.isnan(readings)))
     unknown = sum(len(effect.parameters) for effect in case.given)
     if known <= unknown + 2:
-        raise InputError(
-            [
-                Fault(
-                    str(case.measurements.file),
-                    None,
-                    "",
-                    f"{known} readings to fit, after holding some out, for {unknown} unknowns",
-                    f"at least {unknown + 3}",
-                )
-            ]
-        )
-
-
-def check_held(case: Case, predict: Predictor) -> None:
-    """Refuse poses most of which no cables can hold: frames, units or exit points are mixed up."""
-    held = ~np.isnan(predict(()).length_m).any(axis=1)
-    if 2 * held.sum() < held.size:
-        problem = f"the robot as declared can hold {held.sum()} of {held.size} poses"
-        expected = "poses between its exit points, in the same frame and unit"
-        raise InputError([Fault(str(case.measurements.file), None, "", problem, expected)])
+        problem = f"{known} readings to fit, after holding some out, for {unknown} unknowns"
+        raise case.fault(problem, f"at least {unknown + 3}")

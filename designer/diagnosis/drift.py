@@ -10,14 +10,20 @@ from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import Fit, jacobian
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Withdrawn
-from designer.diagnosis.structure import SIGNIFICANCE, Structure
+from designer.diagnosis.structure import SIGNIFICANCE, Structure, beside
 from designer.effects.effect import Effect, Readings
 
 _CHANCE = 1e-5
+"""Of a drift by accident: each of up to five effects is tried with six covariates."""
 _VARIATION = 0.2
+"""Of an effect's own size, over one standard deviation of a covariate: a true constant that is
+found beside another effect may seem to vary by a tenth."""
 _LEAST_VARIATION, _SHARE_OF_LEFT = 0.05, 0.5
+"""A smaller variation will do where it explains most of what is left."""
 _CLIP = 4.0
+"""Standard deviations at which the residual is clipped, so that no outlier makes a drift."""
 _MOST_CARRIERS = 4
+"""Covariates that are tried: weaker ones go with these."""
 
 
 def drifting(
@@ -42,7 +48,7 @@ def drifting(
     taken = rows[:, None] & ~np.isnan(residual)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
     orthonormal = _orthonormal(slopes[taken])
-    left = _without(orthonormal, residual[taken])
+    left = beside(orthonormal, residual[taken])
     unexplained = model.loss - model.n_data
     worst: Withdrawn | None = None
     at = 0
@@ -102,7 +108,7 @@ def _gain_of(
     rest = [s for s in model.settings if s.effect.key != effect.key]
     change = problem.residual(rest)[taken] - problem.residual(model.settings)[taken]
     others = _orthonormal(np.delete(slopes, own, axis=-1)[taken])
-    return float(max(np.sum(_without(others, change) ** 2), model.variance))
+    return float(max(np.sum(beside(others, change) ** 2), model.variance))
 
 
 def _significant_gain(
@@ -111,7 +117,7 @@ def _significant_gain(
     """Return what the further columns take off the sum of squares; 0 if that may be chance."""
     from scipy.stats import chi2
 
-    further = _orthonormal(_without(orthonormal, moved))
+    further = _orthonormal(beside(orthonormal, moved))
     gain = float(np.sum((further.T @ left) ** 2))
     return gain if chi2.sf(gain / variance, moved.shape[1]) < _CHANCE else 0.0
 
@@ -124,7 +130,3 @@ def _orthonormal(columns: FloatArray) -> FloatArray:
     scale[scale == 0.0] = 1.0
     u, s, _ = np.linalg.svd(columns / scale, full_matrices=False)
     return np.asarray(u[:, s > 1e-6 * s[0]])
-
-
-def _without(orthonormal: FloatArray, columns: FloatArray) -> FloatArray:
-    return np.asarray(columns - orthonormal @ (orthonormal.T @ columns))

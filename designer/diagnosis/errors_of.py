@@ -2,16 +2,75 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.problem import Problem, channel_names
-from designer.diagnosis.result import Error, Interval, Outlier, Stage
+from designer.diagnosis.robust import is_outlier, rms
 from designer.effects.effect import Setting
 
 _DRAWS = 400
-_OUTLYING = 5.0
+"""Of the bootstrap: the ends of a 95 % interval scatter by a twentieth of its width."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A root mean square with its 95 % interval by block bootstrap."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Error:
+    """Error of one kind of reading, in SI units.
+
+    Parameters
+    ----------
+    rms : float
+        Over the rows that were fitted.
+    heldout : Interval
+        Over the rows that no fit has seen.
+    heldout_of_cable : array (n_cables,)
+        The same, cable by cable.
+    """
+
+    rms: float
+    heldout: Interval
+    heldout_of_cable: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """The model at one point of the search: as declared, then with each effect.
+
+    Parameters
+    ----------
+    label : str
+        What was added.
+    settings : tuple of Setting
+        All effects with their values.
+    length_m, tension_N : Error or None
+        None where nothing of the kind was measured.
+    """
+
+    label: str
+    settings: tuple[Setting, ...]
+    length_m: Error | None
+    tension_N: Error | None
+
+
+@dataclass(frozen=True, slots=True)
+class Outlier:
+    """A reading that no model here explains; shown, and given little weight."""
+
+    row: int
+    channel: str
+    size: float
 
 
 def stage(
@@ -27,46 +86,16 @@ def stage(
     having dropped more.
     """
     residual = np.where(sound, problem.residual(settings), np.nan) * problem.sigma
-    n = residual.shape[1] // 2
-    return Stage(
-        label,
-        settings,
-        _error(residual[:, :n], heldout),
-        _error(residual[:, n:], heldout),
-    )
-
-
-def without_outliers(residual: FloatArray) -> FloatArray:
-    """Blank readings that stand off by more than five times the spread of their channel."""
-    apart = np.abs(residual - _median(residual))
-    limit = _OUTLYING * np.maximum(1.4826 * _median(apart), 1.0)
-    return np.where(apart > limit, np.nan, residual)
+    length_m, tension_N = np.hsplit(residual, 2)
+    return Stage(label, settings, _error(length_m, heldout), _error(tension_N, heldout))
 
 
 def outliers_of(residual: FloatArray, row_numbers: IntArray) -> tuple[Outlier, ...]:
-    """Name the readings that `without_outliers` blanks, in units of noise."""
+    """Name the readings that stand off, in units of noise."""
     names = channel_names(residual.shape[1] // 2)
-    gone = np.isnan(without_outliers(residual)) & ~np.isnan(residual)
     return tuple(
         Outlier(int(row_numbers[row]), names[channel], float(residual[row, channel]))
-        for row, channel in np.argwhere(gone)
-    )
-
-
-def rms(residual: FloatArray) -> float:
-    """Root mean square of what was measured; NaN if nothing was."""
-    known = residual[~np.isnan(residual)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
-
-
-def _error(residual: FloatArray, heldout: BoolArray) -> Error | None:
-    if np.isnan(residual).all():
-        return None
-    unseen = residual[heldout]
-    return Error(
-        rms=rms(residual[~heldout]),
-        heldout=bootstrap(unseen, block_of(len(residual))[heldout]),
-        heldout_of_cable=np.array([rms(column) for column in unseen.T]),
+        for row, channel in np.argwhere(is_outlier(residual))
     )
 
 
@@ -98,6 +127,12 @@ def thirds_of(block: IntArray) -> IntArray:
     return np.asarray((np.arange(len(block)) * 3 * len(np.unique(block))) // max(len(block), 1))
 
 
-def _median(residual: FloatArray) -> FloatArray:
-    empty = np.isnan(residual).all(axis=0)
-    return np.where(empty, 0.0, np.nanmedian(np.where(empty, 0.0, residual), axis=0))
+def _error(residual: FloatArray, heldout: BoolArray) -> Error | None:
+    if np.isnan(residual).all():
+        return None
+    unseen = residual[heldout]
+    return Error(
+        rms=rms(residual[~heldout]),
+        heldout=bootstrap(unseen, block_of(len(residual))[heldout]),
+        heldout_of_cable=np.array([rms(column) for column in unseen.T]),
+    )

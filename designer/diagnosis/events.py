@@ -1,15 +1,18 @@
-"""What happened to the readings: a step at a row, a sensor at the end of its range."""
+"""What happened to the readings: steps, ends of ranges, exchanged plugs, alike outliers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.clusters import lasting
 from designer.diagnosis.problem import channel_names
+from designer.diagnosis.robust import is_outlier, spread
 from designer.diagnosis.structure import (
     SIGNIFICANCE,
     Event,
@@ -20,10 +23,25 @@ from designer.diagnosis.structure import (
 )
 
 _LEAST_ROWS = 5
+"""On either side of a step or a knee, and readings that stand off: fewer have no pattern."""
 _DRAWS = 299
+"""Of steps by accident: beyond the largest, Gumbel's law goes on."""
 _FULL_SLOPE = (0.75, 1.25)
+"""How much a reading at the end of its range falls short, over what is predicted beyond: all of
+it; a gain, even one of half, keeps below."""
 _KNEES = np.linspace(0.5, 0.95, 10)
+"""Quantiles at which a range may end: a sensor that stops before its middle is not in use."""
 _MOST_READINGS = 16
+"""Readings that are looked at, of eight cables, for the chance of a bend by accident."""
+_LEFT = 0.1
+"""Of the mean square, where exchanged readings fit: a gain or a bias leaves more."""
+_OFF = 3.0
+"""Standard deviations by which readings on wrong plugs are off at least."""
+_END = 0.25
+"""Share of the rows that is called an end of a covariate."""
+
+Common = tuple[float, float, str]
+"""Chance by accident, share of the readings that stand off, what they have in common."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +76,65 @@ def find_events(
     strongest = max((c.fraction_of_variance for c in structure.present), default=0.0)
     events = [e for e in found if e.fraction_of_variance > strongest and e.chance < SIGNIFICANCE]
     return tuple(sorted(events, key=lambda e: -e.fraction_of_variance))
+
+
+def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
+    """Return readings of a kind that fit each other's prediction; None where none do.
+
+    Exchanged, they must leave less than a tenth of the mean square that they leave as they are,
+    each about its own mean, since a bias is no exchange.
+
+    Parameters
+    ----------
+    residual, predicted : array (n_rows, 2 n_cables)
+        In units of noise; NaN where not measured.
+    """
+    n = residual.shape[1] // 2
+    names = channel_names(n)
+    texts: list[str] = []
+    most = 0.0
+    for one, other in ((i + k, j + k) for i, j in combinations(range(n), 2) for k in (0, n)):
+        gap = predicted[:, other] - predicted[:, one]
+        as_it_is = spread(residual[:, one]) ** 2 + spread(residual[:, other]) ** 2
+        exchanged = spread(residual[:, other] + gap) ** 2 + spread(residual[:, one] - gap) ** 2
+        if as_it_is > 2.0 * _OFF**2 and exchanged < _LEFT * as_it_is:
+            texts.append(f"{names[one]} and {names[other]} exchanged with each other")
+            most = max(most, 1.0 - exchanged / as_it_is)
+    return Event(", ".join(texts), most, 0.0) if texts else None
+
+
+def find_common(
+    residual: FloatArray, covariates: Mapping[str, FloatArray], rows: IntArray
+) -> Event | None:
+    """Return what readings that stand off have in common; None where they are scattered.
+
+    They may be of one sensor, in one range of rows, or at one end of a covariate: then they are no
+    accidents. Chances are binomial, times the number of places that were looked at.
+
+    Parameters
+    ----------
+    residual : array (n_rows, 2 n_cables)
+        In units of noise; NaN where not measured.
+    covariates : mapping
+        From `designer.diagnosis.structure.covariates_of`.
+    rows : array (n_rows,)
+        Numbers of the rows in the file.
+    """
+    gone = is_outlier(residual)
+    count = int(gone.sum())
+    if count < _LEAST_ROWS:
+        return None
+    off = np.asarray(gone.any(axis=1))
+    kinds = (_of_a_sensor(gone, residual), _in_a_range(off, rows), _at_an_end(off, covariates))
+    common = [c for c in (min(kind, default=None) for kind in kinds) if c and c[0] < SIGNIFICANCE]
+    if not common:
+        return None
+    text = ", ".join(text for _, _, text in common)
+    return Event(
+        f"the {count} readings that stand off: {text}",
+        max(share for _, share, _ in common),
+        min(chance for chance, _, _ in common),
+    )
 
 
 def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
@@ -96,8 +173,7 @@ def _step_in(channels: FloatArray) -> _Best:
 
 def _ends(residual: FloatArray, predicted: FloatArray) -> Iterator[Event]:
     """Yield each reading that stops at a value while what is predicted goes on."""
-    names = channel_names(residual.shape[1] // 2)
-    for channel, name in enumerate(names):
+    for channel, name in enumerate(channel_names(residual.shape[1] // 2)):
         known = ~np.isnan(residual[:, channel])
         if known.sum() < 4 * _LEAST_ROWS:
             continue
@@ -114,6 +190,8 @@ def _end_of(own: FloatArray, left: FloatArray, text: str) -> Event | None:
     Of all knees, the one is taken at which a bend explains most. Beyond it readings must not follow
     what is predicted at all; a gain or another law makes them follow by another measure.
     """
+    from scipy.stats import beta
+
     centred = left - np.median(left)
     variance = float(np.sum((centred - centred.mean()) ** 2))
     best, slope, at = 0.0, 0.0, 0.0
@@ -125,15 +203,53 @@ def _end_of(own: FloatArray, left: FloatArray, text: str) -> Event | None:
             along = float(beyond @ centred)
             if along**2 / size > best:
                 best, slope, at = along**2 / size, along / size, float(knee)
-    past = own > at
-    if not _FULL_SLOPE[0] < -slope < _FULL_SLOPE[1] or not past.any():
+    if not _FULL_SLOPE[0] < -slope < _FULL_SLOPE[1] or not (own > at).any():
         return None
-    return Event(text, best / variance, _chance(best / variance, len(own)))
-
-
-def _chance(share: float, n_rows: int) -> float:
-    """Return how probable such a correlation is by accident, of all knees, ends and readings."""
-    from scipy.stats import beta
-
+    # Such a correlation is as probable by accident in any knee, end and reading.
     looks = 2 * len(_KNEES) * _MOST_READINGS
-    return float(min(1.0, looks * beta.sf(share, 0.5, 0.5 * (n_rows - 2))))
+    chance = looks * beta.sf(best / variance, 0.5, 0.5 * (len(own) - 2))
+    return Event(text, best / variance, float(min(1.0, chance)))
+
+
+def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Common]:
+    known = ~np.isnan(residual)
+    total = int(gone.sum())
+    for channel, name in enumerate(channel_names(gone.shape[1] // 2)):
+        inside = int(gone[:, channel].sum())
+        share = known[:, channel].sum() / known.sum()
+        chance = float(_chance(inside, total, share, gone.shape[1]))
+        yield chance, inside / total, f"{inside} are of {name}"
+
+
+def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Common]:
+    where = np.flatnonzero(off)
+    n = len(where)
+    if n < 2:
+        return
+    first, last = np.triu_indices(n, 1)
+    width = (where[last] - where[first] + 1) / len(off)
+    inside = last - first + 1
+    # Its two ends are where they are by choice.
+    chance = _chance(inside - 2, n - 2, width, n * n // 2)
+    best = int(np.argmin(chance))
+    ends = f"{rows[where[first[best]]]} to {rows[where[last[best]]]}"
+    text = f"{inside[best]} of {n} rows from {ends}"
+    yield float(chance[best]), float(inside[best]) / n, text
+
+
+def _at_an_end(off: BoolArray, covariates: Mapping[str, FloatArray]) -> Iterator[Common]:
+    n = int(off.sum())
+    for name, column in covariates.items():
+        for sign, end in ((1.0, "lower"), (-1.0, "upper")):
+            is_there = sign * column <= np.nanquantile(sign * column, _END)
+            inside = int(np.sum(off & is_there))
+            chance = float(_chance(inside, n, np.mean(is_there), 2 * len(covariates)))
+            yield chance, inside / n, f"{inside} of {n} rows in the {end} quarter of {name}"
+
+
+def _chance(inside: ArrayLike, total: int, share: ArrayLike, looks: int) -> FloatArray:
+    """Return how probable so many are inside by accident, of all places that were looked at."""
+    from scipy.stats import binom
+
+    at_least = binom.sf(np.asarray(inside) - 1, total, share)
+    return np.asarray(np.minimum(1.0, looks * at_least))

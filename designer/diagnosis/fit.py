@@ -13,10 +13,16 @@ from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Setting, Values
 
 _HUBER = 3.0
+"""Standard deviations up to which a residual counts by its square: normal noise loses 1 % so."""
 _STEP = 1e-3
+"""Of a typical change: differences are good to some 1e-6 of a slope, which a one-sided step of a
+smooth model bears."""
 _TRIAL_TURNS, _ALL_TURNS = 12, 80
+"""Evaluations of a fit from near its end, and from anywhere."""
 _MOST_JUDGED = 5
+"""Fits until the distrust of readings agrees with what the fit leaves; two are usual."""
 _TRIAL_TOLERANCE, _TOLERANCE = 1e-5, 1e-8
+"""Relative: a trial is only compared, the final model is told to four digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,18 +7,42 @@ pose of them. Nothing is fitted to it; the poses of the rows are used as starts,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.blocks import block_of
-from designer.diagnosis.errors_of import bootstrap, without_outliers
+from designer.diagnosis.errors_of import Interval, bootstrap
 from designer.diagnosis.physical import added_force_N
 from designer.diagnosis.problem import Problem
-from designer.diagnosis.result import Foretold
+from designer.diagnosis.robust import without_outliers
 from designer.effects.effect import Setting
 from designer.model.robot import Poses
 from designer.statics.forward import solve_forward
+
+
+@dataclass(frozen=True, slots=True)
+class Foretold:
+    """Root mean square errors of forward statics over rows that no fit has seen.
+
+    Parameters
+    ----------
+    n_rows, n_solved : int
+        Held-out rows with all lengths, and those of them in which a balance was found.
+    position_m : Interval
+        Distance of the platform from where it was [m].
+    turn_rad : Interval or None
+        Angle of the platform against where it was [rad]; None for one that cannot turn.
+    tension_N : Interval or None
+        Of the tensions at the winches [N]; None where none were measured.
+    """
+
+    n_rows: int
+    n_solved: int
+    position_m: Interval
+    turn_rad: Interval | None
+    tension_N: Interval | None
 
 
 def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArray:
@@ -45,7 +69,10 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
         return None
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
-    there = _rows_of(measured.poses, rows)
+    rotation = measured.poses.rotation
+    there = Poses(
+        measured.poses.position_m[rows], rotation if rotation.ndim == 2 else rotation[rows]
+    )
     found = solve_forward(
         built.robot, built.cable, true.length_m[rows], there, None if force is None else force[rows]
     )
@@ -61,11 +88,6 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
         else bootstrap(_turn_rad(found.poses, there)[:, None], block),
         tension_N=None if np.isnan(tension).all() else bootstrap(tension, block),
     )
-
-
-def _rows_of(poses: Poses, rows: IntArray) -> Poses:
-    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[rows]
-    return Poses(poses.position_m[rows], rotation)
 
 
 def _turn_rad(found: Poses, there: Poses) -> FloatArray:

@@ -3,30 +3,40 @@
 An effect with values that nobody would believe is none. Structure that is left says that the model
 is not the whole truth. Effects of the list are then bent to fit what is not in the list: as
 constants they suit its average, or several together its shape. Those are withdrawn, weakest first,
-and the rest is fitted anew.
+and the rest is fitted anew. What is left must help on rows that no fit has seen: the only use that
+is made of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.blocks import block_of
 from designer.diagnosis.drift import drifting
-from designer.diagnosis.dropped import find_common
-from designer.diagnosis.events import find_events
+from designer.diagnosis.errors_of import thirds_of
+from designer.diagnosis.events import find_common, find_events, find_swapped
 from designer.diagnosis.fit import Fit
 from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Reason, Withdrawn
-from designer.diagnosis.search import Search, Searcher
+from designer.diagnosis.robust import without_outliers
+from designer.diagnosis.search import SIGNIFICANCE, Search, Searcher
 from designer.diagnosis.structure import Structure, covariates_of, find_structure
-from designer.diagnosis.swapped import find_swapped
 from designer.effects.effect import Effect, Setting
 
 _SMALL = 0.5
+"""Of the loss that stays unexplained: with less, an effect may be bent to fit a part of that."""
+_CLEAR = 2.0
+"""Standard deviations of a gain above zero: one in forty gets there by chance, and each effect has
+passed the search before."""
+_LEAST = 0.01
+"""Share of the held-out mean square below which a gain is of no use to anyone."""
+_ENOUGH = 6
+"""Blocks whose scatter is a measure of doubt: it is known to a third then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,6 +60,27 @@ class Outcome:
     search: Search
     withdrawn: tuple[Withdrawn, ...]
     structure: Structure
+
+    def without(self, gone: Withdrawn, progress: Pace) -> Outcome:
+        """Withdraw an effect, and fit the rest anew."""
+        progress(f"{gone.effect} withdrawn")
+        found = without(self.search.found, gone.effect)
+        model = self.searcher.fit(found, self.search.fit, thorough=True)
+        search = replace(self.search, fit=model, found=tuple(found))
+        return replace(self, search=search, withdrawn=(*self.withdrawn, gone))
+
+
+@dataclass(frozen=True, slots=True)
+class Gain:
+    """Share of the held-out mean square that goes with an effect, and its standard deviation."""
+
+    share: float
+    std: float
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether it is at least 1 %, and two standard deviations above zero."""
+        return self.share >= max(_LEAST, _CLEAR * self.std)
 
 
 def search_and_hold(
@@ -76,38 +107,56 @@ def search_and_hold(
         structure = structure_left(problem, unsearched.settings, rows)
         return Outcome(problem, searcher, Search((), unsearched, ()), (), structure)
     search = searcher.run()
-    found, model = list(search.found), search.fit
-    structure = structure_left(problem, model.settings, rows)
-    withdrawn = _not_to_be_believed(search)
-    while found:
-        loose: Withdrawn | None = implausible(model, found)
-        if loose is None and (structure.events or structure.may_bend):
-            loose = _small(searcher, model, found) or _drifting(
-                problem, model, found, structure, rows
-            )
-        if loose is None:
-            break
-        progress(f"{loose.effect} withdrawn")
-        withdrawn.append(loose)
-        found = without(found, [loose.effect])
-        model = searcher.fit(found, model, thorough=True)
-        structure = structure_left(problem, model.settings, rows)
-    rest = without(candidates, [one.effect for one in withdrawn])
-    return Outcome(
-        problem,
-        Searcher(problem, rest, given, rows, progress),
-        Search(search.steps, model, tuple(found)),
-        tuple(withdrawn),
-        structure,
-    )
+    structure = structure_left(problem, search.fit.settings, rows)
+    outcome = Outcome(problem, searcher, search, tuple(_not_to_be_believed(search)), structure)
+    while gone := _loose(outcome, rows):
+        outcome = outcome.without(gone, progress)
+        structure = structure_left(problem, outcome.search.fit.settings, rows)
+        outcome = replace(outcome, structure=structure)
+    rest = without(candidates, *(one.effect for one in outcome.withdrawn))
+    return replace(outcome, searcher=Searcher(problem, rest, given, rows, progress))
+
+
+def keep_what_helps(
+    outcome: Outcome, whole: Problem, heldout: BoolArray, progress: Pace
+) -> tuple[Outcome, dict[str, Gain]]:
+    """Withdraw what has no clear gain on held-out rows, least clear first; fit the rest anew.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a search to which the readings of held-out rows were not shown.
+    whole : Problem
+        The same problem with all readings.
+    heldout : array (n_rows,) of bool
+        The rows to foretell.
+
+    Returns
+    -------
+    Outcome
+        With what is kept; its structure is that of all rows.
+    dict of str to Gain
+        Gain of each effect that is kept.
+    """
+    while True:
+        found, model = outcome.search.found, outcome.search.fit
+        gains, structure = dict[str, Gain](), outcome.structure
+        gone = implausible(model, found) or _faint(model, found)
+        if gone is None:
+            gains = _gains(outcome, whole, heldout)
+            gone = _unclear(gains)
+        if gone is None:
+            structure = structure_left(whole, model.settings, np.ones_like(heldout))
+            gone = _no_step(structure, found)
+        if gone is None:
+            return replace(outcome, structure=structure), gains
+        outcome = outcome.without(gone, progress)
 
 
 def structure_left(problem: Problem, settings: Sequence[Setting], rows: BoolArray) -> Structure:
     """Test what a model leaves of the readings of some rows (n_rows,)."""
-    covariates = {
-        name: column[rows]
-        for name, column in covariates_of(problem.measured, problem.surroundings(settings)).items()
-    }
+    everywhere = covariates_of(problem.measured, problem.surroundings(settings))
+    covariates = {name: column[rows] for name, column in everywhere.items()}
     residual, predicted = _residual_and_predicted(problem, settings, rows)
     numbers = problem.measured.row_numbers[rows]
     structure = find_structure(residual, covariates, settled=problem.measured.settled)
@@ -122,20 +171,29 @@ def _residual_and_predicted(
     problem: Problem, settings: Sequence[Setting], rows: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return residual and prediction of some rows (…, 2 n_cables), both in units of noise."""
-    predicted = problem.predicted(settings)
-    in_noise = np.hstack([predicted.length_m, predicted.tension_N]) / problem.sigma
+    in_noise = problem.predicted(settings).stacked / problem.sigma
     return problem.residual(settings)[rows], in_noise[rows]
 
 
-def _small(searcher: Searcher, model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
-    """Return the effect that gains least, if that is little against what stays unexplained."""
+def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
+    """Return the found effect that holds least; None where all hold."""
+    problem, structure = outcome.problem, outcome.structure
+    found, model = outcome.search.found, outcome.search.fit
+    if not found:
+        return None
+    gone = implausible(model, found)
+    if gone is not None or not (structure.events or structure.may_bend):
+        return gone
     left = model.loss - model.n_data
     gains = {
-        effect.key: searcher.fit(without(found, [effect.key]), model).loss - model.loss
+        effect.key: outcome.searcher.fit(without(found, effect.key), model).loss - model.loss
         for effect in found
     }
     least = min(gains, key=gains.__getitem__)
-    return Withdrawn(least, reason=Reason.SMALL) if gains[least] < _SMALL * left else None
+    if gains[least] < _SMALL * left:
+        return Withdrawn(least, reason=Reason.SMALL)
+    covariates = covariates_of(problem.measured, problem.surroundings(model.settings))
+    return drifting(problem, model, found, structure, covariates, rows)
 
 
 def _not_to_be_believed(search: Search) -> list[Withdrawn]:
@@ -151,24 +209,81 @@ def implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
     """Return the first effect with a value that an engineer would not believe."""
     keys = {effect.key for effect in found}
     for setting in model.settings:
-        values = [
-            f"{p.name} = {setting.values[p.name]:.4g} {p.unit}".rstrip()
-            + f" ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
-            for p in setting.effect.parameters
-            if not p.plausible[0] <= setting.values[p.name] <= p.plausible[1]
-        ]
-        if values and setting.effect.key in keys:
-            return Withdrawn(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=values[0])
+        for p in setting.effect.parameters:
+            value = setting.values[p.name]
+            if setting.effect.key in keys and not p.is_plausible(value):
+                told = f"{p.name} = {value:.4g} {p.unit}".rstrip()
+                detail = f"{told} ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
+                return Withdrawn(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
     return None
 
 
-def _drifting(
-    problem: Problem, model: Fit, found: Sequence[Effect], structure: Structure, rows: BoolArray
-) -> Withdrawn | None:
-    covariates = covariates_of(problem.measured, problem.surroundings(model.settings))
-    return drifting(problem, model, found, structure, covariates, rows)
+def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+    """Return the first effect that may as well do nothing, by its clustered covariance.
+
+    All its values together: those of a moved exit point are each in doubt through the others.
+    """
+    from scipy.stats import chi2
+
+    for effect in found:
+        if chi2.sf(model.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
+            return Withdrawn(effect.key, reason=Reason.FAINT)
+    return None
 
 
-def without(effects: Sequence[Effect], keys: Sequence[str]) -> list[Effect]:
+def _gains(outcome: Outcome, whole: Problem, heldout: BoolArray) -> dict[str, Gain]:
+    """Return what each effect gains on held-out rows, the others fitted anew without it."""
+    found, model = outcome.search.found, outcome.search.fit
+    left = whole.residual(model.settings)[heldout]
+    gains = {}
+    for effect in found:
+        rest = outcome.searcher.fit(without(found, effect.key), model)
+        gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
+    return gains
+
+
+def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
+    """Return the gain between two residuals of held-out rows, readings that suit neither left out.
+
+    With δ = before - after, before² - after² = δ² + 2 δ · after: the first term is what the effect
+    does, the second is in doubt by the scatter that is left, over blocks and over their thirds.
+    Where there are enough blocks, the scatter of their gains is a measure of the doubt as well.
+    """
+    suits = ~(np.isnan(without_outliers(before)) & np.isnan(without_outliers(after)))
+    before, after = (np.where(suits, one, 0.0) for one in (before, after))
+    total = float(np.sum(before**2))
+    if total == 0.0:
+        return Gain(0.0, 0.0)
+    cross = 2.0 * np.sum((before - after) * after, axis=1)
+    block = block_of(len(heldout))[heldout]
+    doubts = []
+    for part in (block, thirds_of(block)):
+        sums = np.array([cross[part == k].sum() for k in np.unique(part)])
+        doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
+    share, doubt = 1.0 - float(np.sum(after**2)) / total, max(doubts)
+    gains = np.array([np.sum((before**2 - after**2)[block == k]) for k in np.unique(block)])
+    if len(gains) >= _ENOUGH:
+        doubt = min(doubt, len(gains) * float(np.var(gains, ddof=1)))
+    return Gain(share, float(np.sqrt(doubt)) / total)
+
+
+def _unclear(gains: Mapping[str, Gain]) -> Withdrawn | None:
+    """Return the least clear effect; None where all are clear."""
+    if all(gain.is_clear for gain in gains.values()):
+        return None
+    least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
+    gain = gains[least]
+    return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
+
+
+def _no_step(structure: Structure, found: Sequence[Effect]) -> Withdrawn | None:
+    """Return an effect that begins at a time, if what is left goes with time all the same."""
+    steps = [effect for effect in found if effect.starts_from is not None]
+    if steps and any(carrier.is_order for carrier in structure.present):
+        return Withdrawn(steps[0].key, reason=Reason.NO_STEP)
+    return None
+
+
+def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:
     """Return the effects whose keys are not among those given."""
     return [effect for effect in effects if effect.key not in keys]

@@ -12,14 +12,19 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.physical import added_force_N, straightened_m
+from designer.diagnosis.robust import MAD_TO_STD
 from designer.effects.effect import Readings, Setting
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
 from designer.statics.internal import solve_internal
 
 _MOST_TURNS = 12
+"""What sensors add depends so little on internal forces that three turns are usual."""
 _STILL = 1e-7
+"""Of the noise: far below what the slopes of a fit would show."""
 _ABOUT = (0.7, 2.8)
+"""Residual over the distrust within which the latter stays: wider than the factor of two between
+two distrusts, so that it cannot swing between them."""
 
 
 class InternalForces:
@@ -125,7 +130,7 @@ class _Guess:
 def _distrust(off: FloatArray, before: float) -> float:
     """Return how far readings are off in units of noise; as before where that is about right."""
     known = off[~np.isnan(off)]
-    size = 1.4826 * float(np.median(known)) if known.size else 0.0
+    size = MAD_TO_STD * float(np.median(known)) if known.size else 0.0
     if _ABOUT[0] <= size / before <= _ABOUT[1]:
         return before
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))

@@ -3,45 +3,52 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.fit import fit
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.robust import spread
+from designer.effects.effect import Effect
 from designer.model.measured_data import Measured, Noise
 from designer.study import Measurements
 
-_MAD_TO_STD = 1.4826
 _ROUGH_LENGTH, _ROUGH_TENSION = 0.01, 0.1
+"""What a model may be off by at first, over a typical reading: only their ratio counts, and
+tensions are foretold worse than lengths."""
 
 
-def rough_noise(measured: Measured) -> Noise:
-    """Return what a model may be off by at first: 1 % of a length, 10 % of a tension."""
-    length, tension = (
-        float(np.median(kind[~np.isnan(kind)])) if np.isfinite(kind).any() else 1.0
-        for kind in (np.abs(measured.length_m), np.abs(measured.tension_N))
-    )
-    return Noise(_ROUGH_LENGTH * length, _ROUGH_TENSION * tension, "rough")
-
-
-def noise_of(measurements: Measurements, measured: Measured, residual_SI: FloatArray) -> Noise:
-    """Return the noise as declared, else as the fast part of the residual shows it.
+def first_noise(
+    measurements: Measurements,
+    measured: Measured,
+    predict: Predictor,
+    rows: BoolArray,
+    given: Sequence[Effect] = (),
+) -> Noise:
+    """Return the noise as declared, else as the fast part of the first residual shows it.
 
     Samples of a motion: second differences of the residual, from which anything slow drops out.
     Poses at rest: differences between neighbours in space, which share what depends on the pose.
 
     Parameters
     ----------
-    measurements, measured
-        What is declared, and the data.
-    residual_SI : array (n_rows, 2 n_cables)
-        Residual of the model as declared [m, N].
+    measurements, measured, predict
+        What is declared, the data, the model as declared.
+    rows : array (n_rows,) of bool
+        What a fit may see.
+    given : sequence of Effect
+        Unknown from the start: fitted first.
     """
-    n = measured.length_m.shape[1]
+    rough = Problem(measured, predict, _rough_noise(measured))
+    settings = fit(rough, given, rows).settings if given else ()
+    kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
     declared = (measurements.length_noise_m, measurements.tension_noise_N)
-    kinds = (residual_SI[:, :n], residual_SI[:, n:])
     estimate = _neighbours if measured.settled else _second_differences
     found = [
-        value if value is not None else estimate(kind, measured)
+        estimate(kind, measured) if value is None else value
         for value, kind in zip(declared, kinds, strict=True)
     ]
     missing = [
@@ -50,10 +57,8 @@ def noise_of(measurements: Measurements, measured: Measured, residual_SI: FloatA
         if value is None and not np.isnan(kind).all()
     ]
     how = "neighbouring poses" if measured.settled else "second differences in time"
-    source = (
-        f"{' and '.join(missing)} estimated from {how} of the residual" if missing else "declared"
-    )
-    return Noise(found[0], found[1], source)
+    source = f"{' and '.join(missing)} estimated from {how} of the residual"
+    return Noise(found[0], found[1], source if missing else "declared")
 
 
 def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> Noise:
@@ -64,8 +69,7 @@ def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> 
     residual : array (n_rows, 2 n_cables)
         In units of ``noise``.
     """
-    n = residual.shape[1] // 2
-    length, tension = (_robust_std(kind) for kind in (residual[:, :n], residual[:, n:]))
+    length, tension = (_robust_std(kind) for kind in np.hsplit(residual, 2))
     return Noise(
         noise.length_m if measurements.length_noise_m is not None else noise.length_m * length,
         noise.tension_N if measurements.tension_noise_N is not None else noise.tension_N * tension,
@@ -73,8 +77,16 @@ def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> 
     )
 
 
+def _rough_noise(measured: Measured) -> Noise:
+    length, tension = (
+        float(np.nanmedian(np.abs(kind))) if np.isfinite(kind).any() else 1.0
+        for kind in (measured.length_m, measured.tension_N)
+    )
+    return Noise(_ROUGH_LENGTH * length, _ROUGH_TENSION * tension, "rough")
+
+
 def _second_differences(kind: FloatArray, measured: Measured) -> float:
-    return _robust_std(np.diff(kind, n=2, axis=0)) / math.sqrt(6.0)
+    return _robust_std(np.diff(kind, n=2, axis=0)) / math.sqrt(6.0)  # 1² + 2² + 1² variances
 
 
 def _neighbours(kind: FloatArray, measured: Measured) -> float:
@@ -85,13 +97,9 @@ def _neighbours(kind: FloatArray, measured: Measured) -> float:
         return 1.0
     position, kind = measured.poses.position_m[seen], kind[seen]
     _, nearest = cKDTree(position).query(position, k=2)
-    return _robust_std(kind - kind[nearest[:, 1]]) / math.sqrt(2.0)
+    return _robust_std(kind - kind[nearest[:, 1]]) / math.sqrt(2.0)  # of two readings
 
 
 def _robust_std(values: FloatArray) -> float:
     """Standard deviation of the bulk; 1 where there are no values."""
-    known = values[~np.isnan(values)]
-    if known.size == 0:
-        return 1.0
-    spread = _MAD_TO_STD * float(np.median(np.abs(known - np.median(known))))
-    return max(spread, 1e-12)
+    return 1.0 if np.isnan(values).all() else max(spread(values), 1e-12)

@@ -17,14 +17,16 @@ from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 
 _SLOPES_KEPT = 8
+"""Slopes that are remembered: those of the parts of one validation, and a few more."""
+_MACHINES_KEPT = 64
+"""Readings that are remembered: those of one round's slopes."""
 
 
 class Predictor:
     """Predicts readings of one data set; remembers the last few machines it solved.
 
-    Of a robot with as many cables as degrees of freedom the pose alone tells lengths and tensions,
-    and effects on readings leave the machine alone, so that their slopes cost no statics. With
-    more cables each row's internal forces are taken from its own readings, see
+    Of a robot with as many cables as degrees of freedom the pose alone tells lengths and tensions.
+    With more cables each row's internal forces are taken from its own readings, see
     `designer.diagnosis.internal_forces`.
 
     Parameters
@@ -56,15 +58,17 @@ class Predictor:
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
-        shown = [s for s in self._fixed if not (measured.settled and "motion" in s.effect.needs)]
-        return Predictor(self._machine, measured, shown, self._effects)
+        return Predictor(self._machine, measured, self._fixed, self._effects)
 
     def built(self, settings: Sequence[Setting]) -> Machine:
         """Return the machine with the declared effects and these."""
         return as_built(self._machine, self._all(settings))
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
-        return self._effects.in_order((*self._fixed, *settings))
+        """Return the effects that show in these rows, in the order in which they act."""
+        both = (*self._fixed, *settings)
+        is_still = self._measured.settled
+        return self._effects.in_order(s for s in both if not (is_still and s.effect.needs_motion))
 
     @property
     def spare_cables(self) -> int:
@@ -76,6 +80,7 @@ class Predictor:
         """Return what the sensors would show with these effects."""
         if self.spare_cables:
             return self._remembered(settings, noise, self._forces.readings)[1]
+        # Effects on readings leave the machine alone, so that their slopes cost no statics.
         bodily = [s for s in settings if s.effect.on_machine is not None]
         return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
 
@@ -87,8 +92,7 @@ class Predictor:
         """
         if not self.spare_cables or np.isfinite(self._measured.tension_N).any():
             return self(settings, noise)
-        machine = self.built(settings)
-        return self._shown(readings_of(machine, self._measured.poses, self._measured), settings)
+        return self._shown(self._physical(settings, noise)[1], settings)
 
     def true_readings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
@@ -111,7 +115,7 @@ class Predictor:
     ) -> tuple[Readings, Readings]:
         key = (noise, *((s.effect.key, *s.values.values()) for s in settings))
         if key not in self._known:
-            if len(self._known) > 64:
+            if len(self._known) > _MACHINES_KEPT:
                 self._known.clear()
             self._known[key] = solve(settings, noise)
         return self._known[key]

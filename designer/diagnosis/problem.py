@@ -64,19 +64,12 @@ class Problem:
 
     def residual(self, settings: Sequence[Setting]) -> FloatArray:
         """Return (measured - predicted) / noise (n_rows, 2 n_cables); NaN where not measured."""
-        predicted, n = self.predicted(settings), self.measured.length_m.shape[1]
-        residual = np.empty((self.measured.n_rows, 2 * n))
-        residual[:, :n] = _off(self.measured.length_m, predicted.length_m, self.noise.length_m)
-        residual[:, n:] = _off(self.measured.tension_N, predicted.tension_N, self.noise.tension_N)
+        read, sigma, predicted = self.readings, self.sigma, self.predicted(settings).stacked
+        residual = np.asarray((read - predicted) / sigma)
+        unheld = np.isnan(predicted) & ~np.isnan(read)
+        if unheld.any():
+            residual[unheld] = (_UNHELD + _TIMES_OFF * np.abs(read) / sigma)[unheld]
         return residual
-
-
-def _off(read: FloatArray, model: FloatArray, sigma: float) -> FloatArray:
-    unheld = np.isnan(model)
-    if not unheld.any():
-        return (read - model) / sigma
-    worst = _UNHELD + _TIMES_OFF * np.abs(read) / sigma
-    return np.where(unheld & ~np.isnan(read), worst, (read - model) / sigma)
 
 
 def channel_names(n_cables: int) -> list[str]:

@@ -3,39 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.predict import Predictor
-from designer.diagnosis.result import Proposal
+from designer.arrays import FloatArray
+from designer.diagnosis.problem import Problem
 from designer.effects.effect import Setting
-from designer.model.measured_data import Measured, Noise
+from designer.model.measured_data import Measured
 from designer.model.region import PointList, Region
 from designer.model.robot import Poses
 from designer.study import Workspace
 from designer.workspace.samples import positions_m
 
 _CANDIDATES = 2000
+"""Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
 _POSES = 3
+"""One to decide, two in case that it cannot be reached."""
 _APART = 0.15
+"""Share of the region between proposals: else all three would be one place."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """Poses whose measurement would tell two rivals apart.
+
+    Parameters
+    ----------
+    found, rival : str
+        The two.
+    positions_m : array (n_poses, 3)
+        Where to measure.
+    separation : array (n_poses,)
+        Difference of their predictions there, in units of noise, over all readings of a pose.
+    """
+
+    found: str
+    rival: str
+    positions_m: FloatArray
+    separation: FloatArray
 
 
 def propose(
-    model: Predictor,
-    measured: Measured,
-    noise: Noise,
+    problem: Problem,
     region: Region | None,
     found: Sequence[Setting],
     rival: Sequence[Setting],
     names: tuple[str, str],
 ) -> Proposal:
-    """Return the poses at which two models, each fitted to the data, foretell most differently.
+    """Return the poses at which the predictions of two models, both fitted, differ most.
 
     Parameters
     ----------
-    model, measured, noise
+    problem : Problem
         As in the diagnosis; the surroundings of a new pose are taken from the middle row.
     region : Region or None
         Where to look; the box of the measured poses if there is none.
@@ -44,17 +64,13 @@ def propose(
     names : tuple of str
         What to call them.
     """
-    positions = _candidates(measured, region)
-    there = _measured_at(measured, positions)
-    predict = model.at(there)
-    one, other = (predict(_at_rest(settings), noise) for settings in (found, rival))
-    gap = np.hstack(
-        [
-            (one.length_m - other.length_m) / noise.length_m,
-            (one.tension_N - other.tension_N) / noise.tension_N,
-        ]
-    )
-    separation = np.sqrt(np.nansum(np.where(_measures(measured), gap**2, 0.0), axis=1))
+    positions = _candidates(problem.measured, region)
+    there = _measured_at(problem.measured, positions)
+    elsewhere = replace(problem, measured=there, predict=problem.predict.at(there))
+    one, other = (elsewhere.predicted(settings).stacked for settings in (found, rival))
+    is_measured = ~np.isnan(problem.readings).all(axis=0)
+    gap = (one - other)[:, is_measured] / problem.sigma[is_measured]
+    separation = np.sqrt(np.nansum(gap**2, axis=1))
     size = np.maximum(np.ptp(positions, axis=0), 1e-9)
     chosen: list[int] = []
     for k in np.argsort(-separation):
@@ -77,11 +93,10 @@ def _candidates(measured: Measured, region: Region | None) -> FloatArray:
 
 
 def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
-    """Return rows at other positions, turned as the middle row, in its surroundings."""
+    """Return rows at rest at other positions, turned as the middle row, in its surroundings."""
     middle, count = measured.n_rows // 2, len(positions)
     rotation = measured.poses.rotation
-    turned = rotation if rotation.ndim == 2 else rotation[middle]
-    n = measured.length_m.shape[1]
+    unread = np.full((count, measured.length_m.shape[1]), np.nan)
 
     def same(column: FloatArray | None) -> FloatArray | None:
         return None if column is None else np.repeat(column[middle : middle + 1], count, axis=0)
@@ -89,23 +104,12 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
     return replace(
         measured,
         settled=True,
-        poses=Poses(positions, turned),
-        length_m=np.full((count, n), np.nan),
-        tension_N=np.full((count, n), np.nan),
+        poses=Poses(positions, rotation if rotation.ndim == 2 else rotation[middle]),
+        length_m=unread,
+        tension_N=unread,
         time_s=same(measured.time_s),
         temperature_C=same(measured.temperature_C),
         wind_m_per_s=same(measured.wind_m_per_s),
         covariates={},
         row_numbers=np.arange(1, count + 1),
     )
-
-
-def _at_rest(settings: Sequence[Setting]) -> list[Setting]:
-    """Return what shows in a pose at rest."""
-    return [s for s in settings if "motion" not in s.effect.needs]
-
-
-def _measures(measured: Measured) -> BoolArray:
-    """Return which channels the machine measures at all (1, 2 n_cables)."""
-    readings = np.hstack([measured.length_m, measured.tension_N])
-    return np.asarray(~np.isnan(readings).all(axis=0))[None]

@@ -6,18 +6,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import Any
 
 from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.as_json import diagnosis_dict, json_text
+from designer.diagnosis.errors_of import Outlier, Stage
+from designer.diagnosis.foretell import Foretold
+from designer.diagnosis.propose import Proposal
 from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Structure
+from designer.diagnosis.trends import Correction, Whereabouts
 from designer.effects.effect import Effect, Readings, Setting
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise
 from designer.study import Study
-
-if TYPE_CHECKING:
-    from designer.diagnosis.whereabouts import Whereabouts
 
 MOST_SCATTER = 1.5
 """Times the declared noise beyond which sensors do not explain what is left."""
@@ -108,123 +110,6 @@ class Verdict(Enum):
     SCATTER = "scatter"
     IMPLAUSIBLE = "implausible"
     NOTHING = "nothing_to_find"
-
-
-@dataclass(frozen=True, slots=True)
-class Interval:
-    """A root mean square with its 95 % interval by block bootstrap."""
-
-    value: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Error:
-    """Error of one kind of reading, in SI units.
-
-    Parameters
-    ----------
-    rms : float
-        Over the rows that were fitted.
-    heldout : Interval
-        Over the rows that no fit has seen.
-    heldout_of_cable : array (n_cables,)
-        The same, cable by cable.
-    """
-
-    rms: float
-    heldout: Interval
-    heldout_of_cable: FloatArray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stage:
-    """The model at one point of the search: as declared, then with each effect.
-
-    Parameters
-    ----------
-    label : str
-        What was added.
-    settings : tuple of Setting
-        All effects with their values.
-    length_m, tension_N : Error or None
-        None where nothing of the kind was measured.
-    """
-
-    label: str
-    settings: tuple[Setting, ...]
-    length_m: Error | None
-    tension_N: Error | None
-
-
-@dataclass(frozen=True, slots=True)
-class Foretold:
-    """Root mean square errors of forward statics over rows that no fit has seen.
-
-    Parameters
-    ----------
-    n_rows, n_solved : int
-        Held-out rows with all lengths, and those of them in which a balance was found.
-    position_m : Interval
-        Distance of the platform from where it was [m].
-    turn_rad : Interval or None
-        Angle of the platform against where it was [rad]; None for one that cannot turn.
-    tension_N : Interval or None
-        Of the tensions at the winches [N]; None where none were measured.
-    """
-
-    n_rows: int
-    n_solved: int
-    position_m: Interval
-    turn_rad: Interval | None
-    tension_N: Interval | None
-
-
-@dataclass(frozen=True, slots=True)
-class Outlier:
-    """A reading that no model here explains; shown, and given little weight."""
-
-    row: int
-    channel: str
-    size: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Correction:
-    """A smooth empirical correction: no physics, and not used by the design.
-
-    Parameters
-    ----------
-    covariate : str
-        Each channel is corrected by a parabola in it, fitted to the rows for fitting.
-    heldout_before, heldout_after : float
-        Root mean square over held-out rows, in units of noise.
-    """
-
-    covariate: str
-    heldout_before: float
-    heldout_after: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Proposal:
-    """Poses whose measurement would tell two rivals apart.
-
-    Parameters
-    ----------
-    found, rival : str
-        The two.
-    positions_m : array (n_poses, 3)
-        Where to measure.
-    separation : array (n_poses,)
-        Difference of what they foretell there, in units of noise, over all readings of a pose.
-    """
-
-    found: str
-    rival: str
-    positions_m: FloatArray
-    separation: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,13 +263,13 @@ class Diagnosis:
 
         Of noise that was estimated from what is left, it tells nothing.
         """
-        kinds = (
-            ("length", self.final.length_m, self.noise.length_m),
-            ("tension", self.final.tension_N, self.noise.tension_N),
-        )
+        kinds = {
+            "length": (self.final.length_m, self.noise.length_m),
+            "tension": (self.final.tension_N, self.noise.tension_N),
+        }
         return {
             name: error.heldout.value / noise
-            for name, error, noise in kinds
+            for name, (error, noise) in kinds.items()
             if error is not None and math.isfinite(error.heldout.value)
         }
 
@@ -409,3 +294,11 @@ class Diagnosis:
         if self.doubts:
             return Verdict.IMPLAUSIBLE
         return Verdict.SCATTER if self.is_scattered else Verdict.NOTHING
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``diagnosis.json`` holds; a missing number is None."""
+        return diagnosis_dict(self)
+
+    def to_json(self) -> str:
+        """Return the text of ``diagnosis.json``."""
+        return json_text(self.to_dict())

@@ -9,13 +9,21 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.clusters import INDEPENDENT, Lasting, lasting
+from designer.diagnosis.robust import MAD_TO_STD
 from designer.effects.effect import Readings
 from designer.model.measured_data import Measured
 
 SIGNIFICANCE = 0.001
+"""Chance of structure where there is none: one in a thousand logs is told something wrong."""
+ORDER = ("time_s", "row")
+"""Covariates that tell the order of the rows."""
 _DRAWS = 999
+"""As many as `SIGNIFICANCE` asks for to be counted."""
 _CUT = 4.0
+"""Standard deviations at which channels are clipped, so that no outlier makes structure."""
 _LARGE = 1.3
+"""Times the noise from which on what lasts is no noise of the sensors: a declared noise is seldom
+known better than to a third."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +44,11 @@ class Carrier:
     name: str
     fraction_of_variance: float
     chance: float
+
+    @property
+    def is_order(self) -> bool:
+        """Whether it is the order of the rows, by time or by number."""
+        return self.name in ORDER
 
     @property
     def is_speed(self) -> bool:
@@ -156,7 +169,7 @@ def find_structure(
     bases = np.stack([_basis(column) for column in covariates.values()])
     observed = _largest_share(bases, channels)
     # What a covariate explains does not last of itself.
-    lasts = lasting(_without(bases[int(np.argmax(observed))], channels))
+    lasts = lasting(beside(bases[int(np.argmax(observed))], channels))
     rng = np.random.default_rng(seed)
     chances = chances_of(
         observed, [_largest_share(bases, one).max() for one in draws(channels, lasts, rng)]
@@ -164,7 +177,7 @@ def find_structure(
     excess = float(np.mean(channels**2))
     if settled and lasts.share and excess > _LARGE**2:
         best = [_largest_share(bases, one).max() for one in draws(channels, INDEPENDENT, rng)]
-        of_order = np.isin(list(covariates), ("time_s", "row"))
+        of_order = np.isin(list(covariates), ORDER)
         chances = np.where(of_order, chances_of(observed, best), chances)
     carriers = [
         Carrier(name, float(share), float(chance))
@@ -215,7 +228,7 @@ def channels_of(residual: FloatArray) -> FloatArray:
             continue
         known = kind[:, ~np.isnan(kind).all(axis=0)]
         centred = known - np.nanmedian(known, axis=0)
-        limit = _CUT * np.maximum(1.4826 * np.nanmedian(np.abs(centred), axis=0), 1.0)
+        limit = _CUT * np.maximum(MAD_TO_STD * np.nanmedian(np.abs(centred), axis=0), 1.0)
         filled = np.clip(np.nan_to_num(centred, nan=0.0), -limit, limit)
         filled = filled - filled.mean(axis=0)
         mean = filled.sum(axis=1, keepdims=True) / np.sqrt(n)
@@ -224,8 +237,9 @@ def channels_of(residual: FloatArray) -> FloatArray:
     return np.asarray(channels[:, channels.any(axis=0)])
 
 
-def _without(basis: FloatArray, channels: FloatArray) -> FloatArray:
-    return np.asarray(channels - basis @ (basis.T @ channels))
+def beside(basis: FloatArray, columns: FloatArray) -> FloatArray:
+    """Return what columns hold beside the span of an orthonormal basis."""
+    return np.asarray(columns - basis @ (basis.T @ columns))
 
 
 def _basis(column: FloatArray) -> FloatArray:

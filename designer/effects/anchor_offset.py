@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.effects.effect import Effect, Parameter, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import ALL_ANCHORS, Effect, Parameter, Size, Values, frame_size_m
 from designer.model.machine import Machine
 from designer.units import LENGTH
 
@@ -21,33 +18,21 @@ def _change(machine: Machine, values: Values, *, cable: int) -> Machine:
     return replace(machine, robot=replace(machine.robot, exit_points_m=frozen_array(moved)))
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return one effect for each cable."""
-    size = float(np.ptp(machine.robot.exit_points_m, axis=0).max())
-    axes = tuple(
-        Parameter(name, "m", 0.0, 1e-3 * size, (-size, size), (-0.02 * size, 0.02 * size))
-        for name in ("x_m", "y_m", "z_m")
-    )
-    return [
-        Effect(
-            id="anchor_offset",
-            summary=f"the exit point of cable {cable} is not where the drawing has it",
-            law="exit point plus offset",
-            source="definition",
-            parameters=axes,
-            on_machine=partial(_change, cable=cable),
-            cable=cable,
-            reaches_design=True,
-        )
-        for cable in range(1, machine.robot.n_cables + 1)
-    ]
+def _size(machine: Machine) -> Size:
+    size = frame_size_m(machine)
+    return Size(1e-3 * size, bounds=(-size, size), plausible=(-0.02 * size, 0.02 * size))
 
 
-KIND = EffectKind(
-    EffectName(
-        "anchor_offset",
-        tuple(ParameterName(name, LENGTH, neutral=0.0) for name in ("x_m", "y_m", "z_m")),
-        takes_cable=True,
+EFFECT = Effect(
+    id="anchor_offset",
+    summary="the exit point of cable {cable} is not where the drawing has it",
+    law="exit point plus offset",
+    source="definition",
+    parameters=tuple(
+        Parameter(name, LENGTH, _size, is_optional=True) for name in ("x_m", "y_m", "z_m")
     ),
-    build,
+    on_machine=_change,
+    takes_cable=True,
+    reaches_design=True,
+    also_called=ALL_ANCHORS,
 )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from designer.effects.kind import EffectKind
-from designer.effects.registry import KINDS
+from designer.effects.effect import Effect
+from designer.effects.registry import EFFECTS
 from designer.plugins import hookimpl
 
 
 @hookimpl
-def register_effects() -> tuple[EffectKind, ...]:
+def register_effects() -> tuple[Effect, ...]:
     """Return the effects that are shipped, in the order in which they act."""
-    return KINDS
+    return EFFECTS

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import frozen_array
-from designer.effects.effect import Effect, Parameter, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.model.machine import Machine
 from designer.units import LENGTH
+
+_SIZE = Size(0.01, bounds=(-5.0, 5.0), plausible=(-0.5, 0.5))
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -21,31 +21,20 @@ def _change(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=moved))
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect; none for a point mass, which has no body."""
-    if machine.robot.is_point_mass:
-        return []
-    axes = tuple(
-        Parameter(name, "m", 0.0, 0.01, (-5.0, 5.0), (-0.5, 0.5)) for name in ("x_m", "y_m", "z_m")
-    )
-    return [
-        Effect(
-            id="centre_of_mass_offset",
-            summary="the centre of mass is not where the drawing has it",
-            law="centre of mass plus offset, body frame",
-            source="definition",
-            parameters=axes,
-            on_machine=_change,
-            needs=frozenset({"rotation"}),
-            reaches_design=True,
-        )
-    ]
+def _has_body(machine: Machine) -> bool:
+    return not machine.robot.is_point_mass
 
 
-KIND = EffectKind(
-    EffectName(
-        "centre_of_mass_offset",
-        tuple(ParameterName(name, LENGTH, neutral=0.0) for name in ("x_m", "y_m", "z_m")),
+EFFECT = Effect(
+    id="centre_of_mass_offset",
+    summary="the centre of mass is not where the drawing has it",
+    law="centre of mass plus offset, body frame",
+    source="definition",
+    parameters=tuple(
+        Parameter(name, LENGTH, _SIZE, is_optional=True) for name in ("x_m", "y_m", "z_m")
     ),
-    build,
+    on_machine=_change,
+    needs=frozenset({"rotation"}),
+    can_have=_has_body,
+    reaches_design=True,
 )

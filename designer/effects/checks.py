@@ -1,4 +1,4 @@
-"""Checks that an effect is what its name in the files promises."""
+"""Checks that an effect can be used: what a plugin brings in may be anything."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ import re
 from collections.abc import Iterator
 
 from designer.arrays import frozen_array
-from designer.effects.effect import NEEDS, Effect, Parameter
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import ALL_ANCHORS, NEEDS, Effect, Parameter, Size
 from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.robot import Platform, Robot
 from designer.units import Dimension, QuantityError, read_quantity
 
-RESERVED_IDS = frozenset({"anchors", "cable"})
+RESERVED_IDS = frozenset({ALL_ANCHORS, "cable"})
 """Words of the config that stand where an id or a parameter may stand."""
 
 _ID = re.compile(r"[a-z][a-z0-9_]{0,59}")
@@ -29,54 +27,48 @@ _SAMPLES = (
 )
 
 
-def find_flaw(kind: EffectKind) -> str:
+def find_flaw(effect: Effect) -> str:
     """Return what is wrong with an effect; empty where it can be used.
 
-    It is built for a point mass on three cables and for a platform on six.
+    It is made for a point mass on three cables and for a platform on six.
     """
-    for flaw in _flaws_of_name(kind.name):
+    for flaw in _flaws_of_record(effect):
         return flaw
     for machine in _SAMPLES:
-        for flaw in flaws_of_built(kind.name, kind.build, machine):
-            return flaw
+        if effect.can_have(machine):
+            for parameter in effect.parameters:
+                for flaw in flaws_of_size(parameter, machine):
+                    return flaw
     return ""
 
 
-def flaws_of_built(name: EffectName, build: object, machine: Machine) -> Iterator[str]:
-    """Yield what keeps the effects that ``build`` makes for a machine from fitting their name."""
-    if not callable(build):
-        yield f"its build is {type(build).__name__}, not a function"
-        return
-    effects = build(machine)
-    if not isinstance(effects, list | tuple):
-        yield f"its build returned {type(effects).__name__}, not a list of Effect"
-        return
-    for effect in effects:
-        if not isinstance(effect, Effect):
-            yield f"its build gave {type(effect).__name__}, not an Effect"
-            return
-        yield from _flaws_of_effect(name, effect, machine.robot.n_cables)
-    yield from _flaws_of_cables(name, [effect.cable for effect in effects], machine)
-
-
-def _flaws_of_name(name: object) -> Iterator[str]:
-    if not isinstance(name, EffectName):
-        yield f"its name is {type(name).__name__}, not an EffectName"
-        return
-    if not isinstance(name.id, str) or not _ID.fullmatch(name.id) or name.id in RESERVED_IDS:
-        yield f"{name.id!r} is no effect id (expected lower-case letters, digits or '_')"
-    if not name.parameters:
+def _flaws_of_record(effect: Effect) -> Iterator[str]:
+    if not isinstance(effect.id, str) or not _ID.fullmatch(effect.id) or effect.id in RESERVED_IDS:
+        yield f"{effect.id!r} is no effect id (expected lower-case letters, digits or '_')"
+    if not effect.parameters:
         yield "it has no parameter"
-    for parameter in name.parameters:
-        yield from _flaws_of_parameter_name(parameter)
-    names = [parameter.name for parameter in name.parameters_for(3)]
+    for parameter in effect.parameters:
+        yield from _flaws_of_parameter(parameter)
+    names = [parameter.name for parameter in effect.parameters_for(3)]
     if len(set(names)) < len(names):
         yield "two of its parameters have one name"
+    if callable(effect.on_machine) == callable(effect.on_readings):
+        yield "it acts on both machine and readings or on none (expected one of them)"
+    for start in effect.starts:
+        if not start.keys() <= set(names) or not all(map(math.isfinite, start.values())):
+            yield f"it starts from {dict(start)} (expected finite values of its parameters)"
+    for need in sorted(effect.needs - NEEDS.keys()):
+        yield f"it needs {need!r} (expected {', '.join(NEEDS)})"
+    for text in ("summary", "law", "source"):
+        if not isinstance(getattr(effect, text), str) or not getattr(effect, text).strip():
+            yield f"its {text} is no text"
+    if effect.cable is not None:
+        yield f"it is for cable {effect.cable} alone (expected takes_cable, for each of them)"
 
 
-def _flaws_of_parameter_name(parameter: object) -> Iterator[str]:
-    if not isinstance(parameter, ParameterName):
-        yield f"a parameter is {type(parameter).__name__}, not a ParameterName"
+def _flaws_of_parameter(parameter: object) -> Iterator[str]:
+    if not isinstance(parameter, Parameter):
+        yield f"a parameter is {type(parameter).__name__}, not a Parameter"
         return
     plain = parameter.name.replace("{cable}", "1")
     if not _PARAMETER.fullmatch(plain) or plain in RESERVED_IDS:
@@ -88,49 +80,22 @@ def _flaws_of_parameter_name(parameter: object) -> Iterator[str]:
         read_quantity(parameter.dimension.example, parameter.dimension)
     except QuantityError as error:
         yield f"the dimension of {parameter.name!r}: its example {error}"
+    if not isinstance(parameter.size, Size) and not callable(parameter.size):
+        given = type(parameter.size).__name__
+        yield f"the size of {parameter.name} is {given}, not a Size or a function"
 
 
-def _flaws_of_effect(name: EffectName, effect: Effect, n_cables: int) -> Iterator[str]:
-    wanted = name.parameters_for(n_cables)
-    names = [parameter.name for parameter in effect.parameters]
-    if effect.id != name.id:
-        yield f"its Effect has the id {effect.id!r}"
-    if names != [one.name for one in wanted]:
-        expected = ", ".join(one.name for one in wanted)
-        yield f"its Effect has the parameters {', '.join(names)} (expected {expected})"
-        return
-    for one, parameter in zip(wanted, effect.parameters, strict=True):
-        if one.neutral is not None and one.neutral != parameter.neutral:
-            yield f"{one.name} is neutral at {parameter.neutral:g} (expected {one.neutral:g})"
-        yield from _flaws_of_numbers(parameter)
-    if callable(effect.on_machine) == callable(effect.on_readings):
-        yield "its Effect acts on both machine and readings or on none (expected one of them)"
-    for start in effect.starts:
-        if not start.keys() <= set(names) or not all(map(math.isfinite, start.values())):
-            yield f"it starts from {dict(start)} (expected finite values of its parameters)"
-    for need in sorted(effect.needs - NEEDS.keys()):
-        yield f"it needs {need!r} (expected {', '.join(NEEDS)})"
-    for text in ("summary", "law", "source"):
-        if not isinstance(getattr(effect, text), str) or not getattr(effect, text).strip():
-            yield f"its {text} is no text"
-
-
-def _flaws_of_numbers(parameter: Parameter) -> Iterator[str]:
-    (low, high), (least, most) = parameter.bounds, parameter.plausible
-    numbers = (low, high, least, most, parameter.neutral, parameter.typical)
+def flaws_of_size(parameter: Parameter, machine: Machine) -> Iterator[str]:
+    """Yield what keeps a parameter from being fitted on a machine."""
+    here = parameter.sized(machine)
+    (low, high), (least, most) = here.bounds, here.plausible
+    numbers = (low, high, least, most, here.neutral, here.typical)
     if not all(math.isfinite(number) for number in numbers):
-        yield f"{parameter.name} has a number that is not finite"
-    elif not (low < high and low <= parameter.neutral <= high):
-        yield f"{parameter.name} has no bounds around its neutral value {parameter.neutral:g}"
-    elif parameter.typical <= 0.0 or least > most:
-        yield f"{parameter.name} has no typical size above 0, or no plausible range"
-
-
-def _flaws_of_cables(name: EffectName, cables: list[int | None], machine: Machine) -> Iterator[str]:
-    n_cables = machine.robot.n_cables
-    if name.takes_cable:
-        numbers = set(range(1, n_cables + 1))
-        if len(set(cables)) < len(cables) or not set(cables) <= numbers:
-            yield f"its build gave cables {cables} (expected each of 1 to {n_cables} once at most)"
-    elif len(cables) > 1 or any(cable is not None for cable in cables):
-        yield "its build gave effects of single cables (expected takes_cable in its EffectName)"
+        yield f"{here.name} has a number that is not finite"
+    elif not (low < high and low <= here.neutral <= high):
+        yield f"{here.name} has no bounds around its neutral value {here.neutral:g}"
+    elif here.typical <= 0.0 or least > most:
+        yield f"{here.name} has no typical size above 0, or no plausible range"
+    elif parameter.is_optional and here.neutral != parameter.neutral:
+        expected = f"expected {parameter.neutral:g}, as it may be left out"
+        yield f"{here.name} is neutral at {here.neutral:g} ({expected})"

@@ -6,10 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
-from designer.model.machine import Machine
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.measured_data import Measured
 from designer.units import TIME
 
@@ -26,19 +23,14 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     return replace(readings, length_m=length)
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
-    return [
-        Effect(
-            id="clock_offset",
-            summary="the length stream lags the pose stream",
-            law="the length of a row is that of the pose this much earlier",
-            source="definition",
-            parameters=(Parameter("offset_s", "s", 0.0, 0.05, (-60.0, 60.0), (-5.0, 5.0)),),
-            on_readings=_change,
-            needs=frozenset({"time", "motion", "length"}),
-        )
-    ]
-
-
-KIND = EffectKind(EffectName("clock_offset", (ParameterName("offset_s", TIME),)), build)
+EFFECT = Effect(
+    id="clock_offset",
+    summary="the length stream lags the pose stream",
+    law="the length of a row is that of the pose this much earlier",
+    source="definition",
+    parameters=(
+        Parameter("offset_s", TIME, Size(0.05, bounds=(-60.0, 60.0), plausible=(-5.0, 5.0))),
+    ),
+    on_readings=_change,
+    needs=frozenset({"time", "motion", "length"}),
+)

@@ -7,19 +7,17 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import LENGTH, PER_LENGTH
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
-    gain = values["radius_gain_per_m"]
     n = readings.length_m.shape[1]
     reference = np.array([values[f"reference_{k}_m"] for k in range(1, n + 1)])
-    return replace(readings, length_m=_counted(readings.length_m, gain, reference))
+    counted = _counted(readings.length_m, values["radius_gain_per_m"], reference)
+    return replace(readings, length_m=counted)
 
 
 def _counted(length_m: FloatArray, gain: float, reference_m: FloatArray) -> FloatArray:
@@ -34,36 +32,26 @@ def _counted(length_m: FloatArray, gain: float, reference_m: FloatArray) -> Floa
     return np.asarray(reference_m - np.log(np.maximum(1.0 + gain * wound, 1e-6)) / gain)
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect; where each winch's scale is right is fitted with it."""
-    exits = machine.robot.exit_points_m
-    size = float(np.ptp(exits, axis=0).max())
-    gain = Parameter("radius_gain_per_m", "1/m", 0.0, 1e-2 / size, (0.0, 0.9 / size), (0.0, 0.02))
-    # A tiny gain about a reference far off would be a wrong scale of each winch, not layering.
-    references = tuple(
-        Parameter(f"reference_{k}_m", "m", 0.0, 0.1 * size, (0.0, 2 * size), (0.0, 2 * size))
-        for k in range(1, machine.robot.n_cables + 1)
-    )
-    return [
-        Effect(
-            id="drum_layering",
-            summary="the drums grow as cable is wound onto them",
-            law="drum radius times 1 + gain · length wound on since the reference length",
-            source="definition",
-            parameters=(gain, *references),
-            on_readings=_change,
-            needs=frozenset({"length"}),
-        )
-    ]
+def _gain(machine: Machine) -> Size:
+    size = frame_size_m(machine)
+    return Size(1e-2 / size, bounds=(0.0, 0.9 / size), plausible=(0.0, 0.02))
 
 
-KIND = EffectKind(
-    EffectName(
-        "drum_layering",
-        (
-            ParameterName("radius_gain_per_m", PER_LENGTH),
-            ParameterName("reference_{cable}_m", LENGTH, neutral=0.0),
-        ),
+def _reference(machine: Machine) -> Size:
+    """A tiny gain about a reference far off would be a wrong scale of each winch, not layering."""
+    size = frame_size_m(machine)
+    return Size(0.1 * size, bounds=(0.0, 2 * size), plausible=(0.0, 2 * size))
+
+
+EFFECT = Effect(
+    id="drum_layering",
+    summary="the drums grow as cable is wound onto them",
+    law="drum radius times 1 + gain · length wound on since the reference length",
+    source="definition",
+    parameters=(
+        Parameter("radius_gain_per_m", PER_LENGTH, _gain),
+        Parameter("reference_{cable}_m", LENGTH, _reference, is_optional=True),
     ),
-    build,
+    on_readings=_change,
+    needs=frozenset({"length"}),
 )

@@ -1,13 +1,17 @@
-"""What an effect is made of."""
+"""What an effect is: its law, its parameters, and what it needs, in one record."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
+from designer.units import Dimension
 
 Values = Mapping[str, float]
 
@@ -25,6 +29,33 @@ class Readings:
     length_m: FloatArray
     tension_N: FloatArray
 
+    @property
+    def stacked(self) -> FloatArray:
+        """Lengths, then tensions (n_rows, 2 n_cables)."""
+        return np.hstack([self.length_m, self.tension_N])
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How large a parameter is, in the unit of its dimension.
+
+    Parameters
+    ----------
+    typical : float
+        Size of a change worth looking at: scale of the fit and step of its slopes.
+    bounds : tuple of float
+        What the fit may try.
+    plausible : tuple of float
+        What an engineer would believe; a value outside is reported with a warning.
+    neutral : float or None
+        The value at which it does nothing, where that depends on the machine.
+    """
+
+    typical: float
+    bounds: tuple[float, float]
+    plausible: tuple[float, float]
+    neutral: float | None = None
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -32,24 +63,73 @@ class Parameter:
 
     Parameters
     ----------
-    name, unit : str
-        As in config and result files.
+    name : str
+        As in config and result files, with its SI unit; ``{cable}`` stands for the number of a
+        cable, from 1, where there is one for each.
+    dimension : Dimension
+        What kind of quantity it is; the unit follows from it.
+    size : Size or callable
+        Its size, or a function that gives it for a machine.
     neutral : float
         The value at which the effect does nothing.
-    typical : float
-        Size of a change worth looking at: scale of the fit and step of its slopes.
-    bounds : tuple of float
-        What the fit may try.
-    plausible : tuple of float
-        What an engineer would believe; a value outside is reported with a warning.
+    is_optional : bool
+        Whether a config may leave it out, which makes it neutral.
+    above, at_least : float or None
+        Limits beyond which it has no meaning.
     """
 
     name: str
-    unit: str
-    neutral: float
-    typical: float
-    bounds: tuple[float, float]
-    plausible: tuple[float, float]
+    dimension: Dimension
+    size: Size | Callable[[Machine], Size]
+    neutral: float = 0.0
+    is_optional: bool = False
+    above: float | None = None
+    at_least: float | None = None
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit as one reads it: ``N·m²``; empty for a plain number."""
+        return self.dimension.unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+    @property
+    def typical(self) -> float:
+        """Of its `Size` on the machine that it was made for, as the two below."""
+        return self.size_here.typical
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """What the fit may try."""
+        return self.size_here.bounds
+
+    @property
+    def plausible(self) -> tuple[float, float]:
+        """What an engineer would believe."""
+        return self.size_here.plausible
+
+    @property
+    def size_here(self) -> Size:
+        """Its size on the machine that it was made for."""
+        assert isinstance(self.size, Size), f"{self.name} was made for no machine"
+        return self.size
+
+    def is_plausible(self, value: float) -> bool:
+        """Whether an engineer would believe a value."""
+        return self.plausible[0] <= value <= self.plausible[1]
+
+    def sized(self, machine: Machine) -> Parameter:
+        """Return it with its size on a machine."""
+        size = self.size if isinstance(self.size, Size) else self.size(machine)
+        if not isinstance(size, Size):
+            raise TypeError(f"the size of {self.name} is {type(size).__name__}, not a Size")
+        neutral = self.neutral if size.neutral is None else size.neutral
+        return replace(self, size=size, neutral=neutral)
+
+    def of_cables(self, n_cables: int) -> list[Parameter]:
+        """Return it, or one for each cable."""
+        if "{cable}" not in self.name:
+            return [self]
+        numbers = range(1, n_cables + 1)
+        return [replace(self, name=self.name.format(cable=cable)) for cable in numbers]
 
 
 NEEDS: Mapping[str, str] = {
@@ -63,21 +143,31 @@ NEEDS: Mapping[str, str] = {
 }
 """What an effect may need in the data to be seen, in words."""
 
-MachineChange = Callable[[Machine, Values], Machine]
-ReadingChange = Callable[[Readings, Values, Measured], Readings]
+ALL_ANCHORS = "anchors"
+"""What ``measurements.unknown`` calls the offsets of all exit points together."""
+
+MachineChange = Callable[..., Machine]
+"""From a machine and `Values` to the machine with the effect."""
+ReadingChange = Callable[..., Readings]
+"""From `Readings`, `Values` and `Measured` to the readings with the effect."""
 StartsFrom = Callable[[Measured, FloatArray], Sequence[Values]]
+
+
+def any_machine(machine: Machine) -> bool:
+    """Tell that a machine may have an effect, whatever it is."""
+    return True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Effect:
-    """A physical effect.
+    """A physical effect: as its file has it, or made for a machine by `on`.
 
     Parameters
     ----------
     id : str
         As in config and result files.
     summary : str
-        What it is, in a few words.
+        What it is, in a few words; ``{cable}`` stands for the cable that it concerns.
     law : str
         How it changes machine or reading.
     source : str
@@ -85,17 +175,29 @@ class Effect:
     parameters : tuple of Parameter
         Its numbers.
     on_machine, on_readings : callable or None
-        Exactly one of them.
+        Exactly one of them: ``on_machine(machine, values)`` returns the changed machine,
+        ``on_readings(readings, values, measured)`` the changed readings.
     needs : frozenset of str
         What the data must have, of `NEEDS`.
-    cable : int or None
-        The one cable it concerns, from 1; None for all.
+    takes_cable : bool
+        Whether it concerns one cable, so that it may stand more than once; the law is then given
+        ``cable=``, its number from 1.
+    takes_machine : bool
+        Whether the law is given ``machine=``, the one that the effect was made for.
+    can_have : callable
+        Tells whether a machine may have it at all.
     starts : tuple of mapping
         Values to start a fit from, beside the typical ones.
     starts_from : callable or None
         From the data and the residual without it (n_rows, 2 n_cables): values to start from.
     reaches_design : bool
         Whether it changes what cable the machine needs.
+    shifts_lengths : bool
+        Whether it leaves only changes of the lengths to go by, not the lengths themselves.
+    also_called : str
+        What ``measurements.unknown`` calls it for all cables together.
+    cable : int or None
+        The one cable it concerns, from 1, once it is made for a machine.
     """
 
     id: str
@@ -106,10 +208,15 @@ class Effect:
     on_machine: MachineChange | None = None
     on_readings: ReadingChange | None = None
     needs: frozenset[str] = frozenset()
-    cable: int | None = None
+    takes_cable: bool = False
+    takes_machine: bool = False
+    can_have: Callable[[Machine], bool] = any_machine
     starts: tuple[Values, ...] = ()
     starts_from: StartsFrom | None = None
     reaches_design: bool = False
+    shifts_lengths: bool = False
+    also_called: str = ""
+    cable: int | None = None
 
     @property
     def key(self) -> str:
@@ -120,6 +227,44 @@ class Effect:
     def neutral(self) -> dict[str, float]:
         """Values at which it does nothing."""
         return {p.name: p.neutral for p in self.parameters}
+
+    @property
+    def needs_motion(self) -> bool:
+        """Whether poses at rest do not show it."""
+        return "motion" in self.needs
+
+    def is_among(self, names: Sequence[str]) -> bool:
+        """Tell whether one of the names, as in ``measurements.unknown``, is its own."""
+        return self.id in names or (self.also_called != "" and self.also_called in names)
+
+    def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
+        """Return the parameters on a robot with so many cables."""
+        return tuple(one for each in self.parameters for one in each.of_cables(n_cables))
+
+    def on(self, machine: Machine) -> list[Effect]:
+        """Return what a machine may have of it: the effect, one for each cable, or none."""
+        if not self.can_have(machine):
+            return []
+        n_cables = machine.robot.n_cables
+        sized = tuple(p.sized(machine) for p in self.parameters)
+        own = replace(
+            self, parameters=tuple(one for each in sized for one in each.of_cables(n_cables))
+        )
+        if self.takes_machine:
+            own = own._given(machine=machine)
+        if not self.takes_cable:
+            return [own]
+        return [
+            replace(own._given(cable=k), cable=k, summary=self.summary.format(cable=k))
+            for k in range(1, n_cables + 1)
+        ]
+
+    def _given(self, **more: object) -> Effect:
+        return replace(
+            self,
+            on_machine=self.on_machine and partial(self.on_machine, **more),
+            on_readings=self.on_readings and partial(self.on_readings, **more),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,5 +283,6 @@ def as_built(machine: Machine, settings: Sequence[Setting]) -> Machine:
     return machine
 
 
-Builder = Callable[[Machine], list[Effect]]
-"""Makes the effects of one kind that a machine may have: one, or one for each cable."""
+def frame_size_m(machine: Machine) -> float:
+    """Return the largest extent of the exit points along an axis [m]."""
+    return float(np.ptp(machine.robot.exit_points_m, axis=0).max())

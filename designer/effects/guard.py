@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
-from designer.effects.checks import flaws_of_built
-from designer.effects.effect import Effect, Readings, Values
-from designer.effects.kind import EffectKind
+from designer.effects.checks import flaws_of_size
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.errors import EffectError
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -19,81 +18,65 @@ from designer.plugins.guard import one_line
 Value = TypeVar("Value")
 
 
-def guarded(kind: EffectKind, label: str) -> EffectKind:
+def guarded(effect: Effect, label: str) -> Effect:
     """Return the same effect; whatever goes wrong in it is raised as an `EffectError`.
 
     Parameters
     ----------
-    kind : EffectKind
+    effect : Effect
         Of a plugin.
     label : str
         Which plugin it is.
     """
-    effect_id = kind.name.id
 
     def fail(problem: object) -> EffectError:
-        line = f"{label}: effect {effect_id!r} fails at work: {one_line(problem)}"
-        return EffectError(effect_id, line)
+        line = f"{label}: effect {effect.id!r} fails at work: {one_line(problem)}"
+        return EffectError(effect.id, line)
 
-    def build(machine: Machine) -> list[Effect]:
-        flaw = _attempt(lambda: next(flaws_of_built(kind.name, kind.build, machine), None), fail)
-        if flaw is not None:
-            raise fail(flaw)
-        return [
-            _guarded_effect(effect, fail) for effect in _attempt(lambda: kind.build(machine), fail)
-        ]
+    def attempt(action: Callable[..., Value], *given: object, **more: object) -> Value:
+        try:
+            return action(*given, **more)
+        except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+            asks = " (does it ask for measurements.cable.diameter?)" * ("not nan" in str(error))
+            raise fail(f"{type(error).__name__}: {one_line(error)}{asks}") from error
 
-    return replace(kind, build=build)
-
-
-def _guarded_effect(effect: Effect, fail: Callable[[object], EffectError]) -> Effect:
-    on_machine, on_readings = effect.on_machine, effect.on_readings
-
-    def change_machine(machine: Machine, values: Values) -> Machine:
-        assert on_machine is not None
-        changed = _attempt(lambda: on_machine(machine, values), fail)
+    def change_machine(machine: Machine, values: Values, **more: Any) -> Machine:
+        assert effect.on_machine is not None
+        changed = attempt(effect.on_machine, machine, values, **more)
         if not isinstance(changed, Machine):
             raise fail(f"it returned {type(changed).__name__}, not a Machine")
-        problem = _impossible(changed)
-        if problem:
+        mass_kg = changed.robot.platform.mass_kg  # whatever else cannot be is refused when made
+        if not mass_kg > 0.0:
+            raise fail(f"it makes the platform's mass {mass_kg:g}")
+        return changed
+
+    def change_readings(
+        readings: Readings, values: Values, measured: Measured, **more: Any
+    ) -> Readings:
+        assert effect.on_readings is not None
+        changed = attempt(effect.on_readings, readings, values, measured, **more)
+        if problem := _misfit(changed, readings):
             raise fail(problem)
         return changed
 
-    def change_readings(readings: Readings, values: Values, measured: Measured) -> Readings:
-        assert on_readings is not None
-        changed = _attempt(lambda: on_readings(readings, values, measured), fail)
-        problem = _misfit(changed, readings)
-        if problem:
-            raise fail(problem)
-        return changed
+    def sized(parameter: Parameter) -> Parameter:
+        if isinstance(parameter.size, Size):
+            return parameter
+
+        def size(machine: Machine) -> Size:
+            for flaw in attempt(lambda: [*flaws_of_size(parameter, machine)]):
+                raise fail(flaw)
+            return parameter.sized(machine).size_here
+
+        return replace(parameter, size=size)
 
     return replace(
         effect,
-        on_machine=change_machine if on_machine is not None else None,
-        on_readings=change_readings if on_readings is not None else None,
+        on_machine=effect.on_machine and change_machine,
+        on_readings=effect.on_readings and change_readings,
+        can_have=lambda machine: bool(attempt(effect.can_have, machine)),
+        parameters=tuple(sized(parameter) for parameter in effect.parameters),
     )
-
-
-def _attempt(action: Callable[[], Value], fail: Callable[[object], EffectError]) -> Value:
-    try:
-        return action()
-    except (Exception, SystemExit) as error:  # a stranger's code may raise anything
-        raise fail(f"{type(error).__name__}: {one_line(error)}") from error
-
-
-def _impossible(machine: Machine) -> str:
-    """Return what no machine can have; a cable without strength or diameter is only measured."""
-    figures = {
-        "the platform's mass": machine.robot.platform.mass_kg,
-        "the cable's mass per length": machine.cable.linear_density_kg_per_m,
-        "the cable's stiffness": machine.cable.axial_stiffness_N,
-        "the cable's allowable tension": machine.cable.allowable_tension_N,
-    }
-    for name, value in figures.items():
-        if not value > 0.0:
-            asks = " (does it ask for measurements.cable.diameter?)" if np.isnan(value) else ""
-            return f"it makes {name} {value:g}{asks}"
-    return ""
 
 
 def _misfit(changed: object, before: Readings) -> str:

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from designer.effects.effect import Effect, Setting
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName
 from designer.model.machine import Machine
 
 
@@ -17,19 +15,19 @@ class KnownEffects:
 
     Parameters
     ----------
-    kinds : tuple of EffectKind
+    effects : tuple of Effect
         In the order in which they act; ids are unique.
     problems : tuple of str
         What was left out and why, one line each.
     """
 
-    kinds: tuple[EffectKind, ...]
+    effects: tuple[Effect, ...]
     problems: tuple[str, ...] = ()
 
     @property
-    def names(self) -> Mapping[str, EffectName]:
-        """Every effect by its id, as files spell it."""
-        return {kind.name.id: kind.name for kind in self.kinds}
+    def by_id(self) -> Mapping[str, Effect]:
+        """Every effect by its id, in the order in which they act."""
+        return {effect.id: effect for effect in self.effects}
 
     def of(self, machine: Machine) -> list[Effect]:
         """Return every effect that this machine may have, in the order in which they act.
@@ -39,14 +37,14 @@ class KnownEffects:
         designer.errors.EffectError
             If an effect of a plugin fails at this machine.
         """
-        return [effect for kind in self.kinds for effect in kind.build(machine)]
+        return [one for effect in self.effects for one in effect.on(machine)]
 
     def in_order(self, settings: Iterable[Setting]) -> list[Setting]:
         """Return settings in the order in which they act: a model is one, however it was found."""
-        place = {effect_id: k for k, effect_id in enumerate(self.names)}
+        place = {effect.id: k for k, effect in enumerate(self.effects)}
         return sorted(settings, key=lambda s: (place[s.effect.id], s.effect.cable or 0))
 
     def without(self, effect_id: str, problem: str) -> KnownEffects:
         """Return all effects but one, with the reason why it is left out."""
-        kept = tuple(kind for kind in self.kinds if kind.name.id != effect_id)
+        kept = tuple(effect for effect in self.effects if effect.id != effect_id)
         return KnownEffects(kept, (*self.problems, problem))

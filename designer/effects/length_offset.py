@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
-from designer.model.machine import Machine
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.measured_data import Measured
 from designer.units import LENGTH
+
+_SIZE = Size(0.01, bounds=(-1e3, 1e3), plausible=(-1.0, 1.0))
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -19,25 +18,13 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     return replace(readings, length_m=readings.length_m + offsets)
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
-    offsets = tuple(
-        Parameter(f"offset_{k}_m", "m", 0.0, 0.01, (-1e3, 1e3), (-1.0, 1.0))
-        for k in range(1, machine.robot.n_cables + 1)
-    )
-    return [
-        Effect(
-            id="length_offset",
-            summary="the winches were homed at the wrong length",
-            law="measured length plus an offset for each cable",
-            source="definition",
-            parameters=offsets,
-            on_readings=_change,
-            needs=frozenset({"length"}),
-        )
-    ]
-
-
-KIND = EffectKind(
-    EffectName("length_offset", (ParameterName("offset_{cable}_m", LENGTH, neutral=0.0),)), build
+EFFECT = Effect(
+    id="length_offset",
+    summary="the winches were homed at the wrong length",
+    law="measured length plus an offset for each cable",
+    source="definition",
+    parameters=(Parameter("offset_{cable}_m", LENGTH, _SIZE, is_optional=True),),
+    on_readings=_change,
+    needs=frozenset({"length"}),
+    shifts_lengths=True,
 )

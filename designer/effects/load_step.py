@@ -7,14 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.effects.effect import Effect, Parameter, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import MASS, TIME
 
 _LEAST_ROWS = 5
+"""On either side of a step: fewer have no mean to speak of."""
 
 
 def _change(machine: Machine, values: Values) -> Machine:
@@ -39,28 +38,22 @@ def _starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, float],
     return ()
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect; as much as the platform weighs is believed."""
+def _offset(machine: Machine) -> Size:
+    """As much as the platform weighs is believed."""
     mass = machine.robot.platform.mass_kg
-    offset = Parameter(
-        "offset_kg", "kg", 0.0, 0.02 * mass, (-0.95 * mass, 20 * mass), (-mass, mass)
-    )
-    time = Parameter("time_s", "s", 0.0, 1.0, (-1e9, 1e9), (-1e9, 1e9))
-    return [
-        Effect(
-            id="load_step",
-            summary="the load on the platform changes at a time",
-            law="platform mass plus offset from that time on, at the origin of the body's frame",
-            source="definition",
-            parameters=(offset, time),
-            on_machine=_change,
-            needs=frozenset({"time"}),
-            starts_from=_starts,
-        )
-    ]
+    return Size(0.02 * mass, bounds=(-0.95 * mass, 20 * mass), plausible=(-mass, mass))
 
 
-KIND = EffectKind(
-    EffectName("load_step", (ParameterName("offset_kg", MASS), ParameterName("time_s", TIME))),
-    build,
+EFFECT = Effect(
+    id="load_step",
+    summary="the load on the platform changes at a time",
+    law="platform mass plus offset from that time on, at the origin of the body's frame",
+    source="definition",
+    parameters=(
+        Parameter("offset_kg", MASS, _offset),
+        Parameter("time_s", TIME, Size(1.0, bounds=(-1e9, 1e9), plausible=(-1e9, 1e9))),
+    ),
+    on_machine=_change,
+    needs=frozenset({"time"}),
+    starts_from=_starts,
 )

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.effects.along import pull_of
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Robot
 from designer.units import COMPLIANCE
 
 _NOTHING = 1e-12
+"""Of the trace of a Gram matrix: lets it be solved where cables leave a direction free."""
 
 
 def _change(
@@ -62,26 +59,18 @@ def _wrench(force: FloatArray, lever: FloatArray, robot: Robot) -> FloatArray:
     return np.concatenate([force, np.cross(lever, force)], axis=-1)
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect; a mast that gives way by 2 % of the frame under the platform's weight."""
-    size = float(np.ptp(machine.robot.exit_points_m, axis=0).max())
-    most = 0.02 * size / machine.robot.weight_N
-    compliance = Parameter(
-        "compliance_m_per_N", "m/N", 0.0, 0.02 * most, (0.0, 50 * most), (0.0, most)
-    )
-    return [
-        Effect(
-            id="mast_compliance",
-            summary="the masts bend: exit points move with the pull of their cables",
-            law="exit point plus compliance times the horizontal force of its cable",
-            source="cantilever, H³/(3 EI): Timoshenko, Strength of Materials I, 1955, section 39",
-            parameters=(compliance,),
-            on_readings=partial(_change, machine=machine),
-        )
-    ]
+def _size(machine: Machine) -> Size:
+    """A mast gives way by 2 % of the frame at most under the platform's weight."""
+    most = 0.02 * frame_size_m(machine) / machine.robot.weight_N
+    return Size(0.02 * most, bounds=(0.0, 50 * most), plausible=(0.0, most))
 
 
-KIND = EffectKind(
-    EffectName("mast_compliance", (ParameterName("compliance_m_per_N", COMPLIANCE, at_least=0.0),)),
-    build,
+EFFECT = Effect(
+    id="mast_compliance",
+    summary="the masts bend: exit points move with the pull of their cables",
+    law="exit point plus compliance times the horizontal force of its cable",
+    source="cantilever, H³/(3 EI): Timoshenko, Strength of Materials I, 1955, section 39",
+    parameters=(Parameter("compliance_m_per_N", COMPLIANCE, _size, at_least=0.0),),
+    on_readings=_change,
+    takes_machine=True,
 )

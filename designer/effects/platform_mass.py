@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from designer.effects.effect import Effect, Parameter, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.model.machine import Machine
 from designer.units import MASS
 
@@ -17,23 +15,17 @@ def _change(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=heavier))
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
+def _size(machine: Machine) -> Size:
     mass = machine.robot.platform.mass_kg
-    offset = Parameter(
-        "offset_kg", "kg", 0.0, 0.01 * mass, (-0.9 * mass, 10.0 * mass), (-0.3 * mass, 0.5 * mass)
-    )
-    return [
-        Effect(
-            id="platform_mass",
-            summary="the platform with its payload is heavier or lighter than declared",
-            law="mass plus offset",
-            source="definition",
-            parameters=(offset,),
-            on_machine=_change,
-            reaches_design=True,
-        )
-    ]
+    return Size(0.01 * mass, bounds=(-0.9 * mass, 10.0 * mass), plausible=(-0.3 * mass, 0.5 * mass))
 
 
-KIND = EffectKind(EffectName("platform_mass", (ParameterName("offset_kg", MASS),)), build)
+EFFECT = Effect(
+    id="platform_mass",
+    summary="the platform with its payload is heavier or lighter than declared",
+    law="mass plus offset",
+    source="definition",
+    parameters=(Parameter("offset_kg", MASS, _size),),
+    on_machine=_change,
+    reaches_design=True,
+)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from designer.effects.along import pull_of
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FORCE, NUMBER
+
+_STRAIN = Size(1e-4, bounds=(0.0, 0.05), plausible=(0.0, 0.01))
 
 
 def _change(
@@ -26,34 +25,27 @@ def _change(
     return replace(readings, length_m=readings.length_m * stretch / (stretch + more))
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect; the tension at which the toe ends is near those that hold the platform."""
+def _toe(machine: Machine) -> Size:
+    """The tension at which the toe ends is near those that hold the platform."""
     weight = machine.robot.weight_N
-    strain = Parameter("toe_strain", "", 0.0, 1e-4, (0.0, 0.05), (0.0, 0.01))
-    tension = Parameter(
-        "toe_tension_N", "N", 0.3 * weight, 0.1 * weight,
-        (0.02 * weight, 20.0 * weight), (0.02 * weight, 10.0 * weight),
-    )  # fmt: skip
-    return [
-        Effect(
-            id="stiffening",
-            summary="the cables stiffen with tension",
-            law="strain is T/EA + ε (1 - exp(-T/T_toe))",
-            source="Feyrer, Wire Ropes, 2015, section 2.3: rope moduli rise with stress",
-            parameters=(strain, tension),
-            on_readings=partial(_change, machine=machine),
-            needs=frozenset({"length"}),
-        )
-    ]
+    return Size(
+        0.1 * weight,
+        bounds=(0.02 * weight, 20.0 * weight),
+        plausible=(0.02 * weight, 10.0 * weight),
+        neutral=0.3 * weight,
+    )
 
 
-KIND = EffectKind(
-    EffectName(
-        "stiffening",
-        (
-            ParameterName("toe_strain", NUMBER, at_least=0.0),
-            ParameterName("toe_tension_N", FORCE, above=0.0),
-        ),
+EFFECT = Effect(
+    id="stiffening",
+    summary="the cables stiffen with tension",
+    law="strain is T/EA + ε (1 - exp(-T/T_toe))",
+    source="Feyrer, Wire Ropes, 2015, section 2.3: rope moduli rise with stress",
+    parameters=(
+        Parameter("toe_strain", NUMBER, _STRAIN, at_least=0.0),
+        Parameter("toe_tension_N", FORCE, _toe, above=0.0),
     ),
-    build,
+    on_readings=_change,
+    needs=frozenset({"length"}),
+    takes_machine=True,
 )

@@ -6,9 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.units import FORCE
@@ -19,28 +17,17 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     return replace(readings, tension_N=readings.tension_N + offsets)
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
+def _size(machine: Machine) -> Size:
     weight = machine.robot.weight_N
-    offsets = tuple(
-        Parameter(
-            f"offset_{k}_N", "N", 0.0, 0.01 * weight, (-10 * weight, 10 * weight), (-weight, weight)
-        )
-        for k in range(1, machine.robot.n_cables + 1)
-    )
-    return [
-        Effect(
-            id="tension_bias",
-            summary="the load cells have a wrong zero",
-            law="measured tension plus an offset for each cable",
-            source="definition",
-            parameters=offsets,
-            on_readings=_change,
-            needs=frozenset({"tension"}),
-        )
-    ]
+    return Size(0.01 * weight, bounds=(-10 * weight, 10 * weight), plausible=(-weight, weight))
 
 
-KIND = EffectKind(
-    EffectName("tension_bias", (ParameterName("offset_{cable}_N", FORCE, neutral=0.0),)), build
+EFFECT = Effect(
+    id="tension_bias",
+    summary="the load cells have a wrong zero",
+    law="measured tension plus an offset for each cable",
+    source="definition",
+    parameters=(Parameter("offset_{cable}_N", FORCE, _size, is_optional=True),),
+    on_readings=_change,
+    needs=frozenset({"tension"}),
 )

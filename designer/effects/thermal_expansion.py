@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from designer.effects.effect import Effect, Parameter, Readings, Values
-from designer.effects.kind import EffectKind
-from designer.effects.names import EffectName, ParameterName
-from designer.model.machine import Machine
+from designer.effects.effect import Effect, Parameter, Readings, Size, Values
 from designer.model.measured_data import Measured
 from designer.units import PER_TEMPERATURE
+
+_SIZE = Size(1e-5, bounds=(-1e-3, 1e-3), plausible=(-5e-5, 2e-4))
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
@@ -19,23 +18,12 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     return replace(readings, length_m=readings.length_m / growth[:, None])
 
 
-def build(machine: Machine) -> list[Effect]:
-    """Return the effect."""
-    return [
-        Effect(
-            id="thermal_expansion",
-            summary="the cables grow with temperature",
-            law="unstrained length times 1 + α (T - 20 °C)",
-            source="definition; steel 12.5e-6 /K",
-            parameters=(
-                Parameter("coefficient_per_K", "1/K", 0.0, 1e-5, (-1e-3, 1e-3), (-5e-5, 2e-4)),
-            ),
-            on_readings=_change,
-            needs=frozenset({"temperature", "length"}),
-        )
-    ]
-
-
-KIND = EffectKind(
-    EffectName("thermal_expansion", (ParameterName("coefficient_per_K", PER_TEMPERATURE),)), build
+EFFECT = Effect(
+    id="thermal_expansion",
+    summary="the cables grow with temperature",
+    law="unstrained length times 1 + α (T - 20 °C)",
+    source="definition; steel 12.5e-6 /K",
+    parameters=(Parameter("coefficient_per_K", PER_TEMPERATURE, _SIZE),),
+    on_readings=_change,
+    needs=frozenset({"temperature", "length"}),
 )

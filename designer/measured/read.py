@@ -49,8 +49,9 @@ def read_measured(study: Study) -> Measured:
     poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
     _refuse(_one_pose(table, poses))
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
-    declared = {effect.id for effect in study.effects}
-    is_homed = "length_offset" not in declared.union(measurements.unknown)
+    told = (*(effect.id for effect in study.effects), *measurements.unknown)
+    known = study.known_effects.effects
+    is_homed = not any(effect.shifts_lengths and effect.is_among(told) for effect in known)
     _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
     _refuse(sense_faults(study.robot, measured, table, is_homed=is_homed))
     return measured

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from designer.effects.kind import EffectKind
+    from designer.effects.effect import Effect
     from designer.grades.grade import Grade
 
 PROJECT = "designer"
@@ -40,7 +40,7 @@ def register_grades() -> Sequence[PathLike[str] | str | Grade]:
 
 
 @hookspec
-def register_effects() -> Sequence[EffectKind]:
+def register_effects() -> Sequence[Effect]:
     """Return a list of effects; they act after ours, in the order of the list."""
     raise NotImplementedError  # only the signature counts
 

@@ -31,9 +31,9 @@ from twins.robots import FIELD4, YARD3
 
 from designer.diagnosis import design as diagnosis_design
 from designer.diagnosis import predict
-from designer.diagnosis.case import case_of
+from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.design import with_design
-from designer.diagnosis.diagnose import Case, diagnose
+from designer.diagnosis.diagnose import diagnose
 from designer.effects.effect import Readings
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study

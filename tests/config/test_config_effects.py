@@ -19,7 +19,7 @@ from designer.study import DeclaredEffect, Entry, Study
 
 FaultsOf = Callable[[str], list[Fault]]
 StudyOf = Callable[[str], Study]
-EFFECTS = SHIPPED.names
+EFFECTS = SHIPPED.by_id
 
 
 def effects(text: str) -> str:
@@ -172,13 +172,13 @@ def test_names_carry_the_unit_that_a_bare_number_has() -> None:
             assert not unit or re.search(f"{ending}$", parameter.name)
 
 
-def test_the_names_are_those_of_the_effects_in_the_model() -> None:
+def test_what_may_be_left_out_is_neutral_on_any_machine() -> None:
     body = Platform(100.0, frozen_array(np.eye(3)))
     machine = Machine(Robot(frozen_array(9.0 * np.eye(3)), body), Cable(0.01, 0.1, 1e6, 1e4))
     built = {(one.id, one.cable is not None): one for one in SHIPPED.of(machine)}
-    assert set(built) == {(name.id, name.takes_cable) for name in EFFECTS.values()}
+    assert set(built) == {(effect.id, effect.takes_cable) for effect in EFFECTS.values()}
     for (effect_id, _), effect in built.items():
         known = EFFECTS[effect_id].parameters_for(3)
         assert [one.name for one in known] == [one.name for one in effect.parameters]
-        for name, parameter in zip(known, effect.parameters, strict=True):
-            assert name.neutral is None or name.neutral == parameter.neutral
+        for declared, parameter in zip(known, effect.parameters, strict=True):
+            assert not declared.is_optional or declared.neutral == parameter.neutral

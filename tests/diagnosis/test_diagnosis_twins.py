@@ -14,14 +14,14 @@ from twins.dataset import DataSet, make, size_for
 from twins.robots import HALL6, YARD3, TwinRobot
 
 from designer.diagnosis.blocks import heldout_rows
-from designer.diagnosis.case import case_of
+from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.design import choice, with_design
-from designer.diagnosis.diagnose import Case, diagnose
+from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
 from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosed_config, diagnosis_dict
+from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging
@@ -211,7 +211,7 @@ def test_heavier_cables_change_the_choice(tmp_path) -> None:
     assert told.design_after is not None
     assert told.design_after.optimum_m > told.design_before.optimum_m
     assert told.design_after == choice(better, grades)
-    assert json.dumps(diagnosis_dict(told), allow_nan=False)
+    assert json.dumps(told.to_dict(), allow_nan=False)
 
 
 @needs_shared(*TWINS)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.diagnosis.dropped import find_common
-from designer.diagnosis.events import find_events
+from designer.diagnosis.events import find_common, find_events, find_swapped
 from designer.diagnosis.structure import find_structure
-from designer.diagnosis.swapped import find_swapped
 
 ROWS, CABLES = 100, 3
 NUMBERS = np.arange(1, ROWS + 1)

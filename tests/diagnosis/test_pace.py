@@ -11,11 +11,10 @@ from twins.dataset import make, size_for
 from twins.robots import YARD3
 
 from designer.cli import terminal
-from designer.diagnosis.case import case_of
-from designer.diagnosis.diagnose import Case, diagnose
+from designer.diagnosis.case import Case, case_of
+from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.pace import Pace, in_words
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosis_dict
 from designer.measured.read import read_measured
 from designer.report.diagnosis.sureness import sureness
 
@@ -79,7 +78,7 @@ def test_a_search_without_time_says_what_it_did_not_try(tmp_path) -> None:
     found = diagnose(case_with(0.0, tmp_path))
     assert found.findings == ()
     assert found.not_tried[0] == "round 1: all"
-    assert diagnosis_dict(found)["search"]["is_complete"] is False
+    assert found.to_dict()["search"]["is_complete"] is False
     assert "round 1: all" in sureness(found)[0].text
     # What is left of the data is tested all the same.
     assert found.is_unexplained

@@ -7,11 +7,10 @@ import pytest
 from twins.dataset import make
 from twins.robots import FIELD4
 
-from designer.diagnosis.case import case_of
-from designer.diagnosis.diagnose import Case, diagnose
+from designer.diagnosis.case import Case, case_of
+from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosis_dict
 from designer.measured.read import read_measured
 
 
@@ -35,7 +34,7 @@ def test_cables_of_the_platforms_weight_are_no_finding(quantities, tmp_path) -> 
     assert found.findings == ()
     assert not found.is_unexplained
     assert found.final.length_m.heldout.value < 1.2 * FIELD4.noise_m
-    assert diagnosis_dict(found)["balance"]["left_median"] < 1e-4
+    assert found.to_dict()["balance"]["left_median"] < 1e-4
 
 
 def test_a_heavier_platform_is_found_with_its_weight(tmp_path) -> None:

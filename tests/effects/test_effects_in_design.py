@@ -14,11 +14,9 @@ import pytest
 from designer.analysis.analyse import Analysis, analyse, analyse_pose
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import selection_dict
-from designer.effects.effect import Effect, Parameter, Values
+from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.effects.guard import guarded
-from designer.effects.kind import EffectKind
 from designer.effects.known import KnownEffects
-from designer.effects.names import EffectName, ParameterName
 from designer.effects.registry import SHIPPED
 from designer.errors import EffectError
 from designer.grades.registry import load_catalogue
@@ -62,17 +60,16 @@ def in_frost(machine: Machine, value: float) -> Machine:
     return added(machine, value * frost_K * math.pi * machine.cable.diameter_m)
 
 
-def knowing(law: Law, wrap: Callable[[EffectKind, str], EffectKind] | None = None) -> KnownEffects:
+def knowing(law: Law, wrap: Callable[[Effect, str], Effect] | None = None) -> KnownEffects:
     """Return our effects and one that follows a law."""
 
     def on_machine(machine: Machine, values: Values) -> Machine:
         return law(machine, values["added_kg_per_m"])
 
-    parameter = Parameter("added_kg_per_m", "kg/m", 0.0, 0.05, (0.0, 5.0), (0.0, 2.0))
+    size = Size(0.05, (0.0, 5.0), (0.0, 2.0))
+    parameter = Parameter("added_kg_per_m", LINEAR_DENSITY, size, at_least=0.0)
     effect = Effect("ice", "ice", "it adds", "definition", (parameter,), on_machine)
-    name = EffectName("ice", (ParameterName("added_kg_per_m", LINEAR_DENSITY, at_least=0.0),))
-    kind = EffectKind(name, lambda machine: [effect])
-    return KnownEffects((*SHIPPED.kinds, wrap(kind, "plugin") if wrap else kind))
+    return KnownEffects((*SHIPPED.effects, wrap(effect, "plugin") if wrap else effect))
 
 
 def study(folder: Path, more: str = "", law: Law = added) -> Study:

@@ -15,27 +15,25 @@ from twins.robots import YARD3
 from designer import effects
 from designer.cli.commands import main
 from designer.diagnosis.check import check
-from designer.diagnosis.plugin_effects import diagnose_study
+from designer.diagnosis.diagnose import diagnose_study
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
-from designer.effects.registry import KINDS, SHIPPED
+from designer.effects.registry import EFFECTS, SHIPPED
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
-from designer.io.diagnosis_files import diagnosed_config, diagnosis_dict
+from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.plugins.find import find_plugins
 from designer.study import Study, as_built_by, declared_settings
 
 DRIFT = """
 from dataclasses import replace
-from designer.effects.names import EffectName, ParameterName
-from designer.effects.effect import Effect, Parameter
-from designer.effects.kind import EffectKind
+from designer.effects.effect import Effect, Parameter, Size
 from designer.units import Dimension
 
 PER_KELVIN = Dimension("a force per temperature", "N/K", "3 N/K")
-NAME = EffectName("load_cell_drift", (ParameterName("drift_N_per_K", PER_KELVIN),))
-PARAMETER = Parameter("drift_N_per_K", "N/K", 0.0, 0.1, (-1e3, 1e3), (-5.0, 5.0))
+SIZE = Size(0.1, (-1e3, 1e3), (-5.0, 5.0))
+PARAMETER = Parameter("drift_N_per_K", PER_KELVIN, SIZE)
 EFFECT = Effect(
     id="load_cell_drift", summary="the load cells drift with temperature",
     law="tension plus drift times (T - 20 °C)", source="definition", parameters=(PARAMETER,),
@@ -46,12 +44,13 @@ EFFECT = Effect(
     ),
     needs=frozenset({"tension", "temperature"}),
 )
+
+def drift(**changes):
+    return replace(EFFECT, parameters=(replace(PARAMETER, **changes),))
 """
 LIGHTER = """
 from dataclasses import replace
-from designer.effects.names import EffectName, ParameterName
-from designer.effects.effect import Effect, Parameter
-from designer.effects.kind import EffectKind
+from designer.effects.effect import Effect, Parameter, Size
 from designer.units import MASS
 
 def lighter(machine, values):
@@ -61,14 +60,13 @@ def lighter(machine, values):
 
 EFFECT = Effect(
     id="lost_ballast", summary="ballast was lost", law="mass minus ballast", source="definition",
-    parameters=(Parameter("ballast_kg", "kg", 0.0, 1.0, (-50.0, 50.0), (0.0, 20.0)),),
+    parameters=(Parameter("ballast_kg", MASS, Size(1.0, (-50.0, 50.0), (0.0, 20.0))),),
     on_machine=lighter, reaches_design=True,
 )
-NAME = EffectName("lost_ballast", (ParameterName("ballast_kg", MASS),))
 """
 
 
-def plugin(setup: str, item: str = "EffectKind(NAME, lambda machine: [EFFECT])") -> str:
+def plugin(setup: str, item: str = "EFFECT") -> str:
     return setup + hook(f"return [{item}]", "register_effects")
 
 
@@ -86,34 +84,34 @@ def twin(folder: Path, drift_N_per_K: float) -> Path:
 def test_ours_come_in_by_the_door_in_their_order() -> None:
     assert find_plugins(with_plugins=False).problems == ()
     assert load_effects(find_plugins(with_plugins=False)) == SHIPPED
-    assert SHIPPED.kinds == KINDS
+    assert SHIPPED.effects == EFFECTS
 
 
 def test_every_file_with_an_effect_is_registered_under_its_name() -> None:
     files = Path(effects.__file__).parent.glob("*.py")
-    with_effect = {path.stem for path in files if "\nKIND = " in path.read_text(encoding="utf-8")}
-    assert with_effect == SHIPPED.names.keys()
+    with_effect = {path.stem for path in files if "\nEFFECT = " in path.read_text(encoding="utf-8")}
+    assert with_effect == SHIPPED.by_id.keys()
 
 
 def test_those_of_a_plugin_act_after_ours(site) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     brought = known()
     assert brought.problems == ()
-    assert [*brought.names] == [*SHIPPED.names, "load_cell_drift"]
-    assert [*load_effects(find_plugins(with_plugins=False)).names] == [*SHIPPED.names]
+    assert [*brought.by_id] == [*SHIPPED.by_id, "load_cell_drift"]
+    assert [*load_effects(find_plugins(with_plugins=False)).by_id] == [*SHIPPED.by_id]
 
 
 def test_a_plugin_may_bring_grades_and_effects(site) -> None:
     install_plugin(site, "acme-both", plugin(DRIFT) + hook("return []"))
     (both,) = (p for p in find_plugins().found if p.name == "acme-both")
     assert {*both.hooks} == {"register_grades", "register_effects"}
-    assert "load_cell_drift" in known().names
+    assert "load_cell_drift" in known().by_id
 
 
 def test_the_diagnosis_finds_it_and_the_config_keeps_it(site, tmp_path) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     rivals = ("pulley_radius", "thermal_expansion", "tension_bias", "load_cell_drift")
-    few = KnownEffects(tuple(kind for kind in known().kinds if kind.name.id in rivals))
+    few = KnownEffects(tuple(one for one in known().effects if one.id in rivals))
     study = read_study(twin(tmp_path, 2.0), few)
     assert study.measurements is not None
     found = diagnose_study(study, study.measurements, read_measured(study))
@@ -122,7 +120,7 @@ def test_the_diagnosis_finds_it_and_the_config_keeps_it(site, tmp_path) -> None:
     estimate = finding.parameters["drift_N_per_K"]
     assert estimate.value == pytest.approx(2.0, abs=4.0 * estimate.std)
     assert not found.is_unexplained
-    assert diagnosis_dict(found)["left_out"] == []
+    assert found.to_dict()["left_out"] == []
 
     better = tmp_path / "config.diagnosed.yaml"
     better.write_text(diagnosed_config(found, tmp_path), encoding="utf-8")
@@ -197,72 +195,71 @@ def test_its_unknown_is_fitted_where_nothing_is_declared(site, tmp_path) -> None
 
 # what the hook gives, beside DRIFT, and what is said of it
 FAULTS = [
-    ("7", "register_effects() gave int, not an EffectKind"),
-    ("EffectKind(NAME, None)", "effect 'load_cell_drift': its build is NoneType, not a function"),
-    ("EffectKind('drift', lambda m: [EFFECT])", "its name is str, not an EffectName"),
-    ("EffectKind(NAME, lambda m: EFFECT)", "its build returned Effect, not a list of Effect"),
-    ("EffectKind(NAME, lambda m: [NAME])", "its build gave EffectName, not an Effect"),
-    ("EffectKind(NAME, lambda m: 1 / 0)", "cannot be built: ZeroDivisionError"),
-    ("EffectKind(NAME, lambda m: exit(3))", "cannot be built: SystemExit: 3"),
+    ("7", "register_effects() gave int, not an Effect"),
+    ("PARAMETER", "register_effects() gave Parameter, not an Effect"),
     (
-        "EffectKind(replace(NAME, id='creep'), lambda m: [replace(EFFECT, id='creep')])",
-        "effect 'creep' is in 'builtin-effects' already",
-    ),
-    ("EffectKind(replace(NAME, id='drift'), lambda m: [EFFECT])", "has the id 'load_cell_drift'"),
-    ("EffectKind(replace(NAME, id='Drift!'), lambda m: [EFFECT])", "'Drift!' is no effect id"),
-    ("EffectKind(replace(NAME, id='anchors'), lambda m: [EFFECT])", "'anchors' is no effect id"),
-    ("EffectKind(replace(NAME, parameters=()), lambda m: [EFFECT])", "it has no parameter"),
-    ("EffectKind(replace(NAME, parameters=(1,)), lambda m: [EFFECT])", "a parameter is int, not"),
-    (
-        "EffectKind(replace(NAME, parameters=2 * NAME.parameters), lambda m: [EFFECT])",
-        "two of its parameters have one name",
+        "drift(size=None)",
+        "effect 'load_cell_drift': the size of drift_N_per_K is NoneType, not a Size or a",
     ),
     (
-        "EffectKind(replace(NAME, parameters=(ParameterName('a_{cable}', PER_KELVIN),)), "
-        "lambda m: [EFFECT])",
-        "has the parameters drift_N_per_K (expected a_1, a_2, a_3)",
+        "drift(size=lambda m: 3)",
+        "cannot be built: TypeError: the size of drift_N_per_K is int",
     ),
     (
-        "EffectKind(replace(NAME, parameters=(ParameterName('cable', PER_KELVIN),)), None)",
+        "drift(size=lambda m: 1 / 0)",
+        "cannot be built: ZeroDivisionError",
+    ),
+    (
+        "drift(size=lambda m: exit(3))",
+        "cannot be built: SystemExit: 3",
+    ),
+    ("replace(EFFECT, can_have=lambda m: 1 / 0)", "cannot be built: ZeroDivisionError"),
+    ("replace(EFFECT, can_have=None)", "cannot be built: TypeError"),
+    ("replace(EFFECT, id='creep')", "effect 'creep' is in 'builtin-effects' already"),
+    ("replace(EFFECT, id='Drift!')", "'Drift!' is no effect id"),
+    ("replace(EFFECT, id='anchors')", "'anchors' is no effect id"),
+    ("replace(EFFECT, id=7)", "7 is no effect id"),
+    ("replace(EFFECT, parameters=())", "it has no parameter"),
+    ("replace(EFFECT, parameters=(1,))", "a parameter is int, not"),
+    ("replace(EFFECT, parameters=2 * EFFECT.parameters)", "two of its parameters have one name"),
+    (
+        "drift(name='cable')",
         "'cable' is no parameter name",
     ),
     (
-        "EffectKind(replace(NAME, parameters=(ParameterName('a', replace(PER_KELVIN, unit='N')),)),"
-        " None)",
-        "the dimension of 'a': its example '3 N/K' has the unit",
+        "drift(dimension=replace(PER_KELVIN, unit='N'))",
+        "the dimension of 'drift_N_per_K': its example '3 N/K' has the unit",
     ),
     (
-        "EffectKind(replace(NAME, parameters=(ParameterName('a', 'N/K'),)), None)",
-        "the dimension of 'a' is no Dimension",
+        "drift(dimension='N/K')",
+        "the dimension of 'drift_N_per_K' is no Dimension",
     ),
     (
-        "EffectKind(NAME, lambda m: [replace(EFFECT, parameters=(replace(PARAMETER, "
-        "bounds=(1.0, 2.0)),))])",
+        "drift(size=replace(SIZE, bounds=(1.0, 2.0)))",
         "drift_N_per_K has no bounds around its neutral value 0",
     ),
     (
-        "EffectKind(NAME, lambda m: [replace(EFFECT, parameters=(replace(PARAMETER, "
-        "typical=float('nan')),))])",
+        "drift(size=lambda m: replace(SIZE, bounds=(1.0, 2.0)))",
+        "drift_N_per_K has no bounds around its neutral value 0",
+    ),
+    (
+        "drift(is_optional=True, size=lambda m: replace(SIZE, neutral=0.5))",
+        "drift_N_per_K is neutral at 0.5 (expected 0, as it may be left out)",
+    ),
+    (
+        "drift(size=replace(SIZE, typical=float('nan')))",
         "drift_N_per_K has a number that is not finite",
     ),
     (
-        "EffectKind(NAME, lambda m: [replace(EFFECT, parameters=(replace(PARAMETER, "
-        "typical=0.0),))])",
+        "drift(size=replace(SIZE, typical=0.0))",
         "drift_N_per_K has no typical size above 0",
     ),
-    (
-        "EffectKind(NAME, lambda m: [replace(EFFECT, on_readings=None)])",
-        "acts on both machine and readings or on none",
-    ),
-    ("EffectKind(NAME, lambda m: [replace(EFFECT, needs={'sun'})])", "it needs 'sun' (expected"),
-    ("EffectKind(NAME, lambda m: [replace(EFFECT, law='')])", "its law is no text"),
-    ("EffectKind(NAME, lambda m: [replace(EFFECT, starts=({'x': 1.0},))])", "starts from {'x': 1"),
-    ("EffectKind(NAME, lambda m: [replace(EFFECT, starts=(1.0,))])", "be built: AttributeError"),
-    ("EffectKind(NAME, lambda m: [replace(EFFECT, cable=1)])", "expected takes_cable"),
-    (
-        "EffectKind(replace(NAME, takes_cable=True), lambda m: [replace(EFFECT, cable=9)])",
-        "gave cables [9] (expected each of 1 to 3 once at most)",
-    ),
+    ("replace(EFFECT, on_readings=None)", "acts on both machine and readings or on none"),
+    ("replace(EFFECT, needs={'sun'})", "it needs 'sun' (expected"),
+    ("replace(EFFECT, law='')", "its law is no text"),
+    ("replace(EFFECT, starts=({'x': 1.0},))", "starts from {'x': 1"),
+    ("replace(EFFECT, starts=(1.0,))", "be built: AttributeError"),
+    ("replace(EFFECT, cable=1)", "expected takes_cable"),
 ]
 
 
@@ -276,7 +273,7 @@ def test_a_faulty_effect_is_one_line_and_the_rest_works(site, item, words) -> No
     assert words in problem
     assert problem.endswith(": left out")
     assert "\n" not in problem
-    assert [*brought.names] == [*SHIPPED.names, "lost_ballast"]
+    assert [*brought.by_id] == [*SHIPPED.by_id, "lost_ballast"]
 
 
 @pytest.mark.parametrize(
@@ -293,7 +290,7 @@ def test_a_plugin_that_fails_is_one_line(site, code, words) -> None:
     (problem,) = known().problems
     assert problem.startswith("plugin acme-fails (acme-fails 1.2)")
     assert words in problem
-    assert known().names == SHIPPED.names
+    assert known().by_id == SHIPPED.by_id
 
 
 def test_one_id_of_two_plugins_keeps_the_first(site) -> None:
@@ -320,14 +317,14 @@ BROKEN_LAWS = [
 
 @pytest.mark.parametrize(("law", "words"), BROKEN_LAWS)
 def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, law, words) -> None:
-    item = f"EffectKind(NAME, lambda machine: [replace(EFFECT, on_readings={law})])"
+    item = f"replace(EFFECT, on_readings={law})"
     install_plugin(site, "acme-broken", plugin(DRIFT, item))
     study = read_study(twin(tmp_path, 0.0), known())
     assert study.known_effects.problems == ()
     assert study.measurements is not None
     found = diagnose_study(study, study.measurements, read_measured(study))
     assert found.findings == ()
-    (problem,) = diagnosis_dict(found)["left_out"]
+    (problem,) = found.to_dict()["left_out"]
     start = "plugin acme-broken (acme-broken 1.2): effect 'load_cell_drift' fails at work: "
     assert problem.startswith(start)
     assert words in problem
@@ -341,7 +338,7 @@ def test_a_law_that_fails_at_work_is_left_out_of_the_diagnosis(site, tmp_path, l
 def test_a_declared_effect_that_fails_at_work_stops_with_one_line(
     site, tmp_path, law, words
 ) -> None:
-    item = f"EffectKind(NAME, lambda machine: [replace(EFFECT, on_machine={law})])"
+    item = f"replace(EFFECT, on_machine={law})"
     install_plugin(site, "acme-broken", plugin(LIGHTER, item))
     study = study_of(tmp_path, "lost_ballast: {ballast_kg: 2}")
     with pytest.raises(EffectError, match=words) as caught:
@@ -350,7 +347,7 @@ def test_a_declared_effect_that_fails_at_work_stops_with_one_line(
 
 
 def test_an_effect_that_this_robot_cannot_have_is_not_passed_over(site, tmp_path) -> None:
-    item = "EffectKind(NAME, lambda m: [] if m.robot.is_point_mass else [EFFECT])"
+    item = "replace(EFFECT, can_have=lambda m: not m.robot.is_point_mass)"
     install_plugin(site, "acme-ballast", plugin(LIGHTER, item))
     study = study_of(tmp_path, "lost_ballast: {ballast_kg: 2}")
     with pytest.raises(InputError, match=r"study.yaml:7: effects.lost_ballast: this robot cannot"):
@@ -384,7 +381,7 @@ def test_the_commands_take_it_and_leave_it(site, tmp_path, capsys, monkeypatch) 
 
 def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) -> None:
     law = "lambda r, v, m: (m.temperature_C.__setitem__(0, 1e9), r)[1]"
-    item = f"EffectKind(NAME, lambda machine: [replace(EFFECT, on_readings={law})])"
+    item = f"replace(EFFECT, on_readings={law})"
     install_plugin(site, "acme-vandal", plugin(DRIFT, item))
     study = read_study(twin(tmp_path, 0.0), known())
     measured = read_measured(study)

@@ -15,7 +15,8 @@ from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.predict import Predictor
-from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Proposal, Use, Withdrawn
+from designer.diagnosis.propose import Proposal
+from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Use, Withdrawn
 from designer.diagnosis.search import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED

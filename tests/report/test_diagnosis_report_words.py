@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from designer.diagnosis.result import Estimate
-from designer.diagnosis.whereabouts import in_runs, strongest_channel, whereabouts
-from designer.effects.effect import Effect, Parameter
+from designer.diagnosis.trends import in_runs, strongest_channel, whereabouts
+from designer.effects.effect import Effect, Parameter, Size
 from designer.report.diagnosis import words
 from designer.report.figures.diagnosis_carriers import running_median
 from designer.report.figures.diagnosis_style import MOST_POINTS, thinned, window
+from designer.units import NUMBER, TIME
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def test_covariates_of_every_table_have_words_and_others_their_name(
 
 @pytest.mark.parametrize(("scale", "word"), [(0.9, "softer"), (1.1, "stiffer")])
 def test_plain_words_tell_the_direction(scale: float, word: str) -> None:
-    parameter = Parameter("scale", "", 1.0, 0.1, (0.1, 3.0), (0.5, 1.6))
+    parameter = Parameter("scale", NUMBER, Size(0.1, (0.1, 3.0), (0.5, 1.6)), neutral=1.0)
     effect = Effect("elastic_modulus", "softer or stiffer", "law", "source", (parameter,))
     assert word in words.plain(effect, {"scale": scale})
     other = Effect("of_a_plugin", "ice on the cable", "law", "source", (parameter,))
@@ -80,7 +81,7 @@ def test_plain_words_tell_the_direction(scale: float, word: str) -> None:
 
 @pytest.mark.parametrize(("offset", "word"), [(0.03, "lags"), (-0.03, "runs ahead of")])
 def test_the_sign_of_a_clock_offset_is_told(offset: float, word: str) -> None:
-    parameter = Parameter("offset_s", "s", 0.0, 0.05, (-60.0, 60.0), (-5.0, 5.0))
+    parameter = Parameter("offset_s", TIME, Size(0.05, (-60.0, 60.0), (-5.0, 5.0)))
     effect = Effect("clock_offset", "the length stream lags", "law", "source", (parameter,))
     assert words.plain(effect, {"offset_s": offset}) == f"the length stream {word} the pose stream"
 

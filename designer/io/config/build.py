@@ -48,7 +48,7 @@ def build_study(
     """Return the study that the config describes, with a material that was made for it."""
     folder = source.path.parent
     robot = _robot(section.robot)
-    declared = read_effects(section.effects, robot.n_cables, known.names)
+    declared = read_effects(section.effects, robot.n_cables, known.by_id)
     return Study(
         name=section.name or source.path.stem,
         robot=robot,

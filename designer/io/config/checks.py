@@ -16,7 +16,7 @@ from scipy.spatial import QhullError
 from designer.arrays import FloatArray
 from designer.documents.document import Document
 from designer.documents.fields import Distance, Point, Rotation, Tension
-from designer.effects.names import EffectName
+from designer.effects.effect import Effect
 from designer.errors import Fault
 from designer.io.config.effects import read_effects
 from designer.io.config.group_checks import GROUP_CHECKS
@@ -41,7 +41,7 @@ _REGION = ("workspace", "region")
 _PRISM = (*_REGION, "prism")
 
 
-def all_faults(document: Document, effects: Mapping[str, EffectName]) -> list[Fault]:
+def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
     """Return every fault that concerns more than one field of the document, or the effects."""
     parts = Parts(document, document.root.data(), effects)
     return [fault for check in CHECKS for fault in check(parts)]

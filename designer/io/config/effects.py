@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from designer.documents.bounds import parameter_bound
 from designer.documents.fields import Quantity, WholeNumber
 from designer.documents.node import Data, Key, Node, path_text, printable
-from designer.effects.names import EffectName, ParameterName
+from designer.effects.effect import Effect, Parameter
 from designer.spelling import did_you_mean, nearest_name
 from designer.study import DeclaredEffect, Entry
 from designer.units import describe, format_SI
@@ -18,6 +18,7 @@ from designer.units import describe, format_SI
 Place = tuple[Key, ...]
 _SECTION = "effects"
 _MOST_LISTED = 8
+"""Names of parameters in a message; of more, the first and the last are enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,7 @@ class Refusal:
 class Found:
     """The effects of a section, each with its place, and all that is wrong."""
 
+    n_cables: int
     effects: list[tuple[Place, DeclaredEffect]] = field(default_factory=list)
     refusals: list[Refusal] = field(default_factory=list)
 
@@ -40,8 +42,17 @@ class Found:
         """Add something that is wrong."""
         self.refusals.append(Refusal(place, problem, expected))
 
+    def read(self, place: Place, kind: Quantity | WholeNumber, given: Data) -> float | None:
+        """Return a value; None, and a refusal, for one that is none of its kind."""
+        try:
+            return kind.read(given)
+        except PydanticCustomError as error:
+            context = error.context or {}
+            self.refuse(place, context["problem"], context["expected"])
+            return None
 
-def read_effects(data: Data, n_cables: int, known: Mapping[str, EffectName]) -> Found:
+
+def read_effects(data: Data, n_cables: int, known: Mapping[str, Effect]) -> Found:
     """Return what the section ``effects`` says.
 
     Parameters
@@ -50,37 +61,32 @@ def read_effects(data: Data, n_cables: int, known: Mapping[str, EffectName]) -> 
         What the file holds there.
     n_cables : int
         Number of cables of the robot.
-    known : mapping of str to EffectName
+    known : mapping of str to Effect
         Every effect by its id.
     """
-    found = Found()
+    found = Found(n_cables)
     for effect_id, given in data.items() if isinstance(data, dict) else ():
-        name = known.get(effect_id)
-        if name is None:
+        effect = known.get(effect_id)
+        if effect is None:
             problem = f"unknown effect '{printable(effect_id)}'"
             expected = f"one of {', '.join(known)}{did_you_mean(effect_id, known)}"
             found.refuse((_SECTION, effect_id), problem, expected)
         else:
-            _read_all(found, name, given, n_cables)
+            _read_all(found, effect, given)
     return found
 
 
 def effect_entries(
-    data: Data, node: Node, n_cables: int, known: Mapping[str, EffectName]
+    data: Data, node: Node, n_cables: int, known: Mapping[str, Effect]
 ) -> Iterator[Entry]:
     """Yield the rows of the table of inputs for a section without faults."""
-    dimensions = {
-        (name.id, parameter.name): parameter.dimension
-        for name in known.values()
-        for parameter in name.parameters_for(n_cables)
-    }
-    for place, effect in read_effects(data, n_cables, known).effects:
-        if effect.cable is not None:
-            yield Entry(path_text((*place, "cable")), str(effect.cable), str(effect.cable))
-        for name, value in effect.parameters.items():
-            given = _written(node, (*place, name))
-            shown = format_SI(value, dimensions[effect.id, name])
-            yield Entry(path_text((*place, name)), given, shown)
+    for place, declared in read_effects(data, n_cables, known).effects:
+        if declared.cable is not None:
+            yield Entry(path_text((*place, "cable")), str(declared.cable), str(declared.cable))
+        for parameter in known[declared.id].parameters_for(n_cables):
+            at = (*place, parameter.name)
+            shown = format_SI(declared.parameters[parameter.name], parameter.dimension)
+            yield Entry(path_text(at), _written(node, at), shown)
 
 
 def _written(node: Node, place: Place) -> str:
@@ -90,45 +96,41 @@ def _written(node: Node, place: Place) -> str:
     return "default" if found is None else found.as_written()
 
 
-def _read_all(found: Found, name: EffectName, given: Data, n_cables: int) -> None:
-    place: Place = (_SECTION, name.id)
-    if not name.takes_cable or not isinstance(given, list):
-        _read_one(found, name, place, given, n_cables)
+def _read_all(found: Found, effect: Effect, given: Data) -> None:
+    place: Place = (_SECTION, effect.id)
+    if not effect.takes_cable or not isinstance(given, list):
+        _read_one(found, effect, place, given)
         return
     if not given:
         found.refuse(place, "an empty list", "one mapping for each cable that has this effect")
     for index, item in enumerate(given):
-        _read_one(found, name, (*place, index), item, n_cables)
-    _refuse_repeated_cables(found, name)
-
-
-def _refuse_repeated_cables(found: Found, name: EffectName) -> None:
+        _read_one(found, effect, (*place, index), item)
     seen: set[int] = set()
-    for place, effect in found.effects:
-        if effect.id == name.id and effect.cable is not None:
-            if effect.cable in seen:
-                problem = f"cable {effect.cable} has this effect already"
-                found.refuse((*place, "cable"), problem, "each cable once")
-            seen.add(effect.cable)
+    for each, declared in found.effects:
+        if declared.id == effect.id and declared.cable is not None:
+            if declared.cable in seen:
+                problem = f"cable {declared.cable} has this effect already"
+                found.refuse((*each, "cable"), problem, "each cable once")
+            seen.add(declared.cable)
 
 
-def _read_one(found: Found, name: EffectName, place: Place, given: Data, n_cables: int) -> None:
-    parameters = name.parameters_for(n_cables)
-    keys = ["cable"] * name.takes_cable + [one.name for one in parameters]
+def _read_one(found: Found, effect: Effect, place: Place, given: Data) -> None:
+    parameters = effect.parameters_for(found.n_cables)
+    keys = ["cable"] * effect.takes_cable + [one.name for one in parameters]
     if not isinstance(given, dict) or not given:
-        problem = f"{_named(given)} is not a mapping with values"
-        found.refuse(place, problem, f"a mapping with {_listed(keys)}")
+        problem = f"{'an empty mapping' if given == {} else describe(given)} is not a mapping"
+        found.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
         return
     misspelt = set(_refuse_unknown(found, place, given, keys))
     cable = None
-    if name.takes_cable and "cable" not in misspelt:
-        cable = _cable(found, (*place, "cable"), given, n_cables)
+    if effect.takes_cable and "cable" not in misspelt:
+        cable = _cable(found, (*place, "cable"), given)
     values = {
         one.name: _value(found, (*place, one.name), given, one)
         for one in parameters
         if one.name not in misspelt
     }
-    found.effects.append((place, DeclaredEffect(name.id, cable, values)))
+    found.effects.append((place, DeclaredEffect(effect.id, cable, values)))
 
 
 def _refuse_unknown(
@@ -143,46 +145,23 @@ def _refuse_unknown(
             yield nearest_name(key, keys) or key
 
 
-def _cable(found: Found, place: Place, given: Mapping[str, Data], n_cables: int) -> int | None:
+def _cable(found: Found, place: Place, given: Mapping[str, Data]) -> int | None:
     if "cable" not in given:
-        found.refuse(place, "is missing", f"the number of the cable, 1 to {n_cables}")
+        found.refuse(place, "is missing", f"the number of the cable, 1 to {found.n_cables}")
         return None
-    try:
-        return WholeNumber(1, n_cables).read(given["cable"])
-    except PydanticCustomError as error:
-        _refuse_as(found, place, error)
-        return None
+    number = found.read(place, WholeNumber(1, found.n_cables), given["cable"])
+    return None if number is None else int(number)
 
 
-def _value(
-    found: Found, place: Place, given: Mapping[str, Data], parameter: ParameterName
-) -> float:
+def _value(found: Found, place: Place, given: Mapping[str, Data], parameter: Parameter) -> float:
     if parameter.name not in given:
-        if parameter.neutral is None:
+        if not parameter.is_optional:
             found.refuse(place, "is missing", parameter.dimension.expected)
-        return parameter.neutral or 0.0
+        return parameter.neutral
     bound = parameter_bound(parameter.dimension)
-    quantity = Quantity(
-        parameter.dimension,
-        parameter.above,
-        bound.least if parameter.at_least is None else parameter.at_least,
-        bound.most,
-        bound.reason,
-    )
-    try:
-        return quantity.read(given[parameter.name])
-    except PydanticCustomError as error:
-        _refuse_as(found, place, error)
-        return 0.0
-
-
-def _refuse_as(found: Found, place: Place, error: PydanticCustomError) -> None:
-    context = error.context or {}
-    found.refuse(place, context["problem"], context["expected"])
-
-
-def _named(given: Data) -> str:
-    return "an empty mapping" if given == {} else describe(given)
+    least = bound.least if parameter.at_least is None else parameter.at_least
+    quantity = Quantity(parameter.dimension, parameter.above, least, bound.most, bound.reason)
+    return found.read(place, quantity, given[parameter.name]) or 0.0
 
 
 def _listed(keys: list[str]) -> str:

@@ -63,10 +63,11 @@ def columns_go_to_different_places(parts: Parts) -> Iterator[Fault]:
 def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together."""
     names = parts.raw(*_UNKNOWN)
-    known = (*parts.effects, "anchors")
+    together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
+    known = (*parts.effects, *together)
     for index, name in enumerate(names if isinstance(names, list) else ()):
         if isinstance(name, str) and name not in known:
-            listed = f"anchors, or an effect: {', '.join(parts.effects)}"
+            listed = f"{', '.join(together)}, or an effect: {', '.join(parts.effects)}"
             expected = listed + did_you_mean(name, known)
             yield parts.fault((*_UNKNOWN, index), f"{describe(name)} is not known", expected)
 

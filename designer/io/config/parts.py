@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from designer.arrays import FloatArray
 from designer.documents.document import Document
 from designer.documents.node import Data, Key
-from designer.effects.names import EffectName
+from designer.effects.effect import Effect
 from designer.errors import Fault
 
 
@@ -25,7 +25,7 @@ class Parts:
 
     document: Document
     data: Data
-    effects: Mapping[str, EffectName]
+    effects: Mapping[str, Effect]
 
     def raw(self, *keys: str) -> Data:
         """Return what the file holds at a path, None for nothing."""

@@ -37,7 +37,7 @@ def study_from(path: Path, known: KnownEffects = SHIPPED, plugins: Plugins | Non
 
 
 def _checked(document: Document, known: KnownEffects) -> StudySection:
-    faults = [*document.faults, *all_faults(document, known.names)]
+    faults = [*document.faults, *all_faults(document, known.by_id)]
     section = None
     try:
         section = StudySection.model_validate(document.root.data())
@@ -63,4 +63,4 @@ def _effect_entries(
 ) -> Iterator[Entry]:
     node = document.root.child("effects")
     if node is not None:
-        yield from effect_entries(section.effects, node, len(section.robot.anchors), known.names)
+        yield from effect_entries(section.effects, node, len(section.robot.anchors), known.by_id)

@@ -63,8 +63,8 @@ def effects_text(diagnosis: Diagnosis) -> str:
     """Return the block ``effects`` as YAML; empty where there are none."""
     from ruamel.yaml import YAML
 
+    from designer.diagnosis.as_json import effects_table
     from designer.diagnosis.design import declared_by
-    from designer.io.diagnosis_files import effects_table
 
     table = effects_table(declared_by(diagnosis))
     if not table:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Foretold, Interval
+from designer.diagnosis.errors_of import Interval
+from designer.diagnosis.foretell import Foretold
+from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 from designer.report.diagnosis.quantity import Quantity, quantities
 from designer.report.parts import Column, Group, Picture, Row, Table

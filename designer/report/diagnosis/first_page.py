@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Error, Finding, Verdict
-from designer.diagnosis.whereabouts import in_runs
+from designer.diagnosis.errors_of import Error
+from designer.diagnosis.result import Diagnosis, Finding, Verdict
+from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis import words
 from designer.report.diagnosis.design import DesignSection, design_section

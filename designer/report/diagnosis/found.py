@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Estimate, Finding, Proposal
+from designer.diagnosis.propose import Proposal
+from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.effects.effect import Parameter
 from designer.report import format as fmt
 from designer.report.diagnosis import words

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from designer.diagnosis.result import Diagnosis, Error, Stage
+from designer.diagnosis.errors_of import Error, Stage
+from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.whereabouts import in_runs
+from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
 from designer.report.diagnosis import words
 from designer.report.parts import Fact, Picture, Statement

@@ -11,7 +11,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.whereabouts import strongest_channel
+from designer.diagnosis.trends import strongest_channel
 from designer.report.diagnosis import words
 from designer.report.figures import canvas, diagnosis_style, palette
 

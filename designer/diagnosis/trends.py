@@ -1,4 +1,4 @@
-"""In which reading, and at which rows, a residual goes with a covariate."""
+"""What a residual does with a covariate: in which reading, at which rows, and what is left."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
-from designer.diagnosis.errors_of import without_outliers
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.problem import channel_names
+from designer.diagnosis.robust import rms, spread, without_outliers
 
 _CLIP = 4.0
+"""Standard deviations beyond which a reading counts as one at this distance: noise reaches it once
+in 16 000 readings."""
 _MOST_ROWS = 6
+"""As many as one looks up in a log."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,17 +37,48 @@ class Whereabouts:
     size: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Correction:
+    """A smooth empirical correction: no physics, and not used by the design.
+
+    Parameters
+    ----------
+    covariate : str
+        Each channel is corrected by a parabola in it, fitted to the rows for fitting.
+    heldout_before, heldout_after : float
+        Root mean square over held-out rows, in units of noise.
+    """
+
+    covariate: str
+    heldout_before: float
+    heldout_after: float
+
+
 def whereabouts(residual: FloatArray, covariate: FloatArray, row_numbers: IntArray) -> Whereabouts:
     """Return where a residual (n_rows, 2 n_cables) goes with a covariate (n_rows,)."""
     clean = without_outliers(residual)
     channel = strongest_channel(clean, covariate)
-    trend = _parabola(clean[:, channel], covariate)
+    trend = np.where(np.isnan(clean[:, channel]), np.nan, _parabola(clean[:, channel], covariate))
     far = np.argsort(-np.nan_to_num(np.abs(trend), nan=-1.0), kind="stable")[:_MOST_ROWS]
     return Whereabouts(
         reading=channel_names(residual.shape[1] // 2)[channel],
         rows=tuple(sorted(int(k) for k in row_numbers[far])),
         size=float(trend[far[0]]),
     )
+
+
+def smooth_correction(
+    residual: FloatArray, name: str, covariate: FloatArray, heldout: BoolArray
+) -> Correction:
+    """Correct each channel of a residual (n_rows, 2 n_cables) by a parabola in a covariate."""
+    filled = np.where(np.isnan(covariate), np.nanmean(covariate), covariate)
+    clean = without_outliers(residual)
+    corrected = np.full_like(clean, np.nan)
+    for channel, column in enumerate(clean.T):
+        seen = np.where(heldout, np.nan, column)
+        if np.isfinite(seen).sum() > 3:
+            corrected[:, channel] = column - _parabola(seen, filled)
+    return Correction(name, rms(clean[heldout]), rms(corrected[heldout]))
 
 
 def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:
@@ -60,25 +94,18 @@ def in_runs(rows: Sequence[int]) -> list[str]:
 
 def _explained(column: FloatArray, covariate: FloatArray) -> float:
     known = np.isfinite(column) & np.isfinite(covariate)
-    if known.sum() < 4:
+    if known.sum() < 4:  # a parabola goes through three of anything
         return -1.0
-    clipped = np.where(known, _clipped(column), np.nan)
+    middle, limit = np.nanmedian(column), _CLIP * spread(column)
+    clipped = np.where(known, np.clip(column, middle - limit, middle + limit), np.nan)
     y = clipped[known] - clipped[known].mean()
     left = clipped[known] - _parabola(clipped, covariate)[known]
     return float((y @ y - left @ left) / max(y @ y, 1e-300))
 
 
-def _clipped(column: FloatArray) -> FloatArray:
-    middle = np.nanmedian(column)
-    spread = 1.4826 * np.nanmedian(np.abs(column - middle))
-    return np.clip(column, middle - _CLIP * spread, middle + _CLIP * spread)
-
-
 def _parabola(column: FloatArray, covariate: FloatArray) -> FloatArray:
-    """Return the parabola in a covariate that comes nearest to a column; NaN where neither is."""
+    """Return the parabola in a covariate that comes nearest to a column (n_rows,)."""
     known = np.isfinite(column) & np.isfinite(covariate)
     x = covariate[known]
-    powers = np.vander((x - x.mean()) / (x.std() + 1e-300), 3)
-    fitted = np.full(len(column), np.nan)
-    fitted[known] = powers @ np.linalg.lstsq(powers, column[known], rcond=None)[0]
-    return fitted
+    powers = np.vander((covariate - x.mean()) / (x.std() + 1e-300), 3)
+    return np.asarray(powers @ np.linalg.lstsq(powers[known], column[known], rcond=None)[0])
