@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, get_args
 
-from designer.arrays import require_number
+import numpy as np
+
+from designer.arrays import FloatArray, require_number
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.known import KnownEffects
@@ -15,13 +17,12 @@ from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
 from designer.model.machine import TEMPERATE, Machine, Surroundings
-from designer.model.region import Region
+from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 
 _LIKELY_DIAMETER_M = 0.01
 """Of the cable that stands in where none is given yet."""
-Sampling = Literal["low_discrepancy", "grid"]
 HangsBelow = Literal["include", "exclude"]
 Reading = Literal["length", "tension"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
@@ -76,6 +77,43 @@ class Workspace:
     def space(self) -> Space:
         """All poses, as places: positions in every orientation."""
         return Space(self.region, self.orientations)
+
+    def positions_m(self) -> Iterator[FloatArray]:
+        """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m].
+
+        Memory stays flat, however many there are.
+        """
+        size = max(CHUNK // self.orientations.count, 1)
+        for chunk in self.region.samples_m(self.samples, self.sampling, self.seed):
+            yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
+
+    def places(self) -> Iterator[FloatArray]:
+        """Yield the sample places in chunks (at most about `CHUNK`, n_coordinates) [m, rad].
+
+        The orientations of a position follow one another in one chunk.
+        """
+        return map(self.space.places, self.positions_m())
+
+    def thinned(self, most: int) -> FloatArray:
+        """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].
+
+        Drawn are positions, from the whole of the region; each comes in all its orientations.
+        """
+        count = max(most // self.orientations.count, 1)
+        rng = np.random.default_rng(self.seed)
+        kept, draws = np.empty((0, 3)), np.empty(0)
+        for some in self.positions_m():
+            kept = np.concatenate([kept, some])
+            draws = np.concatenate([draws, rng.random(len(some))])
+            first = np.sort(np.argsort(draws)[:count])
+            kept, draws = kept[first], draws[first]
+        return self.space.places(kept)
+
+    @property
+    def sample_count(self) -> int:
+        """How many positions there are to try, for a progress bar (an estimate)."""
+        is_list = self.region.is_discrete
+        return sum(map(len, self.positions_m())) if is_list else self.samples
 
 
 @dataclass(frozen=True, slots=True)

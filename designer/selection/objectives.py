@@ -13,7 +13,6 @@ from designer.model.cable import Cable
 from designer.model.robot import Robot
 from designer.study import Objective, Workspace
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
-from designer.workspace.samples import thinned
 from designer.workspace.stiffness import displacement_demand
 
 STIFFNESS_POSES = 500
@@ -122,7 +121,7 @@ def smallest_stiffness_N_per_m(
         Whether to search between the samples as well, or to take `STIFFNESS_POSES` of them.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = thinned(workspace, STIFFNESS_POSES)
+    some = workspace.thinned(STIFFNESS_POSES)
 
     def softness_with(**how: bool) -> Demand:
         demand = demand_with(**how)

@@ -30,7 +30,6 @@ from designer.selection.usable import Usable, usable
 from designer.selection.verify import Verification
 from designer.selection.verify_sizes import refined, verify_sizes
 from designer.study import Objective, Selection, Workspace
-from designer.workspace.samples import sample_count
 
 _SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
 
@@ -153,7 +152,7 @@ class _Trial:
                     not_tried.append(NotTried(grade, size, _SHEAVE))
                 else:
                     products.append((grade, size, self.built.cable(allowance.cable(grade, size))))
-        with self.reporter.task("sizes", sample_count(self.workspace)) as advance:
+        with self.reporter.task("sizes", self.workspace.sample_count) as advance:
             cables = [cable for _, _, cable in products]
             sampled = verify_sizes(self.robot, self.workspace, cables, progress=advance)
         entries = []

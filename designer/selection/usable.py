@@ -10,12 +10,10 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
-from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,14 +77,14 @@ def usable(
     """
     samples = 0
     served, lost = np.zeros((2, len(cables)))
-    for some in places(workspace):
+    for some in workspace.places():
         each = np.stack([_serves(robot, workspace, cable, some) for _, cable in cables])
         at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)
         lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)
     region = workspace.region
-    volume_m3 = region.volume_m3 if isinstance(region, Prism) else None
+    volume_m3 = region.volume_m3
     return Usable(
         grade,
         tuple(

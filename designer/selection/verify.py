@@ -14,7 +14,6 @@ from designer.model.robot import Robot
 from designer.study import Workspace
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import Demand, Pool, Worst, refine_over_branches
-from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +52,7 @@ def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
     """Solve every sample with this cable, then search for its extremes between them."""
     demand = rope_demand(robot, cable, workspace.hangs_below)
     pool = Pool(workspace.space)
-    for some in places(workspace):
+    for some in workspace.places():
         pool.add(some, demand(some)[:, 0])
     return searched(robot, workspace, cable, pool.places)
 
@@ -84,7 +83,7 @@ def worst_of(workspace: Workspace, demand_with: Callable[..., Demand]) -> Worst:
     Where every pose is left out, nothing is served: infinite, at no position.
     """
     pool, demand = Pool(workspace.space), demand_with()
-    for some in places(workspace):
+    for some in workspace.places():
         pool.add(some, demand(some))
     (worst,) = refine_over_branches(workspace.space, demand_with, pool.places)
     return Worst(worst.place, np.inf) if np.isneginf(worst.demand) else worst

@@ -15,9 +15,6 @@ from designer.progress import Advance
 from designer.selection.verify import Verification, searched
 from designer.statics.sizes import Meets, add_slowly, is_quick, meet
 from designer.study import Workspace
-from designer.workspace.refine import cells_of
-from designer.workspace.samples import places
-from designer.workspace.strata import landmarks
 
 _PIECE, _SLOW_PIECE = 2**13, 2**9
 _CELLS_A_SIDE, _TURNS = 6, 8
@@ -123,15 +120,15 @@ def refined(robot: Robot, workspace: Workspace, cable: Cable, sampled: Sampled) 
 
 def _pieces(workspace: Workspace, most: int) -> Iterator[tuple[FloatArray, bool]]:
     """Yield places, and whether they are samples; the landmarks come first."""
-    marks = landmarks(workspace.space)
+    marks = workspace.space.landmarks()
     yield from ((marks[start : start + most], False) for start in range(0, len(marks), most))
-    for some in places(workspace):
+    for some in workspace.places():
         yield from ((some[start : start + most], True) for start in range(0, len(some), most))
 
 
 def _cells(space: Space, positions: FloatArray) -> IntArray:
     """Number the parts of the space, so that the worst of each can be had."""
-    x, y, z, turn = cells_of(space, positions, _CELLS_A_SIDE).T
+    x, y, z, turn = space.cells(positions, _CELLS_A_SIDE).T
     side = _CELLS_A_SIDE
     return np.asarray(((x * side + y) * side + z) * _TURNS + turn % _TURNS)
 

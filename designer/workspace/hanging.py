@@ -15,7 +15,6 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +102,7 @@ def look_at(
 def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
     """Return which samples of the workspace have such a cable, with these cables on the machine."""
     found = HangingCables()
-    for some in places(workspace):
+    for some in workspace.places():
         statics = solve_sagging(robot, Poses.at(some), cable)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
         found = look_at(found, some, statics, counts, workspace.floor_m)

@@ -19,7 +19,6 @@ from designer.workspace.clearance import (
     clearance_to_platform,
 )
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
-from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 1000
 """Poses that are looked at before the search between them."""
@@ -106,7 +105,7 @@ def survey(
         What is asked for [m].
     """
 
-    some = thinned(workspace, MOST_SAMPLES)
+    some = workspace.thinned(MOST_SAMPLES)
     statics = solve_sagging(robot, Poses.at(some), cable)
     cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 

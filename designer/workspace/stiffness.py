@@ -15,7 +15,6 @@ from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import Demand, refine_over_branches
-from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 2000
 """Poses that are looked at before the search between them."""
@@ -57,7 +56,7 @@ def survey_stiffness(
         What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = thinned(workspace, MOST_SAMPLES)
+    some = workspace.thinned(MOST_SAMPLES)
     asked = demand_with()(some)
     counts = ~np.isneginf(asked[:, 0])
     if np.isneginf(asked[:, 1]).all():

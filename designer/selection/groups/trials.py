@@ -21,7 +21,6 @@ from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 _MOST_WITNESSES = 120
 _NUDGE = 1e-3
@@ -171,7 +170,7 @@ def _reach(robot: Robot, workspace: Workspace) -> tuple[FloatArray, FloatArray]:
     """Return the longest chord of each cable over the samples, and the samples that have it."""
     longest = np.zeros(robot.n_cables)
     at = np.zeros((robot.n_cables, workspace.space.n_coordinates))
-    for some in places(workspace):
+    for some in workspace.places():
         chord = cable_geometry(robot, Poses.at(some)).chord_m
         best = chord.argmax(axis=0)
         far = chord[best, np.arange(robot.n_cables)]

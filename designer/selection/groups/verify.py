@@ -15,7 +15,6 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
 from designer.workspace.refine import Demand, Pool, refine_over_branches
-from designer.workspace.samples import places
 
 Members = Sequence[IntArray]
 """Of each group the indices of its cables."""
@@ -70,7 +69,7 @@ def verify_groups(
     used = np.full(len(members), -np.inf)
     at = np.full((len(members), space.n_coordinates), np.nan)
     longest = np.zeros(robot.n_cables)
-    for some in places(workspace):
+    for some in workspace.places():
         asked = demand(some)
         for g, pool in enumerate(pools):
             pool.add(some, asked[:, g])
