@@ -47,11 +47,6 @@ class Shape(ABC):
 
     @property
     @abstractmethod
-    def outline_m(self) -> FloatArray:
-        """Corners of its outline in plan (n_corners, 2) [m]."""
-
-    @property
-    @abstractmethod
     def sizes(self) -> Sizes:
         """Areas and volume."""
 
@@ -145,10 +140,6 @@ class Prism(Shape):
     @property
     def bounds_m(self) -> FloatArray:
         return _box_around(self.polygon_m, self.z_m)
-
-    @property
-    def outline_m(self) -> FloatArray:
-        return self.polygon_m
 
     @property
     def area_m2(self) -> float:
@@ -259,10 +250,6 @@ class Rectangle(Shape):
         return _box_around(self.ends_m, self.z_m)
 
     @property
-    def outline_m(self) -> FloatArray:
-        return self.ends_m
-
-    @property
     def size_m(self) -> FloatArray:
         """Width and height (2,) [m]."""
         return np.array([np.linalg.norm(np.ptp(self.ends_m, axis=0)), np.ptp(self.z_m)])
@@ -339,10 +326,6 @@ class PointList(Shape):
     @property
     def bounds_m(self) -> FloatArray:
         return np.array([self.points_m.min(axis=0), self.points_m.max(axis=0)])
-
-    @property
-    def outline_m(self) -> FloatArray:
-        return self.points_m[:, :2]
 
     @property
     def sizes(self) -> Sizes:

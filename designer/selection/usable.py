@@ -83,8 +83,7 @@ def usable(
         samples += at.shape[1]
         served += at.sum(axis=1)
         lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)
-    region = workspace.region
-    volume_m3 = region.volume_m3
+    volume_m3 = workspace.region.volume_m3
     return Usable(
         grade,
         tuple(

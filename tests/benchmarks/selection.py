@@ -22,7 +22,7 @@ from designer.grades.registry import load_catalogue
 from designer.model.cable import Cable
 from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
-from designer.selection.verify_sizes import Sampled, verify_sizes
+from designer.selection.verify import Sampled, verify_sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 

@@ -12,8 +12,7 @@ from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
-from designer.selection.verify import verify
-from designer.selection.verify_sizes import refined, verify_sizes
+from designer.selection.verify import refined, verify, verify_sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out

@@ -36,8 +36,8 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.robot import Poses, Robot
-from designer.selection.groups.offer import Product
 from designer.selection.groups.verify import Members
+from designer.selection.products import Product
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.study import Workspace
 

@@ -86,10 +86,11 @@ class Master:
         n_groups, n_products = self.cost.shape
         x = cp.Variable(n_groups * n_products, boolean=True)
         scale = float(self.cost.max())
-        constraints = [*self._choice(x), *self._forbidden(x)]
-        constraints += [one for balance in self.balances for one in balance.constraints(x)]
-        constraints += [
-            (row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides
+        constraints = [
+            *self._choice(x),
+            *self._forbidden(x),
+            *(one for balance in self.balances for one in balance.constraints(x)),
+            *((row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides),
         ]
         problem = cp.Problem(cp.Minimize((self.cost.ravel() / scale) @ x), constraints)
         exact = {"mip_rel_gap": 0.0, "mip_abs_gap": 0.0}

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from designer.arrays import FloatArray
-from designer.selection.groups.offer import Product
 from designer.selection.groups.verify import GroupVerification
+from designer.selection.products import Product
 from designer.study import CableGroup
 
 Outcome = Literal["holds", "fails", "not_better"]

@@ -70,27 +70,24 @@ def verify_groups(
     at = np.full((len(members), space.n_coordinates), np.nan)
     longest = np.zeros(robot.n_cables)
     for some in workspace.places():
-        asked = demand(some)
+        asked, lengths = np.split(demand(some), [len(members)], axis=1)
         for g, pool in enumerate(pools):
             pool.add(some, asked[:, g])
-        best = asked[:, : len(members)].argmax(axis=0)
+        best = asked.argmax(axis=0)
         highest = asked[best, np.arange(len(members))]
         at = np.where((highest > used)[:, None], some[best], at)
         used = np.maximum(used, highest)
-        longest = np.maximum(longest, asked[:, len(members) :].max(axis=0))
+        longest = np.maximum(longest, lengths.max(axis=0))
     if np.isneginf(used).any():  # every sample is left out: nothing is served
-        return GroupVerification(at, np.full(len(members), np.inf), longest, False)
+        used = np.full(len(members), np.inf)
     if used.max() > 1.0:
         return GroupVerification(at, used, longest, False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
     worst = refine_over_branches(space, demand_with, starts)
-    of_groups, lengths = worst[: len(members)], worst[len(members) :]
-    return GroupVerification(
-        np.array([one.place for one in of_groups]),
-        np.array([one.demand for one in of_groups]),
-        np.array([one.demand for one in lengths]),
-        True,
-    )
+    asked = np.array([one.demand for one in worst])
+    at = np.array([one.place for one in worst[: len(members)]])
+    groups, lengths = np.split(asked, [len(members)])
+    return GroupVerification(at, groups, lengths, True)
 
 
 def _demand(
