@@ -12,21 +12,11 @@ from designer.model import polygon
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Border:
-    """The border of a region, piece by piece.
+    """The border of a region, piece by piece."""
 
-    Parameters
-    ----------
-    vertices_m : array (n_vertices, 3)
-        Corners [m].
-    edges_m : array (n_edges, 2, 3)
-        Ends of its edges [m].
-    faces_m : list of array (n_corners, 3)
-        Corners of its faces, convex and in order [m].
-    """
-
-    vertices_m: FloatArray
-    edges_m: FloatArray
-    faces_m: list[FloatArray]
+    vertices_m: FloatArray  # (n_vertices, 3): Corners [m]
+    edges_m: FloatArray  # (n_edges, 2, 3): Ends of its edges [m]
+    faces_m: list[FloatArray]  # (n_corners, 3): Corners of its faces, convex and in order [m]
 
     def landmarks_m(self) -> FloatArray:
         """Return vertices, middles of edges and middles of faces (n, 3) [m]."""

@@ -126,7 +126,7 @@ class Prism(Shape):
         ValueError
             If the points lie on one line, or nothing is left inside the inset.
         """
-        points = np.asarray(points_m, dtype=np.float64)[:, :2]
+        points = _in_plan(points_m, inset_m)
         return cls(polygon.inset_hull_m(points, inset_m), z_m)
 
     @classmethod
@@ -134,6 +134,8 @@ class Prism(Shape):
         cls, x_m: tuple[float, float], y_m: tuple[float, float], z_m: tuple[float, float]
     ) -> Prism:
         """Return an axis-parallel box."""
+        _require_ascending(x_m, "x")
+        _require_ascending(y_m, "y")
         corners = [(x_m[0], y_m[0]), (x_m[1], y_m[0]), (x_m[1], y_m[1]), (x_m[0], y_m[1])]
         return cls(frozen_array(corners), z_m)
 
@@ -234,7 +236,7 @@ class Rectangle(Shape):
         ValueError
             If the points are one point or not on a line, or nothing is left inside the inset.
         """
-        points = np.asarray(points_m, dtype=np.float64)[:, :2]
+        points = _in_plan(points_m, inset_m)
         middle = points.mean(axis=0)
         _, spread, axes = np.linalg.svd(points - middle)
         if spread[0] == 0.0 or (len(spread) > 1 and spread[1] > _OFF_LINE * spread[0]):
@@ -354,12 +356,18 @@ Region = Prism | Rectangle | PointList
 """Any region."""
 
 
-def _require_ascending(z_m: tuple[float, float]) -> None:
-    low, high = z_m
-    require_number("the lowest z", low)
-    require_number("the highest z", high)
+def _require_ascending(ends_m: tuple[float, float], axis: str = "z") -> None:
+    low, high = ends_m
+    require_number(f"the lowest {axis}", low)
+    require_number(f"the highest {axis}", high)
     if low > high:
-        raise ValueError(f"the lowest z, {low:g} m, is above the highest, {high:g} m")
+        raise ValueError(f"the lowest {axis}, {low:g} m, is above the highest, {high:g} m")
+
+
+def _in_plan(points_m: ArrayLike, inset_m: float) -> FloatArray:
+    require_number("inset_m", inset_m)
+    points = np.asarray(points_m, dtype=np.float64)
+    return finite_array("points_m", points[..., :2], None, 2)
 
 
 def _box_around(plan_m: FloatArray, z_m: tuple[float, float]) -> FloatArray:

@@ -51,9 +51,11 @@ class Orientations:
         """Return a range: its middle, its corners, and `FILLING` orientations spread inside it."""
         from scipy.stats import qmc
 
-        bounds = frozen_array(np.stack([np.asarray(low_rad), np.asarray(high_rad)]))
-        low, high = bounds
+        low, high = finite_array("low_rad", low_rad, 3), finite_array("high_rad", high_rad, 3)
         free = high > low
+        if (high < low).any() or not free.any():
+            raise ValueError("high_rad must not be below low_rad, and be above it somewhere")
+        bounds = frozen_array([low, high])
         corners = np.array(list(product((0.0, 1.0), repeat=int(free.sum()))))
         inner = qmc.Halton(int(free.sum()), scramble=False).random(FILLING + 1)[1:]
         share = np.zeros((1 + len(corners) + FILLING, 3))

@@ -40,27 +40,13 @@ MEANINGS: Mapping[Objective, Meaning] = {
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What a candidate is compared by; NaN where it is not known.
+    """What a candidate is compared by; NaN where it is not known."""
 
-    Parameters
-    ----------
-    mass_kg : float
-        Of all cables, each at the longest length that it needs [kg].
-    cost : float
-        Price of these lengths, in the currency of the comparison.
-    drum_diameter_m : float
-        Drum or sheave that the grade's D/d asks for [m].
-    max_tension_N : float
-        Largest tension, which the winch has to bear [N].
-    stiffness_N_per_m : float
-        Smallest force over displacement of the platform [N/m].
-    """
-
-    mass_kg: float
-    cost: float
-    drum_diameter_m: float
-    max_tension_N: float
-    stiffness_N_per_m: float
+    mass_kg: float  # Of all cables, each at the longest length that it needs [kg]
+    cost: float  # Price of these lengths, in the currency of the comparison
+    drum_diameter_m: float  # Drum or sheave that the grade's D/d asks for [m]
+    max_tension_N: float  # Largest tension, which the winch has to bear [N]
+    stiffness_N_per_m: float  # Smallest force over displacement of the platform [N/m]
 
     def value(self, objective: Objective) -> float:
         """Return the figure of an objective, in the sense in which it is shown."""

@@ -17,22 +17,12 @@ from designer.study import Selection
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Product:
-    """One size of one grade, as it would be on the machine.
-
-    Parameters
-    ----------
-    grade, size
-        The product.
-    cable : Cable
-        Its figures as the solver takes them, efficiency and safety factor applied.
-    efficiency : float
-        Share of the breaking load that end fittings and bending leave.
-    """
+    """One size of one grade, as it would be on the machine."""
 
     grade: Grade
     size: Size
-    cable: Cable
-    efficiency: float = 1.0
+    cable: Cable  # Its figures as the solver takes them, efficiency and safety factor applied
+    efficiency: float = 1.0  # Share of the breaking load that end fittings and bending leave
 
     @property
     def label(self) -> str:

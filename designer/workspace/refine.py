@@ -47,33 +47,19 @@ class Worst:
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How hard to search.
+    """How hard to search."""
 
-    Parameters
-    ----------
-    per_edge, per_face, inside : int
-        Places explored on each edge and face and inside, and the same again as a fresh sample
-        against what was found.
-    starts : int
-        Climbs of each extreme at most, beside those from the landmarks.
-    finalists : int
-        How many of them go on to the end.
-    trials : int
-        Random places tried about each in a turn, beside those along the coordinates.
-    from_landmarks : bool
-        Whether each landmark is a start, rather than only those that nothing near them exceeds.
-    tolerance : float
-        Size of the last cloud, as a share of the space.
-    """
-
+    # Places explored on each edge and face and inside, and the same again as a fresh sample against
+    # what was found
     per_edge: int = 32
     per_face: int = 256
     inside: int = 2048
-    starts: int = 40
-    finalists: int = 12
-    trials: int = 26
+    starts: int = 40  # Climbs of each extreme at most, beside those from the landmarks
+    finalists: int = 12  # How many of them go on to the end
+    trials: int = 26  # Random places tried about each in a turn, beside those along the coordinates
+    # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
-    tolerance: float = 1e-9
+    tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
 
 
 LIGHT = Effort(

@@ -35,20 +35,12 @@ Guide = tuple[FloatArray, float]
 
 @dataclass(slots=True, eq=False)
 class Master:
-    """The programme and its cuts.
+    """The programme and its cuts."""
 
-    Parameters
-    ----------
-    cost : array (n_groups, n_products)
-        What each product would add to the objective on each group.
-    most_distinct : int
-        How many different products there may be.
-    balances : list of Balance
-        Of the poses that have refuted assignments.
-    """
-
+    # (n_groups, n_products): What each product would add to the objective on each group
     cost: FloatArray
-    most_distinct: int
+    most_distinct: int  # How many different products there may be
+    # Of the poses that have refuted assignments
     balances: list[Balance] = field(default_factory=list)
     _cuts: list[IntArray] = field(default_factory=list)
 

@@ -43,21 +43,11 @@ class Load:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refutation:
-    """A pose that an assignment cannot hold.
+    """A pose that an assignment cannot hold."""
 
-    Parameters
-    ----------
-    group : int
-        The group that is overloaded most there.
-    utilisation : float
-        By how much; inf if the pose cannot be held at all.
-    place : array (n_coordinates,)
-        Where, see `designer.model.space` [m, rad].
-    """
-
-    group: int
-    utilisation: float
-    place: FloatArray
+    group: int  # The group that is overloaded most there
+    utilisation: float  # By how much; inf if the pose cannot be held at all
+    place: FloatArray  # (n_coordinates,): Where, see `designer.model.space` [m, rad]
 
 
 class Trials:

@@ -22,24 +22,15 @@ Members = Sequence[IntArray]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroupVerification:
-    """What given cables meet in the workspace.
+    """What given cables meet in the workspace."""
 
-    Parameters
-    ----------
-    worst_place : array (n_groups, n_coordinates)
-        Places where each group is used most [m, rad].
-    utilisation : array (n_groups,)
-        Largest over allowable tension there; inf if a pose cannot be held at all.
-    longest_m : array (n_cables,)
-        Longest unstrained length that each cable needs [m].
-    is_refined : bool
-        Whether the worst poses were searched for between the samples as well. Where a sample
-        already fails, they were not.
-    """
-
+    # (n_groups, n_coordinates): Places where each group is used most [m, rad]
     worst_place: FloatArray
+    # (n_groups,): Largest over allowable tension there; inf if a pose cannot be held at all
     utilisation: FloatArray
-    longest_m: FloatArray
+    longest_m: FloatArray  # (n_cables,): Longest unstrained length that each cable needs [m]
+    # Whether the worst poses were searched for between the samples as well. Where a sample already
+    # fails, they were not.
     is_refined: bool
 
     @property
