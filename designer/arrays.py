@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -57,12 +58,36 @@ def require_shape(name: str, array: NDArray[Any], *shape: int | None) -> None:
 
 
 def require_number(
-    name: str, value: float, *, above: float = -np.inf, least: float = -np.inf, finite: bool = True
+    name: str,
+    value: float | None,
+    *,
+    above: float = -np.inf,
+    least: float = -np.inf,
+    most: float = np.inf,
+    finite: bool = True,
 ) -> None:
-    """Raise ValueError unless a number is finite, or at least not NaN, and within its range."""
+    """Raise ValueError unless a number is finite, or at least not NaN, and within its range.
+
+    None stands for a number that is not given, and is left alone.
+    """
+    if value is None:
+        return
     if not value > above and above > -np.inf:
         raise ValueError(f"{name} must be above {above:g}, not {value:g}")
     if not value >= least:
         raise ValueError(f"{name} must not be below {least:g}, and is {value:g}")
+    if value > most:
+        raise ValueError(f"{name} must not be above {most:g}, and is {value:g}")
     if np.isnan(value) or (finite and not np.isfinite(value)):
         raise ValueError(f"{name} must be finite, not {value:g}")
+
+
+def require_one_of(name: str, given: Iterable[object], known: Sequence[object]) -> None:
+    """Raise ValueError unless everything given is known, and nothing is given twice."""
+    seen: set[object] = set()
+    for value in given:
+        if value not in known:
+            raise ValueError(f"{name}: {value!r} is none of {', '.join(map(str, known))}")
+        if value in seen:
+            raise ValueError(f"{name}: {value!r} is given twice")
+        seen.add(value)

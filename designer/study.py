@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, get_args
 
-from designer.arrays import require_number
+import numpy as np
+
+from designer.arrays import FloatArray, require_number, require_one_of
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.known import KnownEffects
@@ -15,13 +17,12 @@ from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
 from designer.model.machine import TEMPERATE, Machine, Surroundings
-from designer.model.region import Region
+from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 
 _LIKELY_DIAMETER_M = 0.01
 """Of the cable that stands in where none is given yet."""
-Sampling = Literal["low_discrepancy", "grid"]
 HangsBelow = Literal["include", "exclude"]
 Reading = Literal["length", "tension"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
@@ -64,18 +65,52 @@ class Workspace:
     def __post_init__(self) -> None:
         require_number("samples", self.samples, least=1)
         require_number("seed", self.seed, least=0)
-        if self.clearance_m is not None:
-            require_number("clearance_m", self.clearance_m, least=0.0)
-        if self.floor_m is not None:
-            require_number("floor_m", self.floor_m)
-        for value, known in ((self.sampling, Sampling), (self.hangs_below, HangsBelow)):
-            if value not in get_args(known):
-                raise ValueError(f"{value!r} is none of {', '.join(get_args(known))}")
+        require_number("clearance_m", self.clearance_m, least=0.0)
+        require_number("floor_m", self.floor_m)
+        require_one_of("sampling", [self.sampling], get_args(Sampling))
+        require_one_of("hangs_below", [self.hangs_below], get_args(HangsBelow))
 
     @property
     def space(self) -> Space:
         """All poses, as places: positions in every orientation."""
         return Space(self.region, self.orientations)
+
+    def positions_m(self) -> Iterator[FloatArray]:
+        """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m].
+
+        Memory stays flat, however many there are.
+        """
+        size = max(CHUNK // self.orientations.count, 1)
+        for chunk in self.region.samples_m(self.samples, self.sampling, self.seed):
+            yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
+
+    def places(self) -> Iterator[FloatArray]:
+        """Yield the sample places in chunks (at most about `CHUNK`, n_coordinates) [m, rad].
+
+        The orientations of a position follow one another in one chunk.
+        """
+        return map(self.space.places, self.positions_m())
+
+    def thinned(self, most: int) -> FloatArray:
+        """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].
+
+        Drawn are positions, from the whole of the region; each comes in all its orientations.
+        """
+        count = max(most // self.orientations.count, 1)
+        rng = np.random.default_rng(self.seed)
+        kept, draws = np.empty((0, 3)), np.empty(0)
+        for some in self.positions_m():
+            kept = np.concatenate([kept, some])
+            draws = np.concatenate([draws, rng.random(len(some))])
+            first = np.sort(np.argsort(draws)[:count])
+            kept, draws = kept[first], draws[first]
+        return self.space.places(kept)
+
+    @property
+    def sample_count(self) -> int:
+        """How many positions there are to try, for a progress bar (an estimate)."""
+        is_list = self.region.is_discrete
+        return sum(map(len, self.positions_m())) if is_list else self.samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +119,12 @@ class CableGroup:
 
     name: str
     cables: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if not self.cables:
+            raise ValueError(f"group '{self.name}' has no cable")
+        for cable in self.cables:
+            require_number(f"a cable of group '{self.name}'", cable, least=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +157,25 @@ class Selection:
     groups: tuple[CableGroup, ...] = ()
     max_distinct_products: int | None = None
 
+    def __post_init__(self) -> None:
+        require_number("safety_factor", self.safety_factor, least=1.0)
+        require_number("termination_efficiency", self.termination_efficiency, above=0.0, most=1.0)
+        require_number("sheave_diameter_m", self.sheave_diameter_m, above=0.0)
+        require_number("max_distinct_products", self.max_distinct_products, least=1)
+        if not self.objectives:
+            raise ValueError("objectives must name one at least")
+        require_one_of("objectives", self.objectives, get_args(Objective))
+        if isinstance(self.grades, str):
+            raise ValueError(f"grades must be several ids, not the text {self.grades!r}")
+        if self.max_distinct_products is not None and not self.groups:
+            raise ValueError("max_distinct_products has no meaning without groups")
+        first: dict[int, str] = {}
+        for group in self.groups:
+            for cable in group.cables:
+                if cable in first:
+                    raise ValueError(f"cable {cable} is in group '{first[cable]}' already")
+                first[cable] = group.name
+
 
 @dataclass(frozen=True, slots=True)
 class GradeFamily:
@@ -124,45 +184,27 @@ class GradeFamily:
     grade: str
     safety_factor: float
 
+    def __post_init__(self) -> None:
+        require_number("safety_factor", self.safety_factor, least=1.0)
+
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One value of the config, as written and as understood.
+    """One value of the config, as written and as understood."""
 
-    Parameters
-    ----------
-    field : str
-        Path into the document, such as ``robot.platform.mass``.
-    given : str
-        What the file says; ``default`` where it says nothing.
-    value_SI : str
-        The same in SI units, with the unit.
-    """
-
-    field: str
-    given: str
-    value_SI: str
+    field: str  # Path into the document, such as `robot.platform.mass`
+    given: str  # What the file says; `default` where it says nothing
+    value_SI: str  # The same in SI units, with the unit
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a study came from.
+    """Where a study came from."""
 
-    Parameters
-    ----------
-    path : Path
-        The config file.
-    sha256 : str
-        Digest of its bytes.
-    entries : tuple of Entry
-        Every field, for the report's table of inputs.
-    lines : mapping of str to int
-        Line of each field that the file gives, by its path.
-    """
-
-    path: Path
-    sha256: str
-    entries: tuple[Entry, ...]
+    path: Path  # The config file
+    sha256: str  # Digest of its bytes
+    entries: tuple[Entry, ...]  # Every field, for the report's table of inputs
+    # Line of each field that the file gives, by its path
     lines: Mapping[str, int] = field(default_factory=dict, repr=False, hash=False)
 
     def fault(self, field: str, problem: str, expected: str = "") -> Fault:
@@ -182,20 +224,12 @@ IN_PYTHON = Source(Path("study"), "", ())
 
 @dataclass(frozen=True, slots=True)
 class LogColumn:
-    """What one column of a log is to us: ``scale`` · reading + ``offset``.
+    """What one column of a log is to us: ``scale`` · reading + ``offset``."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in the log.
-    target : str
-        Our name for it, see `designer.measured.names`; ``ignore`` or ``covariate`` for none.
-    scale, offset : float
-        From the log's numbers to ours, in the unit that our name ends in.
-    """
-
-    name: str
+    name: str  # Its name in the log
+    # Our name for it, see `designer.measured.names`; `ignore` or `covariate` for none
     target: str
+    # From the log's numbers to ours, in the unit that our name ends in
     scale: float = 1.0
     offset: float = 0.0
 
@@ -245,6 +279,14 @@ class Measurements:
     estimated_noise: tuple[Reading, ...] = ()
     search_time_s: float = 600.0
 
+    def __post_init__(self) -> None:
+        for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):
+            require_number(name, getattr(self, name), above=0.0)
+        for name in ("tension_noise_N", "diameter_m", "minimum_breaking_load_N"):
+            require_number(name, getattr(self, name), above=0.0)
+        require_number("search_time_s", self.search_time_s, least=0.0)
+        require_one_of("estimated_noise", self.estimated_noise, get_args(Reading))
+
 
 @dataclass(frozen=True, slots=True)
 class DeclaredEffect:
@@ -263,6 +305,11 @@ class DeclaredEffect:
     id: str
     cable: int | None
     parameters: Mapping[str, float] = field(hash=False)
+
+    def __post_init__(self) -> None:
+        require_number("cable", self.cable, least=1)
+        for name, value in self.parameters.items():
+            require_number(name, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,6 +333,20 @@ class Study:
     known_effects: KnownEffects = SHIPPED
     surroundings: Surroundings = TEMPERATE
     family: GradeFamily | None = None
+
+    def __post_init__(self) -> None:
+        if self.pose is not None and self.pose.shape:
+            raise ValueError(f"pose must be one pose, not {self.pose.shape} of them")
+        if self.selection is not None and self.workspace is None:
+            raise ValueError("a selection needs the workspace that the product is to serve")
+        groups = self.selection.groups if self.selection else ()
+        grouped = {cable for group in groups for cable in group.cables}
+        every = set(range(1, self.robot.n_cables + 1))
+        if grouped and grouped != every:
+            wrong = ", ".join(map(str, sorted(grouped ^ every)))
+            raise ValueError(
+                f"groups must have every cable from 1 to {len(every)} once; wrong is {wrong}"
+            )
 
     @property
     def pose_outside(self) -> str:

@@ -33,7 +33,6 @@ from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study, as_built_by, require_enough_cables
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
-from designer.workspace.samples import sample_count
 from designer.workspace.section import section_of_pose, section_of_workspace
 from designer.workspace.sweep import map_workspace
 
@@ -293,7 +292,7 @@ def analyse(
         built = replace(built, section_m=section_m)
     workspace = chosen = groups = None
     if study.workspace is not None and folder is not None:
-        with reporter.task("workspace", sample_count(study.workspace)) as advance:
+        with reporter.task("workspace", study.workspace.sample_count) as advance:
             workspace = map_workspace(
                 built.robot,
                 study.workspace,

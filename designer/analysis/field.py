@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
+from designer.model.region import CHUNK
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.physics import catenary
@@ -15,7 +16,6 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
 from designer.study import Study, Workspace
 from designer.workspace.demand import is_left_out, size_worst
-from designer.workspace.samples import CHUNK
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,7 +25,6 @@ from designer.statics.inverse import solve_sagging
 from designer.study import HangsBelow
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
-from designer.workspace.samples import places
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -203,7 +202,7 @@ def _hanging(analysis: Analysis) -> float | None:
     few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
-        for positions in places(few)
+        for positions in few.places()
     ]
     return float(np.concatenate(hangs).mean())
 

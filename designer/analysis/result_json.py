@@ -11,8 +11,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis, PoseAnalysis
-from designer.analysis.groups_json import groups_dict
-from designer.analysis.selection_json import finite, selection_dict
+from designer.analysis.selection_json import finite, groups_dict, selection_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
 from designer.model.space import turn_of

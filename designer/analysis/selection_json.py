@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from designer.model.space import turn_of
+from designer.selection.groups.result import GroupChoice
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
-from designer.selection.usable import Usable
 
 Json = dict[str, Any]
 
@@ -20,17 +22,97 @@ _LISTS = {
     "worst_pose": "worst_pose_{}_m",
     "worst_rotation_vector": "worst_rotation_vector_{}_rad",
 }
+"""Columns of ``candidates.csv`` that one key becomes, numbered from 1."""
+_CANDIDATE = {
+    "grade": "grade.id",
+    "size_id": "size.id",
+    "diameter_m": "size.diameter_m",
+    "continuous_diameter_m": "continuous_diameter_m",
+    "max_tension_N": "verification.max_tension_N",
+    "utilisation": "verification.utilisation",
+    "minimum_breaking_load_N": "size.minimum_breaking_load_N",
+    "efficiency": "efficiency",
+    "allowable_tension_N": "cable.allowable_tension_N",
+    "linear_mass_kg_per_m": "size.linear_density_kg_per_m",
+    "as_built_linear_mass_kg_per_m": "cable.linear_density_kg_per_m",
+    "axial_stiffness_N": "cable.axial_stiffness_N",
+    "total_mass_kg": "total_mass_kg",
+    "drum_diameter_m": "figures.drum_diameter_m",
+    "cost": "figures.cost",
+    "stiffness_N_per_m": "figures.stiffness_N_per_m",
+    "longest_m": "verification.longest_m",
+    "shortest_m": "verification.shortest_m",
+    "worst_pose": "verification.worst_position_m",
+    "worst_rotation_vector": "verification.worst_position_m",
+    "verified": "verified",
+    "refined": "verification.is_refined",
+    "standing": "standing",
+    "why": "reason",
+}
+"""Of each key where its value is found."""
+_PRODUCT = ("grade", "size_id", "diameter_m", "allowable_tension_N", "linear_mass_kg_per_m")
+_CHOICE = {
+    "objective": "objective",
+    "unit": "unit",
+    "max_distinct_products": "most_distinct",
+    "total_mass_kg": "chosen.total_mass_kg",
+    "total": "chosen.total",
+    "bound": "bound",
+    "gap": "gap",
+    "proof": "proof",
+    "proof_sentence": "proof_sentence",
+    "single_product_mass_kg": "single.total_mass_kg",
+    "saving_kg": "saving_kg",
+    "offered": "offered",
+    "trials": "trials",
+}
+
+
+def finite(values: Any) -> Any:
+    """Return the same as plain values, with None for each number that is not finite.
+
+    JSON cannot hold those. Mappings, sequences, arrays and numbers.
+    """
+    if isinstance(values, dict):
+        return {key: finite(value) for key, value in values.items()}
+    if isinstance(values, np.ndarray | np.generic):
+        values = values.tolist()
+    if isinstance(values, list | tuple):
+        return [finite(value) for value in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
+
+
+def _plain(thing: object, table: Mapping[str, str]) -> Json:
+    """Return the values that a table names, None for what belongs to a part that is None."""
+
+    def value(path: str) -> Any:
+        found: Any = thing
+        for name in path.split("."):
+            found = None if found is None else getattr(found, name)
+        return finite(found)
+
+    return {key: value(path) for key, path in table.items()}
 
 
 def selection_dict(selection: SelectionResult) -> Json:
     """Return everything that ``result.json`` holds of a choice; a missing number is None."""
     rows = {
         id(c): candidate_dict(c, o)
-        for outcomes in (selection.outcomes, selection.alternatives)
-        for o in outcomes
+        for o in (*selection.outcomes, *selection.alternatives)
         for c in o.candidates
     }
     chosen, usable = selection.chosen, selection.usable
+    grade_id, sizes = (usable.grade.id, usable.sizes) if usable else (None, ())
+    grade = {
+        "grade": "grade.id",
+        "outcome": "outcome",
+        "sentence": "sentence",
+        "continuous_diameter_m": "continuous_diameter_m",
+        "best_size_id": "best.size.id",
+    }
+    part = {"size_id": "size.id", "diameter_m": "size.diameter_m"}
+    part |= {name: name for name in ("volume_m3", "fraction", "lost_fraction")}
+    left_out = {"grade": "grade.id", "size_id": "size.id", "reason": "reason"}
     return {
         "objectives": list(selection.objectives),
         "currency": selection.currency,
@@ -38,113 +120,76 @@ def selection_dict(selection: SelectionResult) -> Json:
         "reason": selection.reason,
         "pareto": [rows[id(c)] for c in selection.front],
         "candidates": [rows[id(c)] for c in selection.candidates],
-        "not_tried": [
-            {
-                "grade": one.grade.id,
-                "size_id": one.size.id if one.size else None,
-                "reason": one.reason,
-            }
-            for one in selection.not_tried
-        ],
-        "grades": [
-            {
-                "grade": o.grade.id,
-                "outcome": o.outcome,
-                "sentence": o.sentence,
-                "continuous_diameter_m": _number(o.continuous_diameter_m),
-                "best_size_id": o.best.size.id if o.best else None,
-            }
-            for o in selection.outcomes
-        ],
+        "not_tried": [_plain(one, left_out) for one in selection.not_tried],
+        "grades": [_plain(one, grade) for one in selection.outcomes],
         "alternatives": [rows[id(o.best)] for o in selection.alternatives if o.best],
-        "usable": [] if usable is None else _usable_list(usable),
+        "usable": [_plain(one, part) | {"grade": grade_id} for one in sizes],
     }
-
-
-def _usable_list(usable: Usable) -> list[Json]:
-    return [
-        {
-            "grade": usable.grade.id,
-            "size_id": one.size.id,
-            "diameter_m": one.size.diameter_m,
-            "volume_m3": one.volume_m3,
-            "fraction": one.fraction,
-            "lost_fraction": one.lost_fraction,
-        }
-        for one in usable.sizes
-    ]
 
 
 def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     """Return one candidate under the names that scripts rely on."""
-    size, found, figures = candidate.size, candidate.verification, candidate.figures
+    found = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_position_m)
+    trust = {"trust": candidate.grade.trust, "doubt": candidate.size.doubt}
+    return {**found, "outcome": outcome.outcome, **trust}
+
+
+def _place(place: Any) -> Json:
     return {
-        "grade": candidate.grade.id,
-        "size_id": size.id,
-        "diameter_m": size.diameter_m,
-        "continuous_diameter_m": _number(candidate.continuous_diameter_m),
-        "max_tension_N": _number(found.max_tension_N),
-        "utilisation": _number(found.utilisation),
-        "minimum_breaking_load_N": size.minimum_breaking_load_N,
-        "efficiency": candidate.efficiency,
-        "allowable_tension_N": candidate.cable.allowable_tension_N,
-        "linear_mass_kg_per_m": size.linear_density_kg_per_m,
-        "as_built_linear_mass_kg_per_m": candidate.cable.linear_density_kg_per_m,
-        "axial_stiffness_N": candidate.cable.axial_stiffness_N,
-        "total_mass_kg": _number(candidate.total_mass_kg),
-        "drum_diameter_m": _number(figures.drum_diameter_m),
-        "cost": _number(figures.cost),
-        "stiffness_N_per_m": _number(figures.stiffness_N_per_m),
-        "longest_m": _numbers(found.longest_m),
-        "shortest_m": _numbers(found.shortest_m),
-        "worst_pose": _numbers(found.worst_position_m[:3]),
-        "worst_rotation_vector": _numbers(turn_of(found.worst_position_m)),
-        "verified": candidate.verified,
-        "refined": found.is_refined,
-        "standing": candidate.standing,
-        "why": candidate.reason,
-        "outcome": outcome.outcome,
-        "trust": candidate.grade.trust,
-        "doubt": size.doubt,
+        "worst_pose": finite(place[:3]),
+        "worst_rotation_vector": finite(turn_of(place)),
     }
 
 
-def finite(values: Any) -> Any:
-    """Return the same with None for each number that is not finite, which JSON cannot hold."""
-    if isinstance(values, dict):
-        return {key: finite(value) for key, value in values.items()}
-    if isinstance(values, list | tuple):
-        return [finite(value) for value in values]
-    return None if isinstance(values, float) and not math.isfinite(values) else values
+def groups_dict(choice: GroupChoice | None) -> Json:
+    """Return ``groups`` and ``group_choice``; empty and None where a study has no groups."""
+    if choice is None:
+        return {"groups": [], "group_choice": None}
+    found = _plain(choice, _CHOICE)
+    found["bound_kg"] = found["bound"] if choice.objective == "mass" else None
+    return {
+        "groups": list(_groups(choice)),
+        "group_choice": {**found, "proposals": list(_proposals(choice))},
+    }
+
+
+def _groups(choice: GroupChoice) -> Iterator[Json]:
+    if choice.chosen is None:
+        return
+    met = choice.chosen.verification
+    for k, (group, product) in enumerate(zip(choice.groups, choice.chosen.products, strict=True)):
+        yield {
+            "name": group.name,
+            "cables": list(group.cables),
+            **_plain(product, {key: _CANDIDATE[key] for key in (*_PRODUCT, "axial_stiffness_N")}),
+            "utilisation": finite(met.utilisation[k]),
+            "longest_m": finite(met.longest_m[[c - 1 for c in group.cables]]),
+            **_place(met.worst_place[k]),
+        }
+
+
+def _proposals(choice: GroupChoice) -> Iterator[Json]:
+    names = ("bound", "total", "outcome", "utilisation", "excluded", "guided")
+    for one in choice.proposals:
+        yield {
+            **_plain(one, {name: name for name in names}),
+            "products": [{"grade": p.grade.id, "size_id": p.size.id} for p in one.products],
+            "group": None if one.group is None else choice.groups[one.group].name,
+            "pose": finite(one.place),
+        }
 
 
 def candidates_csv(selection: SelectionResult) -> str:
-    """Return every candidate as a row of a CSV table.
-
-    Lists become columns of their own, numbered from 1; a missing number is an empty cell.
-    """
-    rows = [_flat(candidate_dict(c, o)) for o in selection.outcomes for c in o.candidates]
+    """Return every candidate as a row of a CSV table; a missing number is an empty cell."""
+    rows = []
+    for candidate, outcome in ((c, o) for o in selection.outcomes for c in o.candidates):
+        row: Json = {}
+        for name, value in candidate_dict(candidate, outcome).items():
+            each = enumerate(value, start=1) if name in _LISTS else [(0, value)]
+            row |= {_LISTS.get(name, name).format(k): one for k, one in each}
+        rows.append(row)
     stream = io.StringIO()
     writer = csv.DictWriter(stream, fieldnames=list(rows[0]) if rows else ["grade", "size_id"])
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()
-
-
-def _flat(row: Json) -> Json:
-    flat: Json = {}
-    for name, value in row.items():
-        if name in _LISTS:
-            flat |= {_LISTS[name].format(k): one for k, one in enumerate(value, start=1)}
-        else:
-            flat[name] = value
-    return flat
-
-
-def _number(value: Any) -> float | None:
-    number = float(value)
-    return number if math.isfinite(number) else None
-
-
-def _numbers(values: Iterable[Any]) -> list[float | None]:
-    return [_number(value) for value in values]

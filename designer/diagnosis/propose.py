@@ -11,10 +11,8 @@ from designer.arrays import FloatArray
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured
-from designer.model.region import PointList, Region
+from designer.model.region import Region
 from designer.model.robot import Poses
-from designer.study import Workspace
-from designer.workspace.samples import positions_m
 
 _CANDIDATES = 2000
 """Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
@@ -83,10 +81,8 @@ def propose(
 
 
 def _candidates(measured: Measured, region: Region | None) -> FloatArray:
-    if isinstance(region, PointList):
-        return region.points_m
     if region is not None:
-        return np.concatenate(list(positions_m(Workspace(region, samples=_CANDIDATES))))
+        return np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
     position = measured.poses.position_m
     rng = np.random.default_rng(0)
     return rng.uniform(position.min(axis=0), position.max(axis=0), (_CANDIDATES, 3))

@@ -2,19 +2,97 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError, cKDTree
+from scipy.spatial import cKDTree
 
 from designer.arrays import BoolArray, FloatArray, finite_array, frozen_array, require_number
+from designer.model import polygon
+from designer.model.border import Border, ring
 
+Sampling = Literal["low_discrepancy", "grid"]
+Position = Callable[[FloatArray], str]
+Plural = Callable[[int, str], str]
+Sizes = tuple[tuple[str, float, str], ...]
+"""Of each measure its name, value and unit."""
+
+CHUNK = 2**15
+"""Positions per chunk; a power of two keeps Sobol sequences balanced."""
 _OFF_LINE = 1e-9
+_MOST_VERTICES = 256
+_UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+class Shape(ABC):
+    """What every region tells of itself; positions in the world frame, z upward.
+
+    A new kind of region is a subclass, and one of `Region`.
+    """
+
+    __slots__ = ()
+    is_discrete: ClassVar[bool] = False
+    """Whether there is nothing between its points."""
+    is_upright: ClassVar[bool] = False
+    """Whether it lies in an upright plane, and so has no area in plan."""
+
+    @property
+    @abstractmethod
+    def bounds_m(self) -> FloatArray:
+        """Smallest box around it, (2, 3): lower corner, upper corner [m]."""
+
+    @property
+    @abstractmethod
+    def sizes(self) -> Sizes:
+        """Areas and volume."""
+
+    @property
+    def volume_m3(self) -> float | None:
+        """Volume [m³]; None where it has none."""
+        return next((value for _, value, unit in self.sizes if unit == "m³"), None)
+
+    @property
+    def along(self) -> FloatArray:
+        """Unit vector, world x and y (2,), that is drawn to the right: its width, or x."""
+        return np.array([1.0, 0.0])
+
+    @abstractmethod
+    def words(self, position: Position, plural: Plural) -> str:
+        """Return what it is, but for its heights.
+
+        ``position`` writes a corner, ``plural`` a count with its noun.
+        """
+
+    @abstractmethod
+    def contains(self, points_m: FloatArray) -> BoolArray:
+        """Tell which of the points (..., 3) lie inside or on the boundary."""
+
+    @abstractmethod
+    def nearest(self, points_m: FloatArray) -> FloatArray:
+        """Return the point of the region nearest to each of the points (..., 3) [m]."""
+
+    @abstractmethod
+    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+        """Yield about so many positions, even and repeatable, in chunks (at most `CHUNK`, 3) [m].
+
+        A list of points is taken whole.
+        """
+
+    @abstractmethod
+    def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
+        """Return random positions (count, 3) [m]."""
+
+    @abstractmethod
+    def border(self) -> Border:
+        """Return its vertices, edges and faces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Prism:
+class Prism(Shape):
     """An upright prism over a convex polygon.
 
     Parameters
@@ -29,14 +107,14 @@ class Prism:
     z_m: tuple[float, float]
 
     def __post_init__(self) -> None:
-        polygon = finite_array("polygon_m", self.polygon_m, None, 2)
-        object.__setattr__(self, "polygon_m", polygon)
+        corners = finite_array("polygon_m", self.polygon_m, None, 2)
+        object.__setattr__(self, "polygon_m", corners)
         _require_ascending(self.z_m)
-        edge = np.roll(polygon, -1, axis=0) - polygon
+        edge = polygon.edges_m(corners)
         after = np.roll(edge, -1, axis=0)
         turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
         flat = _OFF_LINE * float(np.sum(edge**2))
-        if len(polygon) < 3 or not self.area_m2 > 0.0 or (turn < -flat).any():
+        if len(corners) < 3 or not self.area_m2 > 0.0 or (turn < -flat).any():
             raise ValueError("polygon_m must be convex, with its corners counter-clockwise")
 
     @classmethod
@@ -48,78 +126,86 @@ class Prism:
         ValueError
             If the points lie on one line, or nothing is left inside the inset.
         """
-        points = np.asarray(points_m, dtype=np.float64)[:, :2]
-        try:
-            hull = ConvexHull(points)
-        except QhullError:
-            raise ValueError("the points lie on one line, so they span no area") from None
-        halfplanes = hull.equations + np.array([0.0, 0.0, inset_m])
-        inner, depth = _deepest_point(halfplanes)
-        if depth <= 0.0:
-            raise ValueError(f"nothing is left inside an inset of {inset_m:g} m")
-        corners = HalfspaceIntersection(halfplanes, inner).intersections
-        return cls(frozen_array(corners[ConvexHull(corners).vertices]), z_m)
+        points = _in_plan(points_m, inset_m)
+        return cls(polygon.inset_hull_m(points, inset_m), z_m)
 
     @classmethod
     def box(
         cls, x_m: tuple[float, float], y_m: tuple[float, float], z_m: tuple[float, float]
     ) -> Prism:
         """Return an axis-parallel box."""
+        _require_ascending(x_m, "x")
+        _require_ascending(y_m, "y")
         corners = [(x_m[0], y_m[0]), (x_m[1], y_m[0]), (x_m[1], y_m[1]), (x_m[0], y_m[1])]
         return cls(frozen_array(corners), z_m)
 
     @property
-    def is_discrete(self) -> bool:
-        """Whether there is nothing between its points."""
-        return False
-
-    @property
     def bounds_m(self) -> FloatArray:
-        """Smallest box around the region, (2, 3): lower corner, upper corner [m]."""
-        low, high = self.polygon_m.min(axis=0), self.polygon_m.max(axis=0)
-        return np.array([[*low, self.z_m[0]], [*high, self.z_m[1]]])
+        return _box_around(self.polygon_m, self.z_m)
 
     @property
     def area_m2(self) -> float:
-        """Area of the base by the shoelace formula [m²]."""
-        x, y = self.polygon_m.T
-        return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+        """Area of the base [m²]."""
+        return polygon.area_m2(self.polygon_m)
 
     @property
-    def volume_m3(self) -> float:
-        """Volume [m³]."""
-        return self.area_m2 * (self.z_m[1] - self.z_m[0])
+    def sizes(self) -> Sizes:
+        volume = self.area_m2 * (self.z_m[1] - self.z_m[0])
+        return ("Base area", self.area_m2, "m²"), ("Volume", volume, "m³")
+
+    def words(self, position: Position, plural: Plural) -> str:
+        return f"upright prism over {len(self.polygon_m)} corners"
 
     def contains(self, points_m: FloatArray) -> BoolArray:
-        """Tell which of the points (..., 3) lie inside or on the boundary."""
-        edges = np.roll(self.polygon_m, -1, axis=0) - self.polygon_m
-        to_point = points_m[..., None, :2] - self.polygon_m
-        left = edges[:, 0] * to_point[..., 1] - edges[:, 1] * to_point[..., 0]
-        scale = np.linalg.norm(edges, axis=1) * np.ptp(self.polygon_m)
-        in_base = np.all(left >= -1e-12 * scale, axis=-1)
+        in_base = polygon.contains(self.polygon_m, points_m[..., :2])
         return np.asarray(
             in_base & (points_m[..., 2] >= self.z_m[0]) & (points_m[..., 2] <= self.z_m[1])
         )
 
     def nearest(self, points_m: FloatArray) -> FloatArray:
-        """Return the point of the region nearest to each of the points (..., 3) [m]."""
         clipped = np.array(points_m, dtype=np.float64)
         clipped[..., 2] = np.clip(points_m[..., 2], *self.z_m)
         outside = ~self.contains(clipped)
-        clipped[outside, :2] = self._nearest_on_edges(clipped[outside, :2])
+        plan = clipped[outside, :2]
+        clipped[outside, :2] = polygon.nearest_on_edges_m(self.polygon_m, plan)
         return clipped
 
-    def _nearest_on_edges(self, points_m: FloatArray) -> FloatArray:
-        start = self.polygon_m
-        edge = np.roll(start, -1, axis=0) - start
-        along = np.einsum("pek,ek->pe", points_m[:, None] - start, edge) / np.sum(edge**2, axis=1)
-        feet = start + np.clip(along, 0.0, 1.0)[..., None] * edge
-        best = np.argmin(np.linalg.norm(feet - points_m[:, None], axis=2), axis=1)
-        return np.asarray(feet[np.arange(len(points_m)), best])
+    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+        # Those of an even sample of the box around it that lie inside.
+        low, high = self.bounds_m
+        if sampling == "grid":
+            spacing = np.cbrt((self.volume_m3 or 0.0) / count)
+            x, y, z = _axes(low, high, (high - low) / spacing)
+            for layer in (_grid(x, y, [height]) for height in z):
+                yield from _in_chunks(layer[self.contains(layer)])
+            return
+        sequence = _sobol(3, seed)
+        while count > 0:
+            points = low + next(sequence) * (high - low)
+            inside = points[self.contains(points)][:count]
+            count -= len(inside)
+            if len(inside) > 0:
+                yield inside
+
+    def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
+        plan = polygon.within_m(self.polygon_m, rng.random((count, 3)))
+        return np.column_stack([plan, rng.uniform(*self.z_m, count)])
+
+    def border(self) -> Border:
+        low, high = (
+            np.column_stack([self.polygon_m, np.full(len(self.polygon_m), z)]) for z in self.z_m
+        )
+        upright = np.stack([low, high], axis=1)
+        sides = [
+            np.array([a, b, d, c])
+            for (a, c), (b, d) in zip(upright, np.roll(upright, -1, axis=0), strict=True)
+        ]
+        edges = np.concatenate([ring(low), ring(high), upright])
+        return Border(np.concatenate([low, high]), edges, [low, high, *sides])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rectangle:
+class Rectangle(Shape):
     """An upright rectangle.
 
     Parameters
@@ -129,6 +215,8 @@ class Rectangle:
     z_m : tuple of float
         Lowest and highest z [m].
     """
+
+    is_upright: ClassVar[bool] = True
 
     ends_m: FloatArray
     z_m: tuple[float, float]
@@ -148,7 +236,7 @@ class Rectangle:
         ValueError
             If the points are one point or not on a line, or nothing is left inside the inset.
         """
-        points = np.asarray(points_m, dtype=np.float64)[:, :2]
+        points = _in_plan(points_m, inset_m)
         middle = points.mean(axis=0)
         _, spread, axes = np.linalg.svd(points - middle)
         if spread[0] == 0.0 or (len(spread) > 1 and spread[1] > _OFF_LINE * spread[0]):
@@ -160,15 +248,8 @@ class Rectangle:
         return cls(frozen_array(middle + np.array([[low], [high]]) * axes[0]), z_m)
 
     @property
-    def is_discrete(self) -> bool:
-        """Whether there is nothing between its points."""
-        return False
-
-    @property
     def bounds_m(self) -> FloatArray:
-        """Smallest box around the rectangle, (2, 3) [m]."""
-        low, high = self.ends_m.min(axis=0), self.ends_m.max(axis=0)
-        return np.array([[*low, self.z_m[0]], [*high, self.z_m[1]]])
+        return _box_around(self.ends_m, self.z_m)
 
     @property
     def size_m(self) -> FloatArray:
@@ -176,11 +257,18 @@ class Rectangle:
         return np.array([np.linalg.norm(np.ptp(self.ends_m, axis=0)), np.ptp(self.z_m)])
 
     @property
+    def sizes(self) -> Sizes:
+        return (("Area", float(np.prod(self.size_m)), "m²"),)
+
+    @property
     def along(self) -> FloatArray:
         """Unit vector along its width, world x and y (2,), toward larger x."""
         edge = self.ends_m[1] - self.ends_m[0]
         edge = -edge if tuple(edge) < (0.0, 0.0) else edge
         return np.asarray(edge / np.linalg.norm(edge))
+
+    def words(self, position: Position, plural: Plural) -> str:
+        return f"upright rectangle from {' to '.join(position(end) for end in self.ends_m)}"
 
     def at(self, share: FloatArray) -> FloatArray:
         """Return the points (..., 3) at shares (..., 2) of width and height, from 0 to 1 [m]."""
@@ -196,17 +284,32 @@ class Rectangle:
         return np.stack([along, up], axis=-1)
 
     def contains(self, points_m: FloatArray) -> BoolArray:
-        """Tell which of the points (..., 3) lie in it."""
         gap = np.linalg.norm(points_m - self.nearest(points_m), axis=-1)
         return np.asarray(gap <= 1e-12 * np.linalg.norm(self.size_m))
 
     def nearest(self, points_m: FloatArray) -> FloatArray:
-        """Return the point of the rectangle nearest to each of the points (..., 3) [m]."""
         return self.at(np.clip(self.shares(points_m), 0.0, 1.0))
+
+    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+        if sampling == "grid":
+            spacing = np.sqrt(np.prod(self.size_m) / count)
+            share = _grid(*_axes(np.zeros(2), np.ones(2), self.size_m / spacing))
+            yield from _in_chunks(self.at(share))
+            return
+        sequence = _sobol(2, seed)
+        for start in range(0, count, CHUNK):
+            yield self.at(next(sequence)[: count - start])
+
+    def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
+        return self.at(rng.random((count, 2)))
+
+    def border(self) -> Border:
+        corners = self.at(_UNIT_SQUARE)
+        return Border(corners, ring(corners), [corners])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PointList:
+class PointList(Shape):
     """A finite set of positions, each of which is visited.
 
     Parameters
@@ -215,46 +318,80 @@ class PointList:
         Positions of the platform, world frame [m].
     """
 
+    is_discrete: ClassVar[bool] = True
+
     points_m: FloatArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points_m", finite_array("points_m", self.points_m, None, 3))
 
     @property
-    def is_discrete(self) -> bool:
-        """Whether there is nothing between its points."""
-        return True
-
-    @property
     def bounds_m(self) -> FloatArray:
-        """Smallest box around the points, (2, 3) [m]."""
         return np.array([self.points_m.min(axis=0), self.points_m.max(axis=0)])
 
+    @property
+    def sizes(self) -> Sizes:
+        return ()
+
+    def words(self, position: Position, plural: Plural) -> str:
+        return f"a list of {plural(len(self.points_m), 'point')}"
+
+    def contains(self, points_m: FloatArray) -> BoolArray:
+        return np.asarray((self.nearest(points_m) == points_m).all(axis=-1))
+
     def nearest(self, points_m: FloatArray) -> FloatArray:
-        """Return the position nearest to each of the points (..., 3) [m]."""
         return np.asarray(self.points_m[cKDTree(self.points_m).query(points_m)[1]])
+
+    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+        return _in_chunks(self.points_m)
+
+    def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
+        return self.points_m[rng.integers(len(self.points_m), size=count)]
+
+    def border(self) -> Border:
+        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
 
 
 Region = Prism | Rectangle | PointList
 """Any region."""
 
 
-def _require_ascending(z_m: tuple[float, float]) -> None:
-    low, high = z_m
-    require_number("the lowest z", low)
-    require_number("the highest z", high)
+def _require_ascending(ends_m: tuple[float, float], axis: str = "z") -> None:
+    low, high = ends_m
+    require_number(f"the lowest {axis}", low)
+    require_number(f"the highest {axis}", high)
     if low > high:
-        raise ValueError(f"the lowest z, {low:g} m, is above the highest, {high:g} m")
+        raise ValueError(f"the lowest {axis}, {low:g} m, is above the highest, {high:g} m")
 
 
-def _deepest_point(halfplanes: FloatArray) -> tuple[FloatArray, float]:
-    """Return the centre and radius of the largest circle inside ``normal · x + offset ≤ 0``."""
-    from scipy.optimize import linprog  # keeps `designer --help` light
+def _in_plan(points_m: ArrayLike, inset_m: float) -> FloatArray:
+    require_number("inset_m", inset_m)
+    points = np.asarray(points_m, dtype=np.float64)
+    return finite_array("points_m", points[..., :2], None, 2)
 
-    answer = linprog(
-        [0.0, 0.0, -1.0],
-        A_ub=np.hstack([halfplanes[:, :2], np.ones((len(halfplanes), 1))]),
-        b_ub=-halfplanes[:, 2],
-        bounds=[(None, None)] * 3,
-    )
-    return np.asarray(answer.x[:2]), float(answer.x[2])
+
+def _box_around(plan_m: FloatArray, z_m: tuple[float, float]) -> FloatArray:
+    low, high = plan_m.min(axis=0), plan_m.max(axis=0)
+    return np.array([[*low, z_m[0]], [*high, z_m[1]]])
+
+
+def _in_chunks(points: FloatArray, size: int = CHUNK) -> Iterator[FloatArray]:
+    return (points[start : start + size] for start in range(0, len(points), size))
+
+
+def _sobol(dimensions: int, seed: int) -> Iterator[FloatArray]:
+    """Yield a scrambled Sobol sequence in the unit cube (`CHUNK`, dimensions), for ever."""
+    from scipy.stats import qmc
+
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
+    while True:
+        yield sequence.random(CHUNK)
+
+
+def _axes(low: FloatArray, high: FloatArray, steps: FloatArray) -> list[FloatArray]:
+    counts = np.maximum(np.ceil(steps).astype(int), 1)
+    return [np.linspace(a, b, n + 1) for a, b, n in zip(low, high, counts, strict=True)]
+
+
+def _grid(*axes: ArrayLike) -> FloatArray:
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))

@@ -12,10 +12,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import FloatArray, finite_array, frozen_array
+from designer.arrays import FloatArray, IntArray, finite_array, frozen_array
 from designer.model.region import Region
 
 _APART = 1e-7
+_AT_AN_END = 1.0 / 3.0
+"""Chance that a sample of a range has a component at its lowest value; the same for the highest."""
 FILLING = 16
 """Orientations inside a range that are tried beside its middle and its corners."""
 
@@ -49,9 +51,11 @@ class Orientations:
         """Return a range: its middle, its corners, and `FILLING` orientations spread inside it."""
         from scipy.stats import qmc
 
-        bounds = frozen_array(np.stack([np.asarray(low_rad), np.asarray(high_rad)]))
-        low, high = bounds
+        low, high = finite_array("low_rad", low_rad, 3), finite_array("high_rad", high_rad, 3)
         free = high > low
+        if (high < low).any() or not free.any():
+            raise ValueError("high_rad must not be below low_rad, and be above it somewhere")
+        bounds = frozen_array([low, high])
         corners = np.array(list(product((0.0, 1.0), repeat=int(free.sum()))))
         inner = qmc.Halton(int(free.sum()), scramble=False).random(FILLING + 1)[1:]
         share = np.zeros((1 + len(corners) + FILLING, 3))
@@ -109,22 +113,78 @@ class Space:
         turns = np.tile(self.orientations.turns_rad, (len(positions_m), 1))
         return np.hstack([np.repeat(positions_m, self.orientations.count, axis=0), turns])
 
+    def landmarks(self) -> FloatArray:
+        """Return the landmarks of the region, in each orientation that may matter.
+
+        All of a list of orientations; of a range its middle and its corners. None of a discrete
+        space, whose places are all samples.
+        """
+        if self.is_discrete:
+            return np.empty((0, self.n_coordinates))
+        positions = self.region.border().landmarks_m()
+        if self.orientations.is_level:
+            return positions
+        turns = self.orientations.turns_rad
+        if self.orientations.range_rad is not None:
+            low, high = self.orientations.range_rad
+            corners = product(*zip(low, high, strict=True))
+            turns = np.unique([*corners, 0.5 * (low + high)], axis=0)
+        each = np.repeat(positions, len(turns), axis=0)
+        return np.hstack([each, np.tile(turns, (len(positions), 1))])
+
+    def scattered(
+        self, rng: np.random.Generator, per_edge: int, per_face: int, inside: int
+    ) -> FloatArray:
+        """Return random places (n, n_coordinates) on every edge and face and inside [m, rad].
+
+        Of a list of orientations each position has all, so that none is left to chance; the number
+        of positions is smaller accordingly. In a range, a third of the components are at either
+        end.
+        """
+        bounds = self.orientations.range_rad
+        each = 1 if bounds is not None else self.orientations.count
+        on_border = max(per_edge // each, 8), max(per_face // each, 32)
+        border = self.region.border().samples_m(rng, *on_border)
+        within = self.region.inside_m(rng, max(inside // each, 64))
+        positions = np.concatenate([border, within])
+        if bounds is None:
+            return self.places(positions)
+        share = (rng.random((len(positions), 3)) - _AT_AN_END) / (1.0 - 2.0 * _AT_AN_END)
+        turns = bounds[0] + np.clip(share, 0.0, 1.0) * (bounds[1] - bounds[0])
+        return np.hstack([positions, turns])
+
+    def cells(self, places: FloatArray, side: int) -> IntArray:
+        """Number the part of the space that each place lies in, by coordinates (n, 4).
+
+        ``side`` steps along each edge of the region's box, and one for the orientation: of a list
+        its number, of a range the half that each component lies in.
+        """
+        low, high = self.region.bounds_m
+        size = np.where(high > low, high - low, 1.0)
+        step = np.clip((places[:, :3] - low) / size * side, 0, side - 1)
+        turn = np.zeros(len(places))
+        if places.shape[1] > 3:
+            bounds = self.orientations.range_rad
+            if bounds is not None:
+                turn = (places[:, 3:] > bounds.mean(axis=0)) @ [1.0, 2.0, 4.0]
+            else:
+                away = places[:, None, 3:] - self.orientations.turns_rad
+                turn = np.abs(away).sum(axis=2).argmin(axis=1)
+        return np.column_stack([step, turn]).astype(np.int64)
+
     def outside(self, place: FloatArray) -> tuple[bool, bool]:
         """Tell whether position and orientation of a place (6,) are none of this space."""
+        from scipy.spatial.transform import Rotation
+
         position, turn = np.split(place, [3])
         away = np.linalg.norm(self.region.nearest(position[None])[0] - position)
         beyond = bool(away > _APART * (1.0 + np.abs(self.region.bounds_m).max()))
-        return beyond, not self._is_asked_for(turn)
-
-    def _is_asked_for(self, turn_rad: FloatArray) -> bool:
-        from scipy.spatial.transform import Rotation
-
         if self.orientations.range_rad is not None:
             low, high = self.orientations.range_rad
-            return bool(((turn_rad >= low - _APART) & (turn_rad <= high + _APART)).all())
+            return beyond, not ((turn >= low - _APART) & (turn <= high + _APART)).all()
         asked = Rotation.from_rotvec(np.array(self.orientations.turns_rad))  # read-only: refused
-        here = Rotation.from_rotvec(np.array(turn_rad))
-        return bool(((asked.inv() * here).magnitude() < _APART).any())
+        gap = (asked.inv() * Rotation.from_rotvec(np.array(turn))).magnitude()
+        return beyond, not (gap < _APART).any()
 
     def nearest(self, places: FloatArray) -> FloatArray:
         """Return the place nearest to each of these (..., n_coordinates)."""

@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.selection.objectives import MEANINGS, Figures
-from designer.selection.pareto import dominator_of, is_undominated
 from designer.selection.result import Standing
-from designer.selection.verify import Verification
-from designer.selection.verify_sizes import Sampled
+from designer.selection.verify import Sampled, Verification
 from designer.study import Objective
 
 _NEAR_LIMIT = 0.9
@@ -22,18 +20,10 @@ _NEAR_LIMIT = 0.9
 
 @dataclass(slots=True, eq=False)
 class Entry:
-    """A candidate on its way: what is known of it grows.
+    """A candidate on its way, see `designer.selection.result.Candidate`: what is known grows.
 
-    Parameters
-    ----------
-    grade, size, cable, efficiency
-        The product, see `designer.selection.result.Candidate`.
-    sampled : Sampled
-        What it meets over the samples.
-    verification : Verification
-        The same, until it has been searched between the samples.
-    figures : Figures
-        What it is compared by.
+    ``sampled`` is what it meets over the samples; ``verification`` the same, until it has been
+    searched between the samples.
     """
 
     grade: Grade
@@ -95,41 +85,51 @@ def burdens(entries: Sequence[Entry], objectives: Sequence[Objective]) -> FloatA
     return np.array(values, dtype=np.float64).reshape(len(entries), len(objectives))
 
 
+def is_undominated(burdens: FloatArray) -> BoolArray:
+    """Tell which rows (n,) of burdens (n, n_objectives) no other row dominates.
+
+    A row dominates another one if it is nowhere greater and somewhere less; less is better.
+    """
+    return np.array([dominator_of(row, burdens) is None for row in burdens], dtype=np.bool_)
+
+
+def dominator_of(row: FloatArray, others: FloatArray) -> int | None:
+    """Return the row of ``others`` (n, n_objectives) that dominates, None where none does.
+
+    Of several, the one that is best in the first objective.
+    """
+    dominates = np.all(others <= row, axis=1) & np.any(others < row, axis=1)
+    at = np.flatnonzero(dominates)
+    return int(at[np.argmin(others[at, 0])]) if len(at) else None
+
+
 def standing_of(
     entry: Entry, front: Sequence[Entry], objectives: Sequence[Objective]
 ) -> tuple[Standing, str]:
     """Return what became of an entry, and why."""
-    found = entry.verification
-    if entry.sampled.not_held:
-        return "not_held", f"no equilibrium was found at {_place(found)}"
-    if np.isinf(found.utilisation):
-        return "not_held", "it serves no pose"
+    found, best = entry.verification, front[0] if front else None
+    worst = f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m"
+    if entry.sampled.not_held or np.isinf(found.utilisation):
+        is_met = entry.sampled.not_held > 0
+        why = f"no equilibrium was found at {worst}" if is_met else "it serves no pose"
+        return "not_held", why
     if not found.holds:
         least = "" if entry.sampled.is_complete else "at least "
         percent = f"{least}{100.0 * found.utilisation:.4g} %"
-        return "too_thin", f"meets {percent} of its allowable tension at {_place(found)}"
+        return "too_thin", f"meets {percent} of its allowable tension at {worst}"
     if not _may_win(entry, objectives):
         return "not_comparable", f"its {MEANINGS[objectives[0]].word} is not known"
-    if entry in front:
-        return _standing_in_front(entry, front, objectives)
+    if best is not None and entry in front:
+        if entry is best:
+            return "chosen", f"best in {MEANINGS[objectives[0]].title}"
+        ours, theirs = entry.figures, best.figures
+        better = [MEANINGS[o].title for o in objectives if ours.burden(o) < theirs.burden(o)]
+        than = f"better than the chosen one in {' and '.join(better)}"
+        return "undominated", than if better else "as good as the chosen one"
     number = dominator_of(burdens([entry], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
     unsearched = "" if found.is_refined else "; holds at the samples, not searched between them"
     return "dominated", f"dominated by {front[number].name}{unsearched}"
-
-
-def _standing_in_front(
-    entry: Entry, front: Sequence[Entry], objectives: Sequence[Objective]
-) -> tuple[Standing, str]:
-    best = front[0]
-    if entry is best:
-        return "chosen", f"best in {MEANINGS[objectives[0]].title}"
-    better = [
-        MEANINGS[o].title for o in objectives if entry.figures.burden(o) < best.figures.burden(o)
-    ]
-    if not better:
-        return "undominated", "as good as the chosen one"
-    return "undominated", f"better than the chosen one in {' and '.join(better)}"
 
 
 def _may_win(entry: Entry, objectives: Sequence[Objective]) -> bool:
@@ -150,7 +150,3 @@ def _search_all(entries: Sequence[Entry], search: Search) -> bool:
             max_tension_N=found.max_tension_N,
         )
     return bool(fresh)
-
-
-def _place(found: Verification) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m"

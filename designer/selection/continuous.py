@@ -12,11 +12,10 @@ from designer.grades.grade import Grade
 from designer.model.cable import Material
 from designer.model.robot import Poses
 from designer.selection.efficiency import Allowance
-from designer.selection.verify import worst_of
 from designer.sizing.newton import size_poses
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
-from designer.workspace.refine import Worst
+from designer.workspace.refine import Worst, worst_over_samples
 from designer.workspace.section import thinnest
 
 _MOST_TURNS = 20
@@ -46,7 +45,9 @@ def continuous_optimum(
 
     def worst_with(family: Material) -> Worst:
         demand_with = partial(diameter_demand, built.robot, family, workspace.hangs_below)
-        return worst_of(workspace, demand_with)
+        (worst,) = worst_over_samples(workspace, demand_with)
+        # Where every pose is left out, nothing is served.
+        return Worst(worst.place, math.inf) if worst.demand == -math.inf else worst
 
     if built.is_family(unbent.family(grade, grade.thickest.diameter_m)):
         family, diameter = _member(grade, allowance, built, family_at, worst_with)
@@ -72,22 +73,17 @@ def _member(
             return family, math.nan
         if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):
             return family, worst.demand
-        diameter = _settled(built, worst, family_at)
+        # The diameter that this pose needs, as strong as a rope of that diameter.
+        diameter = worst.demand
+        for _ in range(_MOST_TURNS):
+            last, pose = diameter, Poses.at(worst.place)
+            diameter = float(size_poses(built.robot, pose, family_at(last)).diameter_m)
+            if not math.isfinite(diameter):
+                diameter = last
+                break
+            if _is_still(diameter, last):
+                break
     return family, diameter
-
-
-def _settled(built: AsBuilt, worst: Worst, family_at: _Family) -> float:
-    """Return the diameter that a pose needs, as strong as a rope of that diameter [m]."""
-    needed = worst.demand
-    for _ in range(_MOST_TURNS):
-        last = needed
-        found = size_poses(built.robot, Poses.at(worst.place), family_at(last))
-        needed = float(found.diameter_m)
-        if not math.isfinite(needed):
-            return last
-        if _is_still(needed, last):
-            break
-    return needed
 
 
 def _is_still(diameter_m: float, before_m: float) -> bool:

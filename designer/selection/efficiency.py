@@ -35,20 +35,11 @@ _STEEL = ("steel", "stainless steel", None)
 
 @dataclass(frozen=True, slots=True)
 class Allowance:
-    """How much of a breaking load may be used.
+    """How much of a breaking load may be used."""
 
-    Parameters
-    ----------
-    safety_factor : float
-        On what is left of the breaking load.
-    termination_efficiency : float
-        Share of the breaking load that the end fitting keeps.
-    sheave_diameter_m : float or None
-        Diameter that the rope is bent over [m]; None leaves bending out.
-    """
-
-    safety_factor: float
-    termination_efficiency: float = 1.0
+    safety_factor: float  # On what is left of the breaking load
+    termination_efficiency: float = 1.0  # Share of the breaking load that the end fitting keeps
+    # Diameter that the rope is bent over [m]; None leaves bending out
     sheave_diameter_m: float | None = None
 
     @classmethod

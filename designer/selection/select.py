@@ -17,20 +17,12 @@ from designer.progress import Reporter, Silent
 from designer.selection.compare import Entry, best_of, settle, standing_of
 from designer.selection.continuous import continuous_optimum
 from designer.selection.efficiency import Allowance
-from designer.selection.objectives import (
-    MEANINGS,
-    Figures,
-    common_currency,
-    cost,
-    drum_diameter_m,
-    smallest_stiffness_N_per_m,
-)
+from designer.selection.objectives import MEANINGS, Figures, smallest_stiffness_N_per_m
+from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.usable import Usable, usable
-from designer.selection.verify import Verification
-from designer.selection.verify_sizes import refined, verify_sizes
+from designer.selection.verify import Verification, refined, verify_sizes
 from designer.study import Objective, Selection, Workspace
-from designer.workspace.samples import sample_count
 
 _SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
 
@@ -98,12 +90,7 @@ def best_product(
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     currency = common_currency(allowed)
     trial = _Trial(robot, workspace, selection, built or AsBuilt(robot), Silent(), currency)
-    return best_of(trial.sampled(allowed)[0], selection.objectives, trial.searched)
-
-
-def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
-    """Tell whether a study that names these grades, or none, considers a grade."""
-    return grade.why_only_by_name is None if named is None else grade.id in named
+    return best_of(trial.sampled(allowed), selection.objectives, trial.searched)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,9 +106,12 @@ class _Trial:
 
     def outcomes(self, grades: Sequence[Grade]) -> tuple[list[GradeOutcome], list[NotTried]]:
         """Try all sizes of these grades."""
-        entries, not_tried = self.sampled(grades)
-        n_sizes = len(entries)
-        with self.reporter.task("search", n_sizes) as advance:
+        entries = self.sampled(grades)
+        tried = {id(entry.size) for entry in entries}
+        not_tried = [
+            NotTried(g, size, _SHEAVE) for g in grades for size in g.sizes if id(size) not in tried
+        ]
+        with self.reporter.task("search", len(entries)) as advance:
 
             def search(entry: Entry) -> Verification:
                 advance(1)
@@ -143,31 +133,24 @@ class _Trial:
             self._add_stiffness(entry, searched=True)
         return refined(self.robot, self.workspace, entry.cable, entry.sampled)
 
-    def sampled(self, grades: Sequence[Grade]) -> tuple[list[Entry], list[NotTried]]:
-        """Solve all samples with all sizes."""
-        allowance = Allowance.of(self.selection)
-        products, not_tried = [], []
-        for grade in grades:
-            for size in grade.sizes:
-                if math.isnan(allowance.efficiency(grade, size.diameter_m)):
-                    not_tried.append(NotTried(grade, size, _SHEAVE))
-                else:
-                    products.append((grade, size, self.built.cable(allowance.cable(grade, size))))
-        with self.reporter.task("sizes", sample_count(self.workspace)) as advance:
-            cables = [cable for _, _, cable in products]
+    def sampled(self, grades: Sequence[Grade]) -> list[Entry]:
+        """Solve all samples with all sizes that the sheave allows."""
+        products = products_of(self.selection, grades, self.built)
+        cables = [one.cable for one in products]
+        with self.reporter.task("sizes", self.workspace.sample_count) as advance:
             sampled = verify_sizes(self.robot, self.workspace, cables, progress=advance)
         entries = []
-        for (grade, size, cable), one in zip(products, sampled, strict=True):
-            length = float(one.longest_m.sum())
+        for product, one in zip(products, sampled, strict=True):
+            grade, size, cable = product.grade, product.size, product.cable
+            length, ratio = float(one.longest_m.sum()), grade.sheave_ratio
             figures = Figures(
                 mass_kg=cable.linear_density_kg_per_m * length,
-                cost=cost(grade, size, length, self.currency),
-                drum_diameter_m=drum_diameter_m(grade, size),
+                cost=cost(product, length, self.currency),
+                drum_diameter_m=ratio.suggested * size.diameter_m if ratio else math.nan,
                 max_tension_N=one.utilisation * cable.allowable_tension_N,
                 stiffness_N_per_m=math.nan,
             )
-            share = allowance.efficiency(grade, size.diameter_m)
-            found = one.verification(cable)
+            share, found = product.efficiency, one.verification(cable)
             entries.append(Entry(grade, size, cable, share, one, found, figures))
         if "stiffness" in self.selection.objectives:
             holding = [entry for entry in entries if entry.verification.holds]
@@ -175,12 +158,11 @@ class _Trial:
                 for entry in holding:
                     self._add_stiffness(entry, searched=False)
                     advance(1)
-        return entries, not_tried
+        return entries
 
     def _add_stiffness(self, entry: Entry, *, searched: bool) -> None:
-        found = smallest_stiffness_N_per_m(
-            self.robot, self.workspace, entry.cable, searched=searched
-        )
+        where = self.robot, self.workspace, entry.cable
+        found = smallest_stiffness_N_per_m(*where, searched=searched)
         entry.figures = replace(entry.figures, stiffness_N_per_m=found)
 
     def _outcome(
@@ -189,38 +171,31 @@ class _Trial:
         allowance = Allowance.of(self.selection)
         family, optimum = continuous_optimum(self.workspace, grade, allowance, self.built)
         objectives = self.selection.objectives
+        candidates = {
+            id(entry): Candidate(
+                grade=grade,
+                size=entry.size,
+                cable=entry.cable,
+                efficiency=entry.efficiency,
+                continuous_diameter_m=optimum,
+                verification=entry.verification,
+                figures=entry.figures,
+                standing=standing,
+                reason=reason,
+            )
+            for entry in entries
+            for standing, reason in [standing_of(entry, front, objectives)]
+        }
         best = best_of(entries, objectives, _nothing_left)
-        candidates = {id(e): _candidate(e, optimum, front, self.selection) for e in entries}
-        outcome: Outcome = "too_thin"
-        if best is not None:
-            outcome = "fits"
-        elif math.isnan(optimum):
-            outcome = "no_finite_cable"
+        outcome: Outcome = "no_finite_cable" if math.isnan(optimum) else "too_thin"
         return GradeOutcome(
             grade=grade,
             family=family,
             continuous_diameter_m=optimum,
             candidates=tuple(candidates.values()),
-            outcome=outcome,
+            outcome=outcome if best is None else "fits",
             best=None if best is None else candidates[id(best)],
         )
-
-
-def _candidate(
-    entry: Entry, optimum_m: float, front: Sequence[Entry], selection: Selection
-) -> Candidate:
-    standing, reason = standing_of(entry, front, selection.objectives)
-    return Candidate(
-        grade=entry.grade,
-        size=entry.size,
-        cable=entry.cable,
-        efficiency=entry.efficiency,
-        continuous_diameter_m=optimum_m,
-        verification=entry.verification,
-        figures=entry.figures,
-        standing=standing,
-        reason=reason,
-    )
 
 
 def _nothing_left(entry: Entry) -> Verification:
@@ -237,16 +212,14 @@ def _usable(
     shown = [o for o in outcomes if o.candidates]
     if chosen is not None:
         shown = [o for o in shown if o.grade is chosen.grade]
-    if len(shown) > 1:
-        shown = [max(shown, key=lambda o: _most_served(robot, workspace, o))]
-    for one in shown:
+
+    def most_served(outcome: GradeOutcome) -> float:
+        cables = [c.cable for c in outcome.candidates]
+        return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
+
+    for one in [max(shown, key=most_served)] if len(shown) > 1 else shown:
         return usable(robot, workspace, one.grade, [(c.size, c.cable) for c in one.candidates])
     return None
-
-
-def _most_served(robot: Robot, workspace: Workspace, outcome: GradeOutcome) -> float:
-    cables = [c.cable for c in outcome.candidates]
-    return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
 
 def _reason(

@@ -10,37 +10,22 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
-from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UsableSize:
-    """What one size serves.
-
-    Parameters
-    ----------
-    size : Size
-        The size.
-    cable : Cable
-        Its figures as the solver takes them.
-    fraction : float
-        Share of the samples at which it stays within its allowable tension.
-    volume_m3 : float or None
-        That share of the region [m³]; None for a list of points.
-    lost_fraction : float
-        Share of the samples that a thinner size of the grade serves and this one does not: it may
-        be weaker, or too heavy for what it bears.
-    """
+    """What one size serves."""
 
     size: Size
-    cable: Cable
-    fraction: float
-    volume_m3: float | None
+    cable: Cable  # Its figures as the solver takes them
+    fraction: float  # Share of the samples at which it stays within its allowable tension
+    volume_m3: float | None  # That share of the region [m³]; None for a list of points
+    # Share of the samples that a thinner size of the grade serves and this one does not: it may be
+    # weaker, or too heavy for what it bears
     lost_fraction: float = 0.0
 
 
@@ -79,14 +64,13 @@ def usable(
     """
     samples = 0
     served, lost = np.zeros((2, len(cables)))
-    for some in places(workspace):
+    for some in workspace.places():
         each = np.stack([_serves(robot, workspace, cable, some) for _, cable in cables])
         at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)
         lost += (np.logical_or.accumulate(at, axis=0) & ~at).sum(axis=1)
-    region = workspace.region
-    volume_m3 = region.volume_m3 if isinstance(region, Prism) else None
+    volume_m3 = workspace.region.volume_m3
     return Usable(
         grade,
         tuple(

@@ -1,47 +1,45 @@
-"""Proof that a given cable holds everywhere: the whole workspace again, with its own figures."""
+"""Proof that cables hold everywhere: the whole workspace again, with their own figures.
+
+Over the samples for many cables at once; between the samples for one.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
-from designer.model.robot import Robot
+from designer.model.robot import Poses, Robot
+from designer.progress import Advance
+from designer.statics.sizes import Meets, add_slowly, is_quick, meet
 from designer.study import Workspace
 from designer.workspace.demand import rope_demand
-from designer.workspace.refine import Demand, Pool, Worst, refine_over_branches
-from designer.workspace.samples import places
+from designer.workspace.refine import Worst, refine_over_branches, worst_over_samples
+
+_PIECE, _SLOW_PIECE = 2**13, 2**9
+_CELLS_A_SIDE, _TURNS = 6, 8
+_CELLS = _CELLS_A_SIDE**3 * _TURNS
+_TRIES = 256
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """What a given cable meets in the workspace.
+    """What a given cable meets in the workspace."""
 
-    Parameters
-    ----------
-    worst_position_m : array (n_coordinates,)
-        Place where its tension is largest, see `designer.model.space` [m, rad].
-    max_tension_N : float
-        The largest tension there [N]; inf if the pose cannot be held at all.
-    utilisation : float
-        Largest over allowable tension; the cable holds up to 1.
-    longest_m, shortest_m : array (n_cables,)
-        Longest and shortest unstrained length that each cable has [m]; the latter NaN where it was
-        not searched for.
-    is_refined : bool
-        Whether the extremes were searched for between the samples as well.
-    """
-
+    # (n_coordinates,): Place where its tension is largest, see `designer.model.space` [m, rad]
     worst_position_m: FloatArray
-    max_tension_N: float
-    utilisation: float
+    max_tension_N: float  # The largest tension there [N]; inf if the pose cannot be held at all
+    utilisation: float  # Largest over allowable tension; the cable holds up to 1
+    # (n_cables,): Longest and shortest unstrained length that each cable has [m]; the latter NaN
+    # where it was not searched for
     longest_m: FloatArray
     shortest_m: FloatArray
-    is_refined: bool = True
+    is_refined: bool = True  # Whether the extremes were searched for between the samples as well
 
     @property
     def holds(self) -> bool:
@@ -49,22 +47,62 @@ class Verification:
         return self.utilisation <= 1.0
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sampled:
+    """What one cable meets over the samples of a workspace."""
+
+    # (n_starts, n_coordinates): Places where it is used most, one for each part of the space, the
+    # worst first; where it is not held if there is such a pose [m, rad]
+    worst_m: FloatArray
+    # Largest over allowable tension; inf if a pose cannot be held, or none counts
+    utilisation: float
+    longest_m: FloatArray  # (n_cables,): Longest unstrained length that each cable needs [m]
+    # Samples tried, those that count, those of them above the allowable tension
+    samples: int
+    counted: int
+    overloaded: int
+    not_held: int  # Samples and landmarks that cannot be held, at least
+    # Whether every sample was tried; else the figures are those of the samples up to where it was
+    # settled that the cable does not serve the workspace
+    is_complete: bool
+
+    @property
+    def served(self) -> float:
+        """Share of the samples that count and stay within the allowable tension."""
+        return (self.counted - self.overloaded) / self.samples if self.samples else 0.0
+
+    def verification(self, cable: Cable) -> Verification:
+        """Return what is known before the search between the samples."""
+        return Verification(
+            worst_position_m=self.worst_m[0] if len(self.worst_m) else np.full(3, np.nan),
+            max_tension_N=self.utilisation * cable.allowable_tension_N,
+            utilisation=self.utilisation,
+            longest_m=self.longest_m,
+            shortest_m=np.full_like(self.longest_m, np.nan),
+            is_refined=False,
+        )
+
+
 def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
-    """Solve every sample with this cable, then search for its extremes between them."""
-    demand = rope_demand(robot, cable, workspace.hangs_below)
-    pool = Pool(workspace.space)
-    for some in places(workspace):
-        pool.add(some, demand(some)[:, 0])
-    return searched(robot, workspace, cable, pool.places)
-
-
-def searched(robot: Robot, workspace: Workspace, cable: Cable, starts: FloatArray) -> Verification:
-    """Search a workspace for the extremes of a cable, from samples in which much is asked of it.
+    """Solve every sample with this cable, then search for its extremes between them.
 
     Where every pose is left out, nothing is served: infinite, at no position.
     """
     demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
-    tension, *lengths = refine_over_branches(workspace.space, demand_with, starts)
+    return _verification(cable, worst_over_samples(workspace, demand_with))
+
+
+def refined(robot: Robot, workspace: Workspace, cable: Cable, sampled: Sampled) -> Verification:
+    """Search for the extremes of a cable between the samples, from the worst of them."""
+    demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
+    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_m)
+    found = _verification(cable, worst)
+    return replace(found, longest_m=np.maximum(found.longest_m, sampled.longest_m))
+
+
+def _verification(cable: Cable, worst: list[Worst]) -> Verification:
+    """Put together what `rope_demand` was largest in."""
+    tension, *lengths = worst
     most = np.inf if np.isneginf(tension.demand) else tension.demand
     length = np.array([one.demand for one in lengths]).reshape(2, -1)
     return Verification(
@@ -76,15 +114,114 @@ def searched(robot: Robot, workspace: Workspace, cable: Cable, starts: FloatArra
     )
 
 
-def worst_of(workspace: Workspace, demand_with: Callable[..., Demand]) -> Worst:
-    """Return the largest demand over the samples, then over the region from the best of them.
+def verify_sizes(
+    robot: Robot,
+    workspace: Workspace,
+    cables: Sequence[Cable],
+    *,
+    gives_up: bool = True,
+    progress: Advance = lambda _: None,
+) -> list[Sampled]:
+    """Solve every sample, and the landmarks, with every cable in one pass, with its own figures.
 
-    See `refine_over_branches` for what makes the demand.
+    The landmarks of the border are not among the samples that are counted.
 
-    Where every pose is left out, nothing is served: infinite, at no position.
+    Memory does not grow with the samples.
+
+    Parameters
+    ----------
+    robot, workspace, cables
+        The problem; cables in any order.
+    gives_up : bool
+        Whether a cable is left alone after the first chunk of samples with one that it cannot
+        hold, which settles that it does not serve the workspace. Of a robot that is slow to solve
+        also after the first chunk in which it goes beyond its allowable tension.
+    progress : callable
+        Called with the number of samples done.
     """
-    pool, demand = Pool(workspace.space), demand_with()
-    for some in places(workspace):
-        pool.add(some, demand(some))
-    (worst,) = refine_over_branches(workspace.space, demand_with, pool.places)
-    return Worst(worst.place, np.inf) if np.isneginf(worst.demand) else worst
+    # The heavy ones first: slack cables are the harder, and start best from slack ones.
+    order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
+    space, is_slow = workspace.space, not is_quick(robot)
+    totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
+    samples = ((some, True) for some in workspace.places())
+    most = _SLOW_PIECE if is_slow else _PIECE
+    for chunk, counts in chain([(space.landmarks(), False)], samples):
+        for start in range(0, len(chunk), most):
+            some = chunk[start : start + most]
+            settled = (totals.not_held > 0) | (is_slow & (totals.utilisation.max(axis=1) > 1.0))
+            alive = [k for k in order if not (gives_up and settled[k])]
+            x, y, z, turn = space.cells(some, _CELLS_A_SIDE).T
+            cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
+            met = _meet(robot, workspace, some, [cables[k] for k in alive], cells, gives_up)
+            totals.add(alive, some, met, counts)
+            progress(len(some) if counts else 0)
+    return [totals.of(k) for k in range(len(cables))]
+
+
+def _meet(
+    robot: Robot,
+    workspace: Workspace,
+    positions: FloatArray,
+    cables: Sequence[Cable],
+    cells: IntArray,
+    gives_up: bool,
+) -> Meets:
+    poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
+    found = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
+    if not is_quick(robot):
+        return found
+    for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
+        hard = np.flatnonzero(found.failed[row])
+        for start in range(0, len(hard), _TRIES):
+            some = hard[start : start + _TRIES]
+            add_slowly(found, row, robot, poses, cables[row], cells, exclude, some)
+            if gives_up and found.failed[row, some].any():
+                break
+    return found
+
+
+class _Totals:
+    """What all cables met so far."""
+
+    def __init__(self, n_tried: int, n_cables: int, n_coordinates: int) -> None:
+        self.samples = 0
+        self.tried = np.zeros(n_tried, dtype=np.int64)
+        self.utilisation = np.full((n_tried, _CELLS), -np.inf)
+        self.worst_m = np.full((n_tried, _CELLS, n_coordinates), np.nan)
+        self.longest_m = np.zeros((n_tried, n_cables))
+        self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
+        self.not_held_m = np.full((n_tried, n_coordinates), np.nan)
+
+    def add(self, rows: Sequence[int], positions: FloatArray, met: Meets, counts: bool) -> None:
+        self.samples += len(positions) * counts
+        if not rows:
+            return
+        self.tried[rows] += len(positions) * counts
+        higher = met.utilisation > self.utilisation[rows]
+        self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])
+        at_worst = positions[met.pose]
+        self.worst_m[rows] = np.where(higher[..., None], at_worst, self.worst_m[rows])
+        self.longest_m[rows] = np.maximum(self.longest_m[rows], met.longest_m)
+        self.counted[rows] += met.counted * counts
+        self.overloaded[rows] += met.overloaded * counts
+        fails = met.failed.sum(axis=1)
+        first = (self.not_held[rows] == 0) & (fails > 0)
+        at_first = positions[met.failed.argmax(axis=1)]
+        self.not_held_m[rows] = np.where(first[:, None], at_first, self.not_held_m[rows])
+        self.not_held[rows] += fails
+
+    def of(self, row: int) -> Sampled:
+        not_held = int(self.not_held[row])
+        asked = self.utilisation[row]
+        order = np.argsort(-asked, kind="stable")
+        worst = self.worst_m[row][order[~np.isneginf(asked[order])]]
+        return Sampled(
+            worst_m=self.not_held_m[row][None] if not_held else worst,
+            utilisation=np.inf if not_held or not len(worst) else float(asked.max()),
+            longest_m=self.longest_m[row],
+            samples=int(self.tried[row]),
+            counted=int(self.counted[row]),
+            overloaded=int(self.overloaded[row]),
+            not_held=not_held,
+            is_complete=bool(self.tried[row] == self.samples),
+        )

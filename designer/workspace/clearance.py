@@ -37,23 +37,13 @@ _CHUNK = 256
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clearance:
-    """How near things come in each pose; NaN where the pose is not solved or nothing is compared.
+    """How near things come in each pose; NaN where it is not solved or nothing is compared."""
 
-    Parameters
-    ----------
-    distance_m : array (...)
-        Smallest distance [m].
-    pair : array (..., 2) of int
-        Between which: numbers of two cables from 0, or of a cable and `PLATFORM`.
-    place_m : array (..., 3)
-        Where, base frame [m].
-    error_m : array (...)
-        The true distance is smaller than ``distance_m`` by no more than this [m].
-    """
-
-    distance_m: FloatArray
+    distance_m: FloatArray  # (...): Smallest distance [m]
+    # (..., 2) of int: Between which: numbers of two cables from 0, or of a cable and `PLATFORM`
     pair: IntArray
-    place_m: FloatArray
+    place_m: FloatArray  # (..., 3): Where, base frame [m]
+    # (...): The true distance is smaller than `distance_m` by no more than this [m]
     error_m: FloatArray
 
     @classmethod

@@ -15,47 +15,25 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 
 @dataclass(frozen=True, slots=True)
 class Hanging:
-    """Samples in which a cable hangs too far, and the worst of them.
+    """Samples in which a cable hangs too far, and the worst of them."""
 
-    Parameters
-    ----------
-    samples : int
-        How many there are.
-    extreme : float
-        The largest length over chord; or the height of the lowest point [m].
-    cable : int
-        Which cable, counted from 1.
-    place : tuple of float
-        In which sample, see `designer.model.space` [m, rad].
-    """
-
-    samples: int
-    extreme: float
-    cable: int
-    place: tuple[float, ...]
+    samples: int  # How many there are
+    extreme: float  # The largest length over chord; or the height of the lowest point [m]
+    cable: int  # Which cable, counted from 1
+    place: tuple[float, ...]  # In which sample, see `designer.model.space` [m, rad]
 
 
 @dataclass(frozen=True, slots=True)
 class HangingCables:
-    """What hangs too far over a workspace; None where nothing does.
+    """What hangs too far over a workspace; None where nothing does."""
 
-    Parameters
-    ----------
-    samples : int
-        Samples looked at: those that are solved and count.
-    long : Hanging or None
-        Cables longer than `LONG` times their chord.
-    below_floor : Hanging or None
-        Cables that hang below the floor; None also where the study has no floor.
-    """
-
-    samples: int = 0
-    long: Hanging | None = None
+    samples: int = 0  # Samples looked at: those that are solved and count
+    long: Hanging | None = None  # Cables longer than `LONG` times their chord
+    # Cables that hang below the floor; None also where the study has no floor
     below_floor: Hanging | None = None
 
     def notes(self) -> Iterator[tuple[str, str]]:
@@ -103,7 +81,7 @@ def look_at(
 def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
     """Return which samples of the workspace have such a cable, with these cables on the machine."""
     found = HangingCables()
-    for some in places(workspace):
+    for some in workspace.places():
         statics = solve_sagging(robot, Poses.at(some), cable)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
         found = look_at(found, some, statics, counts, workspace.floor_m)

@@ -15,18 +15,11 @@ _FLAT = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hull:
-    """A convex body, or a flat one without a volume.
+    """A convex body, or a flat one without a volume."""
 
-    Parameters
-    ----------
-    triangles_m : array (n_triangles, 3, 3)
-        Its surface, body frame [m].
-    halfspaces : array (n_faces, 4)
-        Outward unit normals and offsets: ``normal · x + offset ≤ 0`` for all of them in the body,
-        and for no other point [-, m].
-    """
-
-    triangles_m: FloatArray
+    triangles_m: FloatArray  # (n_triangles, 3, 3): Its surface, body frame [m]
+    # (n_faces, 4): Outward unit normals and offsets: `normal · x + offset ≤ 0` for all of them in
+    # the body, and for no other point [-, m]
     halfspaces: FloatArray
 
     @property

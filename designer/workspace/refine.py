@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.model.region import PointList
+from designer.arrays import FloatArray, IntArray
 from designer.model.space import Space
-from designer.workspace.strata import landmarks, scattered
+from designer.study import Workspace
 
 Demand = Callable[[FloatArray], FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
@@ -47,33 +47,19 @@ class Worst:
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How hard to search.
+    """How hard to search."""
 
-    Parameters
-    ----------
-    per_edge, per_face, inside : int
-        Places explored on each edge and face and inside, and the same again as a fresh sample
-        against what was found.
-    starts : int
-        Climbs of each extreme at most, beside those from the landmarks.
-    finalists : int
-        How many of them go on to the end.
-    trials : int
-        Random places tried about each in a turn, beside those along the coordinates.
-    from_landmarks : bool
-        Whether each landmark is a start, rather than only those that nothing near them exceeds.
-    tolerance : float
-        Size of the last cloud, as a share of the space.
-    """
-
+    # Places explored on each edge and face and inside, and the same again as a fresh sample against
+    # what was found
     per_edge: int = 32
     per_face: int = 256
     inside: int = 2048
-    starts: int = 40
-    finalists: int = 12
-    trials: int = 26
+    starts: int = 40  # Climbs of each extreme at most, beside those from the landmarks
+    finalists: int = 12  # How many of them go on to the end
+    trials: int = 26  # Random places tried about each in a turn, beside those along the coordinates
+    # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
-    tolerance: float = 1e-9
+    tolerance: float = 1e-9  # Size of the last cloud, as a share of the space
 
 
 LIGHT = Effort(
@@ -89,12 +75,7 @@ LIGHT = Effort(
 """For demands that take long to compute."""
 
 
-def refine(space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None) -> Worst:
-    """Return the largest demand in the space; see `refine_each`."""
-    return refine_each(space, demand, starts, effort)[0]
-
-
-def refine_each(
+def refine(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
     """Return the largest of each of several demands that one computation yields.
@@ -136,7 +117,7 @@ def refine_over_branches(
     demand_with : callable
         Takes ``seeks_better``, whether to look for better branches, and returns the demand.
     space, starts, effort
-        As for `refine_each`.
+        As for `refine`.
     """
     plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
 
@@ -144,11 +125,24 @@ def refine_over_branches(
         return len(places) > 0 and not np.array_equal(plain(places), thorough(places))
 
     if not changes(starts):
-        found = refine_each(space, plain, starts, effort)
+        found = refine(space, plain, starts, effort)
         places = np.array([worst.place for worst in found])
         if not changes(places[np.isfinite(places).all(axis=1)]):
             return found
-    return refine_each(space, thorough, starts, effort)
+    return refine(space, thorough, starts, effort)
+
+
+def worst_over_samples(
+    workspace: Workspace, demand_with: Callable[..., Demand], effort: Effort | None = None
+) -> list[Worst]:
+    """Return the largest of each demand over all samples, then over the region from the best.
+
+    Starts are the samples that ask for most of the first demand; see `refine_over_branches`.
+    """
+    pool, demand = Pool(workspace.space), demand_with()
+    for some in workspace.places():
+        pool.add(some, demand(some).reshape(len(some), -1)[:, 0])
+    return refine_over_branches(workspace.space, demand_with, pool.places, effort)
 
 
 class Pool:
@@ -159,21 +153,14 @@ class Pool:
 
     def __init__(self, space: Space) -> None:
         self._space = space
-        self._cell = np.empty(0, dtype=np.int64)
-        self._places = np.empty((0, space.n_coordinates))
-        self._values = np.empty(0)
+        self._places, self._values = np.empty((0, space.n_coordinates)), np.empty(0)
 
     def add(self, places: FloatArray, values: FloatArray) -> None:
         """Take in places (n, n_coordinates) and what they ask for (n,)."""
-        self._places = np.concatenate([self._places, places])
-        self._values = np.concatenate([self._values, values])
-        self._cell = np.concatenate([self._cell, cells_of(self._space, places) @ _KEY])
-        kept = _best_of_cells(self._cell, self._values)
-        self._cell, self._places, self._values = (
-            self._cell[kept],
-            self._places[kept],
-            self._values[kept],
-        )
+        places = np.concatenate([self._places, places])
+        values = np.concatenate([self._values, values])
+        kept = _best_of_cells(self._space, places, values)
+        self._places, self._values = places[kept], values[kept]
 
     @property
     def places(self) -> FloatArray:
@@ -181,31 +168,9 @@ class Pool:
         return self._places[~np.isneginf(self._values)]
 
 
-_KEY = np.array([1, 2**8, 2**16, 2**24], dtype=np.int64)
-
-
-def cells_of(space: Space, places: FloatArray, side: int = _CELLS_A_SIDE) -> IntArray:
-    """Number the part of the space that each place lies in, by coordinates (n, 4).
-
-    Three steps in space, and one for the orientation: of a list its number, of a range the half
-    that each component lies in.
-    """
-    low, high = space.region.bounds_m
-    size = np.where(high > low, high - low, 1.0)
-    step = np.clip((places[:, :3] - low) / size * side, 0, side - 1)
-    turn = np.zeros(len(places))
-    if places.shape[1] > 3:
-        bounds = space.orientations.range_rad
-        if bounds is not None:
-            turn = (places[:, 3:] > bounds.mean(axis=0)) @ [1.0, 2.0, 4.0]
-        else:
-            away = places[:, None, 3:] - space.orientations.turns_rad
-            turn = np.abs(away).sum(axis=2).argmin(axis=1)
-    return np.column_stack([step, turn]).astype(np.int64)
-
-
-def _best_of_cells(cell: IntArray, values: FloatArray) -> IntArray:
-    """Return the index of the largest value in each cell, the largest first."""
+def _best_of_cells(space: Space, places: FloatArray, values: FloatArray) -> IntArray:
+    """Return the index of the largest value in each part of the space, the largest first."""
+    cell = space.cells(places, _CELLS_A_SIDE) @ (2 ** (8 * np.arange(4)))
     order = np.argsort(-values, kind="stable")
     _, first = np.unique(cell[order], return_index=True)
     return np.asarray(order[np.sort(first)])
@@ -215,39 +180,17 @@ def _local_maxima(space: Space, places: FloatArray, values: FloatArray, most: in
     """Return the indices of places that none in the parts around theirs exceed, largest first."""
     from scipy.ndimage import maximum_filter
 
-    kept = _best_of_cells(cells_of(space, places) @ _KEY, values)
+    kept = _best_of_cells(space, places, values)
     kept = kept[~np.isneginf(values[kept])]
-    x, y, z, turn = cell = cells_of(space, places[kept]).T
+    x, y, z, turn = cell = space.cells(places[kept], _CELLS_A_SIDE).T
     highest = np.full((*[_CELLS_A_SIDE] * 3, int(turn.max(initial=0)) + 1), -np.inf)
     highest[*cell] = values[kept]
     is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[kept]
     return np.asarray(kept[is_top][:most])
 
 
-@dataclass(slots=True, eq=False)
-class _Climbs:
-    """Climbs under way: where each is, which extreme it seeks, what it has, its cloud's size."""
-
-    at: FloatArray
-    extreme: IntArray
-    value: FloatArray
-    radius: FloatArray
-    step: FloatArray
-
-    @classmethod
-    def of(
-        cls, at: FloatArray, extreme: IntArray, value: FloatArray, radius: float | FloatArray
-    ) -> _Climbs:
-        return cls(at, extreme, value, np.broadcast_to(radius, len(at)).copy(), np.zeros_like(at))
-
-    def some(self, which: IntArray | BoolArray) -> _Climbs:
-        return _Climbs(
-            self.at[which],
-            self.extreme[which],
-            self.value[which],
-            self.radius[which],
-            self.step[which],
-        )
+_Climbs = Any
+"""Records of climbs: where each is, its extreme, value, cloud's size and last step."""
 
 
 class _Search:
@@ -261,12 +204,12 @@ class _Search:
 
     def run(self, starts: FloatArray) -> list[Worst]:
         space = self._space
-        if isinstance(space.region, PointList) and space.is_discrete:
-            every = space.places(space.region.points_m)
+        if space.is_discrete:
+            every = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
             for at in range(0, len(every), _CHUNK):
                 self._ask(every[at : at + _CHUNK])
             return self._best
-        marks = landmarks(space)
+        marks = space.landmarks()
         places = np.concatenate([starts, marks, self._scatter()])
         values = self._ask(places)
         self._climb_all(places, values, np.arange(len(starts), len(starts) + len(marks)))
@@ -286,8 +229,8 @@ class _Search:
         return any(np.isposinf(worst.demand) for worst in self._best)
 
     def _scatter(self) -> FloatArray:
-        effort = self._effort
-        return scattered(self._space, self._rng, effort.per_edge, effort.per_face, effort.inside)
+        counts = self._effort.per_edge, self._effort.per_face, self._effort.inside
+        return self._space.scattered(self._rng, *counts)
 
     def _near_the_best(self) -> FloatArray:
         """Return places about each of the best, at all distances."""
@@ -323,8 +266,12 @@ class _Search:
             rows.append(some)
             extremes.append(np.full(len(some), k))
         row, extreme = np.concatenate(rows), np.concatenate(extremes)
-        climbs = _Climbs.of(places[row], extreme, values[row, extreme], 0.5 / _CELLS_A_SIDE)
-        climbs = self._climb(climbs, 1e-3)
+        n = len(self._size)
+        kinds = [("at", "f8", n), ("extreme", "i8"), ("value", "f8"), ("radius", "f8")]
+        climbs = np.zeros(len(row), dtype=[*kinds, ("step", "f8", n)]).view(np.recarray)
+        climbs.at, climbs.extreme, climbs.value = places[row], extreme, values[row, extreme]
+        climbs.radius = 0.5 / _CELLS_A_SIDE
+        self._climb(climbs, 1e-3)
         self._climb(self._finalists(climbs), effort.tolerance, slides=True)
 
     def _finalists(self, climbs: _Climbs) -> _Climbs:
@@ -337,16 +284,16 @@ class _Search:
             apart = np.abs(climbs.at[rivals] - climbs.at[k]) / size
             if len(rivals) < self._effort.finalists and not (apart < 3e-3).all(axis=1).any():
                 kept.append(int(k))
-        return climbs.some(np.array(kept, dtype=np.int64))
+        return climbs[np.array(kept, dtype=np.int64)]
 
-    def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> _Climbs:
+    def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
         n = len(self._size)
         for _ in range(_MOST_TURNS):
             active = np.flatnonzero(climbs.radius > tolerance)
             if not len(active) or self._is_over:
                 break
-            some = climbs.some(active)
+            some = climbs[active]
             reach = some.radius[:, None, None] * self._size
             trials = self._space.nearest(some.at[:, None] + self._directions(len(active)) * reach)
             onward = self._space.nearest(some.at + 2.0 * some.step)[:, None]
@@ -356,7 +303,7 @@ class _Search:
             rises = own.max(axis=1) > some.value
             on_border = np.flatnonzero(slides & ~rises & np.isneginf(own).any(axis=1))
             if len(on_border):
-                slid = self._slide(some.some(on_border), trials[on_border], own[on_border])
+                slid = self._slide(some[on_border], trials[on_border], own[on_border])
                 trials[on_border, -1], own[on_border, -1] = slid
             best = own.argmax(axis=1)
             rows = np.arange(len(active))
@@ -366,7 +313,6 @@ class _Search:
             climbs.at[active] = to
             climbs.value[active] = np.where(better, own[rows, best], some.value)
             climbs.radius[active] = some.radius * np.where(better, 1.1, 0.5)
-        return climbs
 
     def _slide(
         self, climbs: _Climbs, trials: FloatArray, values: FloatArray

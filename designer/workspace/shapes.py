@@ -13,20 +13,11 @@ from designer.statics.inverse import Statics
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curves:
-    """Cables of many poses, any of which can be sampled anywhere.
+    """Cables of many poses, any of which can be sampled anywhere."""
 
-    Parameters
-    ----------
-    start_m : array (n_curves, 3)
-        Where they leave base or pulley, upright frame [m].
-    outward : array (n_curves, 2)
-        Horizontal unit vector of the plane that each hangs in.
-    length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m : array (n_curves,)
-        As in `designer.physics.catenary`; the length is that between pulley and platform.
-    """
-
-    start_m: FloatArray
-    outward: FloatArray
+    start_m: FloatArray  # (n_curves, 3): Where they leave base or pulley, upright frame [m]
+    outward: FloatArray  # (n_curves, 2): Horizontal unit vector of the plane that each hangs in
+    # (n_curves,): As in `designer.physics.catenary`; the length is that between pulley and platform
     length_m: FloatArray
     force_x_N: FloatArray
     force_z_N: FloatArray
@@ -79,20 +70,11 @@ class Curves:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polylines:
-    """Points of curves, and how far the curves stray from the straight pieces between them.
+    """Points of curves, and how far the curves stray from the straight pieces between them."""
 
-    Parameters
-    ----------
-    points_m : array (n, segments + 1, 3)
-        Upright frame [m].
-    share : array (n, segments + 1)
-        Where they lie, as shares of the unstrained length.
-    sagitta_m : array (n, segments)
-        No point of the curve is farther than this from its straight piece [m].
-    """
-
-    points_m: FloatArray
-    share: FloatArray
+    points_m: FloatArray  # (n, segments + 1, 3): Upright frame [m]
+    share: FloatArray  # (n, segments + 1): Where they lie, as shares of the unstrained length
+    # (n, segments): No point of the curve is farther than this from its straight piece [m]
     sagitta_m: FloatArray
 
 

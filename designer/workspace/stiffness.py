@@ -15,7 +15,6 @@ from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import Demand, refine_over_branches
-from designer.workspace.samples import thinned
 
 MOST_SAMPLES = 2000
 """Poses that are looked at before the search between them."""
@@ -23,25 +22,16 @@ MOST_SAMPLES = 2000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StiffnessSurvey:
-    """Displacement under a unit force over a workspace, cables of fixed length.
+    """Displacement under a unit force over a workspace, cables of fixed length."""
 
-    Parameters
-    ----------
-    samples : int
-        Poses that were looked at before the search between them, solved and not left out.
-    unstable : int
-        Those of them in which the platform would not stay.
-    softest_m_per_N, stiffest_m_per_N : float
-        Largest and smallest displacement under a unit force in its worst direction [m/N]; the
-        former inf where the platform would not stay somewhere.
-    softest_place, stiffest_place : array (n_coordinates,)
-        Where [m, rad].
-    """
-
+    # Poses that were looked at before the search between them, solved and not left out
     samples: int
-    unstable: int
+    unstable: int  # Those of them in which the platform would not stay
+    # Largest and smallest displacement under a unit force in its worst direction [m/N]; the former
+    # inf where the platform would not stay somewhere
     softest_m_per_N: float
     stiffest_m_per_N: float
+    # (n_coordinates,): Where [m, rad]
     softest_place: FloatArray
     stiffest_place: FloatArray
 
@@ -57,7 +47,7 @@ def survey_stiffness(
         What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = thinned(workspace, MOST_SAMPLES)
+    some = workspace.thinned(MOST_SAMPLES)
     asked = demand_with()(some)
     counts = ~np.isneginf(asked[:, 0])
     if np.isneginf(asked[:, 1]).all():

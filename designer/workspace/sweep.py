@@ -22,7 +22,6 @@ from designer.workspace.demand import diameter_demand, is_left_out, massless_dem
 from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.refine import Pool, refine, refine_over_branches
 from designer.workspace.result import Census, Extreme, WorkspaceMap
-from designer.workspace.samples import pieces_m
 from designer.workspace.store import SweepFile
 
 Progress = Callable[[int], None]
@@ -68,7 +67,7 @@ def _sweep(
     robot: Robot, workspace: Workspace, material: Material, progress: Progress
 ) -> Iterator[tuple[FloatArray, Sizing]]:
     """Yield every position in the orientation that asks for the most there."""
-    for positions in pieces_m(workspace):
+    for positions in workspace.positions_m():
         yield size_worst(robot, workspace, positions, material)
         progress(len(positions))
 
@@ -152,5 +151,5 @@ def _worst_massless(
 ) -> Extreme | None:
     if len(starts) == 0:
         return None
-    worst = refine(workspace.space, massless_demand(robot), starts)
+    (worst,) = refine(workspace.space, massless_demand(robot), starts)
     return Extreme.at(worst.place, material.diameter_for_tension_m(worst.demand), worst.demand)

@@ -22,10 +22,9 @@ from designer.grades.registry import load_catalogue
 from designer.model.cable import Cable
 from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
-from designer.selection.verify_sizes import Sampled, verify_sizes
+from designer.selection.verify import Sampled, verify_sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
-from designer.workspace.samples import positions_m
 
 SAFETY_FACTOR = 2.0
 
@@ -59,7 +58,7 @@ def all_cables() -> list[Cable]:
 def one_at_a_time(robot: Robot, workspace: Workspace, cable: Cable) -> float:
     """Return the largest utilisation, as a user would compute it."""
     worst = -np.inf
-    for positions in positions_m(workspace):
+    for positions in workspace.positions_m():
         statics = solve_sagging(robot, Poses.at(positions), cable)
         tension = np.where(statics.is_solved, statics.largest_tension_N, np.inf)
         worst = max(worst, float(tension.max()))

@@ -16,7 +16,6 @@ from designer.model.verdict import Verdict
 from designer.resources import data_folder, example_file, example_names, example_summary
 from designer.sizing.newton import size_poses
 from designer.study import Study
-from designer.workspace.samples import places
 
 # name: needed diameter [mm] and massless tension [N] of the configured pose
 EXPECTED = {
@@ -86,7 +85,7 @@ def test_the_configured_pose(name: str) -> None:
 def test_no_pose_is_called_solved_that_is_not(name: str) -> None:
     study = study_of(name)
     assert study.workspace is not None
-    some = next(places(study.workspace))[:400]
+    some = next(study.workspace.places())[:400]
     poses = beyond(some, study)
     sizing = size_poses(study.robot, poses, study.material)
     statics = sizing.statics

@@ -9,8 +9,8 @@ import pytest
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
-from designer.analysis.groups_json import groups_dict
 from designer.analysis.result_json import result_dict
+from designer.analysis.selection_json import groups_dict
 from designer.cli import terminal
 from designer.report.design.first_page import first_page
 from designer.report.design.groups import groups_section

@@ -12,13 +12,10 @@ from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
-from designer.selection.verify import verify
-from designer.selection.verify_sizes import refined, verify_sizes
+from designer.selection.verify import refined, verify, verify_sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import positions_m
-from designer.workspace.strata import landmarks
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 LOW = Prism.over(TRIANGLE, 40.0, (-200.0, -60.0))
@@ -57,7 +54,7 @@ def test_agrees_with_one_size_at_a_time(name: str, fast_robot, six_cable_robot) 
     robot, workspace = cases(fast_robot, six_cable_robot)[name]
     tried = cables()
     found = verify_sizes(robot, workspace, tried, gives_up=False)
-    positions = np.concatenate(list(positions_m(workspace)))
+    positions = np.concatenate(list(workspace.positions_m()))
     for cable, one in zip(tried, found, strict=True):
         statics = solve_sagging(robot, Poses.at(positions), cable)
         left_out = is_left_out(statics, workspace.hangs_below)
@@ -66,7 +63,7 @@ def test_agrees_with_one_size_at_a_time(name: str, fast_robot, six_cable_robot) 
         assert one.samples == len(positions)
         assert one.counted == counts.sum()
         assert one.overloaded == (used > 1.0).sum()
-        everywhere = np.concatenate([positions, landmarks(workspace.space)])
+        everywhere = np.concatenate([positions, workspace.space.landmarks()])
         statics = solve_sagging(robot, Poses.at(everywhere), cable)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
         used = statics.largest_tension_N[counts] / cable.allowable_tension_N
@@ -99,11 +96,11 @@ def test_order_of_the_cables_does_not_matter(fast_robot) -> None:
 def test_chunks_add_up(fast_robot) -> None:
     """More samples than one chunk has give the largest of all, and all counts."""
     workspace, tried = Workspace(LOW, samples=20_000), cables()[2:5]
-    positions = np.concatenate(list(positions_m(workspace)))
+    positions = np.concatenate(list(workspace.positions_m()))
     found = verify_sizes(fast_robot, workspace, tried)
     for cable, one in zip(tried, found, strict=True):
         tension = solve_sagging(fast_robot, Poses.at(positions), cable).largest_tension_N
-        corners = solve_sagging(fast_robot, Poses.at(landmarks(workspace.space)), cable)
+        corners = solve_sagging(fast_robot, Poses.at(workspace.space.landmarks()), cable)
         largest = max(tension.max(), corners.largest_tension_N.max())
         assert one.counted == one.samples == 20_000
         assert one.overloaded == (tension > cable.allowable_tension_N).sum()

@@ -19,7 +19,6 @@ from designer.selection.usable import usable
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Workspace
-from designer.workspace.samples import positions_m
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 SIZES = [8.0, 14.0, 16.0, 18.0, 20.0, 24.0, 32.0]
@@ -31,7 +30,7 @@ def test_share_is_that_of_the_poses_that_need_no_more(fast_robot) -> None:
     grade = rope("a", SIZES)
     found = select(fast_robot, workspace, Selection(None, 2.0), [grade]).usable
     assert found is not None
-    positions = np.concatenate(list(positions_m(workspace)))
+    positions = np.concatenate(list(workspace.positions_m()))
     needed = size_poses(fast_robot, Poses.at(positions), grade.family(2.0)).diameter_m
     for one in found.sizes:
         share = np.mean(needed <= one.size.diameter_m)
@@ -67,7 +66,7 @@ def test_a_weak_thicker_size_does_not_serve_what_a_thinner_one_does(fast_robot) 
     grade = rope("a", [14.0, 18.0, 20.0, 32.0], weaker={20.0: 0.6})
     found = select(fast_robot, workspace, Selection(None, 2.0), [grade]).usable
     assert found is not None and not found.is_nested
-    positions = np.concatenate(list(positions_m(workspace)))
+    positions = np.concatenate(list(workspace.positions_m()))
     holds = []
     for size in grade.sizes:
         statics = solve_sagging(fast_robot, Poses.at(positions), grade.cable(size, 2.0))

@@ -9,7 +9,7 @@ import pytest
 
 from designer.arrays import frozen_array
 from designer.model.cable import Material
-from designer.model.region import PointList, Prism
+from designer.model.region import CHUNK, PointList, Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import FILLING, Orientations, Space
 from designer.selection.verify import verify
@@ -17,7 +17,6 @@ from designer.sizing.newton import size_poses
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import refine
-from designer.workspace.samples import CHUNK, places
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -30,13 +29,13 @@ def workspace_in(orientations: Orientations, samples: int = 300) -> Workspace:
 
 
 def test_places_of_a_level_platform_are_its_positions() -> None:
-    chunk = next(places(workspace_in(Orientations())))
+    chunk = next(workspace_in(Orientations()).places())
     assert chunk.shape == (300, 3)
     assert Orientations().is_level
 
 
 def test_places_come_in_groups_and_flat_in_memory() -> None:
-    chunks = list(places(workspace_in(Orientations(TILTS), 20_000)))
+    chunks = list(workspace_in(Orientations(TILTS), 20_000).places())
     assert sum(len(chunk) for chunk in chunks) == 60_000
     assert max(len(chunk) for chunk in chunks) <= CHUNK
     groups = chunks[0].reshape(-1, 3, 6)
@@ -109,7 +108,7 @@ def test_a_list_of_points_in_a_range(six_cable_robot: Robot, steel: Material) ->
     space = Space(region, Orientations.within([-0.03, 0, 0], [0.05, 0, 0]))
     assert not space.is_discrete
     demand = diameter_demand(six_cable_robot, steel, "include")
-    worst = refine(space, demand, np.array([[0.0, 0, -80, 0.01, 0, 0], [5, 5, -75, 0.01, 0, 0]]))
+    (worst,) = refine(space, demand, np.array([[0.0, 0, -80, 0.01, 0, 0], [5, 5, -75, 0.01, 0, 0]]))
     assert any((worst.place[:3] == point).all() for point in region.points_m)
     line = np.linspace(-0.03, 0.05, 41)
     tried = [

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.model.region import PointList, Prism
+from designer.model.region import CHUNK, PointList, Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
 from designer.sizing.newton import size_poses
 from designer.study import Workspace
-from designer.workspace.refine import Pool, refine, refine_each
-from designer.workspace.samples import CHUNK, positions_m, sample_count, thinned
+from designer.workspace.refine import Pool, Worst, refine
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -26,7 +25,12 @@ def paper_workspace(inset: float, **options) -> Workspace:
 
 
 def all_positions(workspace: Workspace) -> np.ndarray:
-    return np.concatenate(list(positions_m(workspace)))
+    return np.concatenate(list(workspace.positions_m()))
+
+
+def worst_of(*search) -> Worst:
+    (worst,) = refine(*search)
+    return worst
 
 
 def test_low_discrepancy_samples_are_inside_repeatable_and_even() -> None:
@@ -51,10 +55,10 @@ def test_grid_reaches_the_boundary() -> None:
 
 def test_samples_come_in_chunks() -> None:
     workspace = paper_workspace(10.35, samples=CHUNK + 10)
-    sizes = [len(chunk) for chunk in positions_m(workspace)]
+    sizes = [len(chunk) for chunk in workspace.positions_m()]
     assert sum(sizes) == CHUNK + 10
     assert max(sizes) <= CHUNK
-    assert sample_count(workspace) == CHUNK + 10
+    assert workspace.sample_count == CHUNK + 10
 
 
 def test_point_list_is_taken_whole() -> None:
@@ -73,8 +77,8 @@ def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
         return np.minimum(x[:, 0] + 2 * x[:, 1], 12 - x[:, 0]) - 0.1 * (x[:, 2] - 4) ** 2
 
     start = np.array([[1.0, 1, 1], [9, 9, 9]])
-    assert refine(box, inside, start).place == pytest.approx(peak, abs=1e-6)
-    worst = refine(box, kinked, start)
+    assert worst_of(box, inside, start).place == pytest.approx(peak, abs=1e-6)
+    worst = worst_of(box, kinked, start)
     assert worst.demand == pytest.approx(12.0, abs=1e-6)
     assert worst.place[2] == pytest.approx(4.0, abs=1e-3)
 
@@ -87,7 +91,7 @@ def test_refine_ends_where_the_demand_grows_for_ever_at_one_start() -> None:
     def demand(places: np.ndarray) -> np.ndarray:
         return np.where(places[:, 0] > 0.5, float(next(height)), -1.0)
 
-    worst = refine(box, demand, np.array([[0.9, 0.5, 0.5], [0.1, 0.5, 0.5]]))
+    worst = worst_of(box, demand, np.array([[0.9, 0.5, 0.5], [0.1, 0.5, 0.5]]))
     assert worst.demand == next(height) - 1
 
 
@@ -97,7 +101,7 @@ def test_refine_stops_where_nothing_is_enough() -> None:
     def demand(x):
         return np.where(x[:, 0] > 0.999, np.inf, x[:, 0])
 
-    worst = refine(box, demand, np.array([[0.5, 0.5, 0.5]]))
+    worst = worst_of(box, demand, np.array([[0.5, 0.5, 0.5]]))
     assert np.isposinf(worst.demand)
     assert worst.place[0] > 0.999
 
@@ -116,7 +120,7 @@ def test_every_peak_of_a_sweep_is_kept_and_memory_does_not_grow() -> None:
         places = rng.random((5000, 3))
         pool.add(places, demand(places))
     assert len(pool.places) == 12**3
-    assert refine(box, demand, pool.places).demand == pytest.approx(1.2, abs=1e-6)
+    assert worst_of(box, demand, pool.places).demand == pytest.approx(1.2, abs=1e-6)
     pool = Pool(box)
     pool.add(places, np.full(5000, -np.inf))
     assert pool.places.shape == (0, 3)
@@ -131,13 +135,13 @@ def test_corners_and_edges_are_tried_though_no_sample_lies_there() -> None:
         return 1.0 / (1e-3 + np.linalg.norm(x - corner, axis=1))
 
     nowhere = np.empty((0, 3))
-    assert refine(box, spike, nowhere).demand == pytest.approx(1e3, rel=1e-6)
+    assert worst_of(box, spike, nowhere).demand == pytest.approx(1e3, rel=1e-6)
 
     def gap(x):
         on_edge = (np.abs(x[:, 1]) < 1e-9) & (np.abs(x[:, 2] - 1.0) < 1e-9)
         return np.where(on_edge & (x[:, 0] > 4.0) & (x[:, 0] < 4.5), np.inf, 0.0)
 
-    assert np.isposinf(refine(box, gap, nowhere).demand)
+    assert np.isposinf(worst_of(box, gap, nowhere).demand)
 
 
 def test_several_extremes_are_found_in_one_search() -> None:
@@ -147,7 +151,7 @@ def test_several_extremes_are_found_in_one_search() -> None:
     def nearness(x):
         return -np.linalg.norm(x[:, None] - peaks, axis=2)
 
-    found = refine_each(box, nearness, np.empty((0, 3)))
+    found = refine(box, nearness, np.empty((0, 3)))
     assert np.array([one.place for one in found]) == pytest.approx(peaks, abs=1e-6)
 
 
@@ -161,7 +165,7 @@ def test_orientations_that_are_almost_the_same_are_each_searched() -> None:
         near = np.linalg.norm(x[:, :3] - peaks[which], axis=1)
         return which - 3.0 * near
 
-    found = refine(space, demand, space.places(np.full((1, 3), 0.4)))
+    found = worst_of(space, demand, space.places(np.full((1, 3), 0.4)))
     assert found.demand == pytest.approx(2.0, abs=1e-7)
 
 
@@ -172,7 +176,7 @@ def test_a_thinned_workspace_spans_all_of_it(fast_robot) -> None:
         sampling="grid",
         orientations=Orientations(frozen_array([[0, 0, 0.0], [0, 0, 0.1], [0, 0, 0.2]])),
     )
-    some = thinned(workspace, 600)
+    some = workspace.thinned(600)
     assert some.shape == (600, 6)
     assert np.unique(some[:, 5]).tolist() == [0.0, 0.1, 0.2]
     assert np.ptp(some[:, :3], axis=0) == pytest.approx([1, 1, 1], abs=0.1)
@@ -285,13 +289,13 @@ def test_the_search_slides_along_what_does_not_count() -> None:
         return np.where(gap <= 0.6, x @ [1.0, 2.0, 0.5], -np.inf)
 
     steep = [0.1, 0.2, 0.3] + 0.6 * np.array([1.0, 2.0, 0.5]) / np.linalg.norm([1.0, 2.0, 0.5])
-    assert refine(box, behind_a_sphere, nowhere).demand == pytest.approx(
+    assert worst_of(box, behind_a_sphere, nowhere).demand == pytest.approx(
         steep @ [1.0, 2.0, 0.5], rel=1e-7
     )
     # On the plane's border the demand is linear in x and concave in z: at x = 0.
     z = np.linspace(0.0, 1.0, 100_001)
     along = 1.5 * (0.7 - 0.16 * z) / 0.8 - (z - 0.4) ** 2
-    assert refine(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
+    assert worst_of(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
 
 
 def test_every_point_of_a_list_is_tried_for_every_extreme() -> None:
@@ -302,5 +306,5 @@ def test_every_point_of_a_list_is_tried_for_every_extreme() -> None:
     def demand(x):
         return np.hstack([x, -x])
 
-    found = [one.demand for one in refine_each(space, demand, points[:1])]
+    found = [one.demand for one in refine(space, demand, points[:1])]
     assert found == pytest.approx([*points.max(axis=0), *-points.min(axis=0)])

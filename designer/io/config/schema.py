@@ -70,7 +70,8 @@ from designer.io.config.orientation import (
     only_one_form,
     only_one_of,
 )
-from designer.study import HangsBelow, Objective, Reading, Sampling
+from designer.model.region import Sampling
+from designer.study import HangsBelow, Objective, Reading
 from designer.units import describe
 
 MOST_CABLES = 64

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.grades.grade import TRUST_MEANING, Grade, Size
-from designer.model.region import PointList
 from designer.report import format as fmt
 from designer.report.design.hanging import hanging_statements
 from designer.report.design.scope import (
@@ -86,7 +85,7 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
     if workspace is None or workspace.sagging is None or workspace.sampled is None:
         return
     assert analysis.study.workspace is not None
-    if isinstance(analysis.study.workspace.region, PointList):
+    if analysis.study.workspace.region.is_discrete:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
         return
     best = f"the worst of {fmt.count(workspace.census.samples)} samples"

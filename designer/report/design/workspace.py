@@ -9,7 +9,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, OtherPolicy
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -80,16 +80,11 @@ def workspace_section(
 
 def describe_region(region: Region) -> str:
     """Return a region in words."""
-    if isinstance(region, PointList):
-        return f"a list of {fmt.plural(len(region.points_m), 'point')}"
-    low, high = region.z_m
-    if isinstance(region, Rectangle):
-        ends = " to ".join(fmt.position(end) for end in region.ends_m)
-        return f"upright rectangle from {ends}, z from {fmt.metres(low)} to {fmt.metres(high)}"
-    return (
-        f"upright prism over {len(region.polygon_m)} corners, "
-        f"z from {fmt.metres(low)} to {fmt.metres(high)}"
-    )
+    words = region.words(fmt.position, fmt.plural)
+    if region.is_discrete:
+        return words
+    low, high = region.bounds_m[:, 2]
+    return f"{words}, z from {fmt.metres(low)} to {fmt.metres(high)}"
 
 
 def _statement(found: WorkspaceMap) -> Statement:
@@ -116,8 +111,9 @@ def _facts(study: Study, found: WorkspaceMap) -> tuple[Fact, ...]:
     assert workspace is not None
     region = workspace.region
     facts = [Fact("Region", describe_region(region)), *orientation_fact(study)]
-    if not isinstance(region, PointList):
-        facts.extend(_size(region))
+    if not region.is_discrete:
+        written = {"m²": fmt.square_metres, "m³": fmt.cubic_metres}
+        facts.extend(Fact(name, written[unit](value)) for name, value, unit in region.sizes)
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
         facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
@@ -132,17 +128,8 @@ def _facts(study: Study, found: WorkspaceMap) -> tuple[Fact, ...]:
     return tuple(facts)
 
 
-def _size(region: Prism | Rectangle) -> tuple[Fact, ...]:
-    if isinstance(region, Rectangle):
-        return (Fact("Area", fmt.square_metres(float(np.prod(region.size_m)))),)
-    return (
-        Fact("Base area", fmt.square_metres(region.area_m2)),
-        Fact("Volume", fmt.cubic_metres(region.volume_m3)),
-    )
-
-
 def _extremes(region: Region, found: WorkspaceMap) -> Table:
-    how = "" if isinstance(region, PointList) else ", searched between samples"
+    how = "" if region.is_discrete else ", searched between samples"
     named = (
         (f"Worst pose with sag{how}", found.sagging, "good"),
         ("Worst sample with sag", found.sampled, ""),

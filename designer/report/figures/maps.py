@@ -129,12 +129,12 @@ class WorkspaceMaps:
     @property
     def is_upright(self) -> bool:
         """Whether the section is upright, and not level."""
-        return isinstance(self.region, Rectangle) or self.study.robot.is_planar
+        return self.region.is_upright or self.study.robot.is_planar
 
     @property
     def across(self) -> FloatArray:
         """Unit vector (3,) to the right in maps of the section."""
-        if isinstance(self.region, Rectangle):
+        if self.region.is_upright:
             return np.append(self.region.along, 0.0)
         upright = self.study.robot.upright if self.is_upright else np.eye(3)
         return np.asarray(upright[0])

@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.analysis.field import body_lines_m, cable_curves_m
 from designer.arrays import FloatArray
-from designer.model.region import Prism, Rectangle
+from designer.model.region import Prism
 from designer.report.figures import canvas, grids, labels, overlay, palette, stage
 from designer.report.figures.colours import Steps, steps_for
 from designer.report.figures.maps import WorkspaceMaps
@@ -104,7 +104,7 @@ def add_workspace(
 
 def _azimuth_rad(maps: WorkspaceMaps) -> float:
     """Into the opening, but not along an axis, which would then be seen from its end."""
-    if isinstance(maps.region, Rectangle):
+    if maps.region.is_upright:
         return facing_azimuth_rad(maps.region.along)
     if not isinstance(maps.region, Prism):
         return float(np.radians(-60.0))
@@ -134,7 +134,7 @@ def _add_region(
 
 def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
     """Return the edges of the opened region, each (n, 3) [m]."""
-    if isinstance(maps.region, Rectangle):
+    if maps.region.is_upright:
         return [maps.section.position_m[-1]]
     assert isinstance(maps.region, Prism)
     wall = maps.shell["wall"].position_m

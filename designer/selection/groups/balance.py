@@ -36,8 +36,8 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.robot import Poses, Robot
-from designer.selection.groups.offer import Product
 from designer.selection.groups.verify import Members
+from designer.selection.products import Product
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.study import Workspace
 
@@ -51,31 +51,21 @@ def is_sound(robot: Robot, workspace: Workspace) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Balance:
-    """The constraints of one pose; forces are in units of the platform's weight.
+    """The constraints of one pose; forces are in units of the platform's weight."""
 
-    Parameters
-    ----------
-    structure : array (dof, 2 n_cables)
-        From the forces on the cables to the wrench that they hold, see
-        `designer.statics.geometry.structure_matrix`; moments over the reach of the attachments.
-    load : array (dof,)
-        The wrench.
-    distance, drop : array (n_cables,)
-        X and D over the chord.
-    strength : array (n_cables, n_groups, n_products)
-        From the assignment to what each cable may carry.
-    weight : array (n_cables, n_groups, n_products)
-        From the assignment to what each cable weighs at least.
-    moment : array (n_cables, n_groups, n_products)
-        From the assignment to the least moment of that weight over the chord, m / c.
-    """
-
+    # (dof, 2 n_cables): From the forces on the cables to the wrench that they hold, see
+    # `designer.statics.geometry.structure_matrix`; moments over the reach of the attachments
     structure: FloatArray
-    load: FloatArray
+    load: FloatArray  # (dof,): The wrench
+    # (n_cables,): X and D over the chord
     distance: FloatArray
     drop: FloatArray
+    # (n_cables, n_groups, n_products): From the assignment to what each cable may carry
     strength: FloatArray
+    # (n_cables, n_groups, n_products): From the assignment to what each cable weighs at least
     weight: FloatArray
+    # (n_cables, n_groups, n_products): From the assignment to the least moment of that weight over
+    # the chord, m / c
     moment: FloatArray
 
     def constraints(self, x: Any) -> list[Any]:

@@ -58,10 +58,16 @@ def block_by_weight(trials: Trials, assignment: Assignment, culprit: int) -> Blo
     for g in range(len(corner)):
         if g != culprit:
             corner = _lowered(trials, corner, g, culprit)
-    sets = [
-        frozenset(p for p, one in enumerate(trials.products) if _is_at_least(one.cable, cable))
-        for cable in corner
-    ]
+
+    def at_least(cable: Cable) -> frozenset[int]:
+        return frozenset(
+            p
+            for p, one in enumerate(trials.products)
+            if one.cable.linear_density_kg_per_m >= cable.linear_density_kg_per_m
+            and one.cable.axial_stiffness_N >= cable.axial_stiffness_N
+        )
+
+    sets = [at_least(cable) for cable in corner]
     sets[culprit] = frozenset(
         p
         for p, one in enumerate(trials.products)
@@ -106,13 +112,6 @@ def _with(corner: Sequence[Cable], g: int, cable: Cable) -> list[Cable]:
     return [*corner[:g], cable, *corner[g + 1 :]]
 
 
-def _is_at_least(cable: Cable, other: Cable) -> bool:
-    return (
-        cable.linear_density_kg_per_m >= other.linear_density_kg_per_m
-        and cable.axial_stiffness_N >= other.axial_stiffness_N
-    )
-
-
 def block_by_trial(
     trials: Trials,
     assignment: Assignment,
@@ -122,16 +121,8 @@ def block_by_trial(
 ) -> Block:
     """Return the block of a failing assignment, grown product by product while all of it fails.
 
-    Parameters
-    ----------
-    trials : Trials
-        Solves the assignments.
-    assignment, culprit
-        What failed, and the group that is grown last.
-    matters : callable
-        Whether an assignment could be the answer; those that could not need no trial.
-    most_trials : int
-        Where to stop growing.
+    ``culprit`` is the group that is grown last. An assignment that does not ``matter``, because it
+    could not be the answer, needs no trial.
     """
     sets: list[set[int]] = [{p} for p in assignment]
     last = trials.count + most_trials

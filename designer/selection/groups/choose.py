@@ -10,7 +10,6 @@ the linearisation decides how fast the answer is found, and only cuts decide wha
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import prod
@@ -22,12 +21,10 @@ from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.robot import Robot
-from designer.progress import Reporter, Silent
-from designer.selection.efficiency import Allowance
+from designer.progress import SILENT, Reporter
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.master import Assignment, Block, Guide, Master
-from designer.selection.groups.offer import Product, priced, undominated
 from designer.selection.groups.result import (
     Assigned,
     GroupChoice,
@@ -38,7 +35,7 @@ from designer.selection.groups.result import (
 )
 from designer.selection.groups.trials import Refutation, Trials
 from designer.selection.groups.verify import GroupVerification, verify_groups
-from designer.selection.select import is_allowed
+from designer.selection.products import Product, is_allowed, priced, products_of, undominated
 from designer.study import CableGroup, Selection, Workspace
 
 if TYPE_CHECKING:
@@ -52,9 +49,6 @@ _MOST_TRIALS_OF_A_BLOCK = 300
 _MOST_TRIALS = 100_000
 _EQUAL = 1e-9
 
-Progress = Callable[[], None]
-"""Called after each proposal."""
-
 
 def choose_groups(
     robot: Robot,
@@ -65,19 +59,17 @@ def choose_groups(
     most_distinct: int | None = None,
     objective: GroupObjective = "mass",
     single: Product | None = None,
-    progress: Progress = lambda: None,
+    progress: Callable[[], None] = lambda: None,
     most_proposals: int = MOST_PROPOSALS,
 ) -> GroupChoice:
     """Choose a product for each group.
 
     Parameters
     ----------
-    robot, workspace
-        The study, the robot as built.
+    robot, workspace, products
+        The study, the robot as built, and what is sold.
     groups : sequence of CableGroup
         Every cable is in exactly one of them.
-    products : sequence of Product
-        What is sold.
     most_distinct : int, optional
         How many different products there may be; one for each group if left out.
     objective : str
@@ -124,7 +116,7 @@ def choose_groups_of(
     grades: Sequence[Grade],
     built: AsBuilt,
     single: Candidate | None,
-    reporter: Reporter | None = None,
+    reporter: Reporter = SILENT,
 ) -> GroupChoice:
     """Choose a product for each group of a study, among the grades that it allows.
 
@@ -138,19 +130,13 @@ def choose_groups_of(
         The robot as built, and by how much its cables differ from their data sheet.
     single : Candidate or None
         The best product for all cables.
-    reporter : Reporter, optional
+    reporter : Reporter
         Shows progress.
     """
-    allowance, named = Allowance.of(selection), selection.grades
-    products = [
-        Product(grade, size, built.cable(allowance.cable(grade, size)))
-        for grade in grades
-        if is_allowed(grade, named)
-        for size in grade.sizes
-        if not math.isnan(allowance.efficiency(grade, size.diameter_m))
-    ]
+    allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
+    products = products_of(selection, allowed, built)
     is_single = (one for one in products if single and one.size is single.size)
-    with (reporter or Silent()).task("groups", MOST_PROPOSALS) as advance:
+    with reporter.task("groups", MOST_PROPOSALS) as advance:
         return choose_groups(
             built.robot,
             workspace,
@@ -174,13 +160,18 @@ class _Search:
         products: tuple[Product, ...],
         most_distinct: int,
         by_price: bool,
-        progress: Progress,
+        progress: Callable[[], None],
     ) -> None:
         self.robot, self.workspace, self.products = robot, workspace, products
         self.members = [np.array(group.cables, dtype=np.int64) - 1 for group in groups]
         self.trials = Trials(robot, workspace, products, self.members)
         self.by_weight = is_monotone(robot, workspace)
-        self.per_metre = np.array([_per_metre(one, by_price) for one in products])
+        self.per_metre = np.array(  # what a metre adds to the objective
+            [
+                (one.size.price_per_m or 0.0) if by_price else one.cable.linear_density_kg_per_m
+                for one in products
+            ]
+        )
         # Blocks by weight exclude as much, and a programme without balances is solved faster.
         self.has_balances = is_sound(robot, workspace) and not self.by_weight
         self.lengths_are_bounds = workspace.hangs_below == "include"
@@ -199,10 +190,7 @@ class _Search:
         strength = [one.cable.allowable_tension_N for one in self.products]
         at = int(np.argmax(strength)) if single is None else self.products.index(single)
         assignment = (at,) * len(self.members)
-        found = verify_groups(
-            self.robot, self.workspace, self.trials.cables(assignment), self.members
-        )
-        self._learn(found.worst_place)
+        found = self._verified(assignment)
         if not self.lengths_are_bounds and found.longest_m.all():
             # Which samples count depends on the cables; those of the first answer are a fair guess.
             cost = self._least_cost(found.longest_m)
@@ -278,9 +266,7 @@ class _Search:
             return self._failed(assignment, refuted, guided)
         if self._is_no_better(assignment):
             return self._noted(assignment, guided, "not_better"), alone
-        cables = self.trials.cables(assignment)
-        found = verify_groups(self.robot, self.workspace, cables, self.members)
-        self._learn(found.worst_place)
+        found = self._verified(assignment)
         group = int(np.argmax(found.utilisation))
         worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
         if not found.holds:
@@ -333,15 +319,17 @@ class _Search:
         limit = np.inf if self.best is None else self.best.total * (1.0 - _EQUAL)
         return self.master.cost_of(assignment) < limit
 
-    def _learn(self, some: FloatArray) -> None:
-        """Remember the worst places of an assignment."""
+    def _verified(self, assignment: Assignment) -> GroupVerification:
+        """Solve the whole workspace, and remember the worst places of an assignment."""
+        cables = self.trials.cables(assignment)
+        found = verify_groups(self.robot, self.workspace, cables, self.members)
+        some = found.worst_place
         self.trials.add_witnesses(some)
-        if not self.has_balances:
-            return
-        for place in some[np.isfinite(some).all(axis=1)]:
+        for place in some[np.isfinite(some).all(axis=1)] if self.has_balances else ():
             balance = balance_at(self.robot, place, self.products, self.members)
             if balance is not None and len(self.master.balances) < _MOST_BALANCES:
                 self.master.balances.append(balance)
+        return found
 
     def _guide(self, assignment: Assignment) -> None:
         """Add the linearised tension of each cable, where it is used most, as a guide."""
@@ -379,8 +367,3 @@ class _Search:
 
 def _alone(assignment: Assignment) -> Block:
     return tuple(frozenset({p}) for p in assignment)
-
-
-def _per_metre(product: Product, by_price: bool) -> float:
-    """Return what a metre adds to the objective."""
-    return (product.size.price_per_m or 0.0) if by_price else product.cable.linear_density_kg_per_m

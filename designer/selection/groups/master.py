@@ -35,20 +35,12 @@ Guide = tuple[FloatArray, float]
 
 @dataclass(slots=True, eq=False)
 class Master:
-    """The programme and its cuts.
+    """The programme and its cuts."""
 
-    Parameters
-    ----------
-    cost : array (n_groups, n_products)
-        What each product would add to the objective on each group.
-    most_distinct : int
-        How many different products there may be.
-    balances : list of Balance
-        Of the poses that have refuted assignments.
-    """
-
+    # (n_groups, n_products): What each product would add to the objective on each group
     cost: FloatArray
-    most_distinct: int
+    most_distinct: int  # How many different products there may be
+    # Of the poses that have refuted assignments
     balances: list[Balance] = field(default_factory=list)
     _cuts: list[IntArray] = field(default_factory=list)
 
@@ -86,10 +78,11 @@ class Master:
         n_groups, n_products = self.cost.shape
         x = cp.Variable(n_groups * n_products, boolean=True)
         scale = float(self.cost.max())
-        constraints = [*self._choice(x), *self._forbidden(x)]
-        constraints += [one for balance in self.balances for one in balance.constraints(x)]
-        constraints += [
-            (row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides
+        constraints = [
+            *self._choice(x),
+            *self._forbidden(x),
+            *(one for balance in self.balances for one in balance.constraints(x)),
+            *((row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides),
         ]
         problem = cp.Problem(cp.Minimize((self.cost.ravel() / scale) @ x), constraints)
         exact = {"mip_rel_gap": 0.0, "mip_abs_gap": 0.0}

@@ -15,13 +15,12 @@ from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.selection.groups.master import Assignment
-from designer.selection.groups.offer import Product
 from designer.selection.groups.verify import Members, utilisation_of
+from designer.selection.products import Product
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.samples import places
 
 _MOST_WITNESSES = 120
 _NUDGE = 1e-3
@@ -29,16 +28,11 @@ _NUDGE = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Load:
-    """What cables meet at the witnesses.
+    """What cables meet at the witnesses, each (n_witnesses, n_cables).
 
-    Parameters
-    ----------
-    utilisation : array (n_witnesses, n_cables)
-        Largest over allowable tension; inf where not solved, minus inf where left out.
-    tension_N, length_m : array (n_witnesses, n_cables)
-        Largest tension [N] and unstrained length [m]; NaN where not solved.
-    hangs : array (n_witnesses, n_cables) of bool
-        Whether the cable hangs below the platform.
+    Largest over allowable tension, inf where not solved and minus inf where left out; largest
+    tension [N] and unstrained length [m], NaN where not solved; whether the cable hangs below the
+    platform.
     """
 
     utilisation: FloatArray
@@ -49,34 +43,17 @@ class Load:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refutation:
-    """A pose that an assignment cannot hold.
+    """A pose that an assignment cannot hold."""
 
-    Parameters
-    ----------
-    group : int
-        The group that is overloaded most there.
-    utilisation : float
-        By how much; inf if the pose cannot be held at all.
-    place : array (n_coordinates,)
-        Where, see `designer.model.space` [m, rad].
-    """
-
-    group: int
-    utilisation: float
-    place: FloatArray
+    group: int  # The group that is overloaded most there
+    utilisation: float  # By how much; inf if the pose cannot be held at all
+    place: FloatArray  # (n_coordinates,): Where, see `designer.model.space` [m, rad]
 
 
 class Trials:
     """Solves assignments of products to groups at the witnesses.
 
-    Parameters
-    ----------
-    robot, workspace
-        The study.
-    products : sequence of Product
-        What may be assigned.
-    members : sequence of int arrays
-        The cables of each group.
+    ``products`` are what may be assigned, ``members`` the cables of each group.
     """
 
     def __init__(
@@ -85,7 +62,16 @@ class Trials:
         self.robot, self.workspace = robot, workspace
         self.products, self.members = products, members
         self.count = 0
-        self.reach_m, self._farthest = _reach(robot, workspace)
+        self.reach_m = np.zeros(robot.n_cables)
+        """Longest chord of each cable over the samples (n_cables,) [m]."""
+        self._farthest = np.zeros((robot.n_cables, workspace.space.n_coordinates))
+        for some in workspace.places():
+            chord = cable_geometry(robot, Poses.at(some)).chord_m
+            best = chord.argmax(axis=0)
+            far = chord[best, np.arange(robot.n_cables)]
+            is_farther = (far > self.reach_m)[:, None]
+            self._farthest = np.where(is_farther, some[best], self._farthest)
+            self.reach_m = np.maximum(self.reach_m, far)
         self._found = np.empty((0, workspace.space.n_coordinates))
         self._refuted: set[Assignment] = set()
 
@@ -149,32 +135,14 @@ class Trials:
     def slopes(self, assignment: Assignment) -> tuple[Load, FloatArray]:
         """Return the load, and the slope of each tension in each group's weight.
 
-        Returns
-        -------
-        Load
-        array (n_groups, n_witnesses, n_cables)
-            By forward differences [N per N/m].
+        The latter (n_groups, n_witnesses, n_cables) by forward differences [N per N/m].
         """
         each = [self.products[p].cable for p in assignment]
         base = self.load(self.on_groups(each))
         slopes = []
         for g, cable in enumerate(each):
-            heavier = replace(
-                cable, linear_density_kg_per_m=(1.0 + _NUDGE) * cable.linear_density_kg_per_m
-            )
+            density = (1.0 + _NUDGE) * cable.linear_density_kg_per_m
+            heavier = replace(cable, linear_density_kg_per_m=density)
             moved = self.load(self.on_groups([*each[:g], heavier, *each[g + 1 :]]))
             slopes.append((moved.tension_N - base.tension_N) / (_NUDGE * cable.weight_N_per_m))
         return base, np.array(slopes)
-
-
-def _reach(robot: Robot, workspace: Workspace) -> tuple[FloatArray, FloatArray]:
-    """Return the longest chord of each cable over the samples, and the samples that have it."""
-    longest = np.zeros(robot.n_cables)
-    at = np.zeros((robot.n_cables, workspace.space.n_coordinates))
-    for some in places(workspace):
-        chord = cable_geometry(robot, Poses.at(some)).chord_m
-        best = chord.argmax(axis=0)
-        far = chord[best, np.arange(robot.n_cables)]
-        at = np.where((far > longest)[:, None], some[best], at)
-        longest = np.maximum(longest, far)
-    return longest, at

@@ -15,7 +15,6 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
 from designer.workspace.refine import Demand, Pool, refine_over_branches
-from designer.workspace.samples import places
 
 Members = Sequence[IntArray]
 """Of each group the indices of its cables."""
@@ -23,24 +22,15 @@ Members = Sequence[IntArray]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroupVerification:
-    """What given cables meet in the workspace.
+    """What given cables meet in the workspace."""
 
-    Parameters
-    ----------
-    worst_place : array (n_groups, n_coordinates)
-        Places where each group is used most [m, rad].
-    utilisation : array (n_groups,)
-        Largest over allowable tension there; inf if a pose cannot be held at all.
-    longest_m : array (n_cables,)
-        Longest unstrained length that each cable needs [m].
-    is_refined : bool
-        Whether the worst poses were searched for between the samples as well. Where a sample
-        already fails, they were not.
-    """
-
+    # (n_groups, n_coordinates): Places where each group is used most [m, rad]
     worst_place: FloatArray
+    # (n_groups,): Largest over allowable tension there; inf if a pose cannot be held at all
     utilisation: FloatArray
-    longest_m: FloatArray
+    longest_m: FloatArray  # (n_cables,): Longest unstrained length that each cable needs [m]
+    # Whether the worst poses were searched for between the samples as well. Where a sample already
+    # fails, they were not.
     is_refined: bool
 
     @property
@@ -70,28 +60,25 @@ def verify_groups(
     used = np.full(len(members), -np.inf)
     at = np.full((len(members), space.n_coordinates), np.nan)
     longest = np.zeros(robot.n_cables)
-    for some in places(workspace):
-        asked = demand(some)
+    for some in workspace.places():
+        asked, lengths = np.split(demand(some), [len(members)], axis=1)
         for g, pool in enumerate(pools):
             pool.add(some, asked[:, g])
-        best = asked[:, : len(members)].argmax(axis=0)
+        best = asked.argmax(axis=0)
         highest = asked[best, np.arange(len(members))]
         at = np.where((highest > used)[:, None], some[best], at)
         used = np.maximum(used, highest)
-        longest = np.maximum(longest, asked[:, len(members) :].max(axis=0))
+        longest = np.maximum(longest, lengths.max(axis=0))
     if np.isneginf(used).any():  # every sample is left out: nothing is served
-        return GroupVerification(at, np.full(len(members), np.inf), longest, False)
+        used = np.full(len(members), np.inf)
     if used.max() > 1.0:
         return GroupVerification(at, used, longest, False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
     worst = refine_over_branches(space, demand_with, starts)
-    of_groups, lengths = worst[: len(members)], worst[len(members) :]
-    return GroupVerification(
-        np.array([one.place for one in of_groups]),
-        np.array([one.demand for one in of_groups]),
-        np.array([one.demand for one in lengths]),
-        True,
-    )
+    asked = np.array([one.demand for one in worst])
+    at = np.array([one.place for one in worst[: len(members)]])
+    groups, lengths = np.split(asked, [len(members)])
+    return GroupVerification(at, groups, lengths, True)
 
 
 def _demand(

@@ -1,0 +1,86 @@
+"""Convex polygons in plan, corners (n_corners, 2) counter-clockwise [m]."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from designer.arrays import BoolArray, FloatArray, frozen_array
+
+
+def edges_m(polygon_m: FloatArray) -> FloatArray:
+    """Return the way from each corner to the next (n_corners, 2) [m]."""
+    return np.asarray(np.roll(polygon_m, -1, axis=0) - polygon_m)
+
+
+def area_m2(polygon_m: FloatArray) -> float:
+    """Return the area by the shoelace formula, negative where corners are clockwise [m²]."""
+    x, y = polygon_m.T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def inset_hull_m(points_m: FloatArray, inset_m: float) -> FloatArray:
+    """Return the hull of points (n, 2), its sides moved inward (n_corners, 2) [m].
+
+    Raises
+    ------
+    ValueError
+        If the points lie on one line, or nothing is left inside the inset.
+    """
+    from scipy.optimize import linprog  # keeps `designer --help` light
+
+    try:
+        hull = ConvexHull(points_m)
+    except QhullError:
+        raise ValueError("the points lie on one line, so they span no area") from None
+    sides = hull.equations + np.array([0.0, 0.0, inset_m])
+    # Centre and radius of the largest circle inside `normal · x + offset ≤ 0`.
+    x, y, radius = linprog(
+        [0.0, 0.0, -1.0],
+        A_ub=np.hstack([sides[:, :2], np.ones((len(sides), 1))]),
+        b_ub=-sides[:, 2],
+        bounds=[(None, None)] * 3,
+    ).x
+    if radius <= 0.0:
+        raise ValueError(f"nothing is left inside an inset of {inset_m:g} m")
+    corners = HalfspaceIntersection(sides, np.array([x, y])).intersections
+    return frozen_array(corners[ConvexHull(corners).vertices])
+
+
+def contains(polygon_m: FloatArray, points_m: FloatArray) -> BoolArray:
+    """Tell which of the points (..., 2) lie inside or on the boundary."""
+    edges = edges_m(polygon_m)
+    to_point = points_m[..., None, :] - polygon_m
+    left = edges[:, 0] * to_point[..., 1] - edges[:, 1] * to_point[..., 0]
+    scale = np.linalg.norm(edges, axis=1) * np.ptp(polygon_m)
+    return np.asarray(np.all(left >= -1e-12 * scale, axis=-1))
+
+
+def nearest_on_edges_m(polygon_m: FloatArray, points_m: FloatArray) -> FloatArray:
+    """Return the point of the boundary nearest to each of the points (n, 2) [m]."""
+    edges = edges_m(polygon_m)
+    to_point = points_m[:, None] - polygon_m
+    along = np.einsum("pek,ek->pe", to_point, edges) / np.sum(edges**2, axis=1)
+    feet = polygon_m + np.clip(along, 0.0, 1.0)[..., None] * edges
+    best = np.argmin(np.linalg.norm(feet - points_m[:, None], axis=2), axis=1)
+    return np.asarray(feet[np.arange(len(points_m)), best])
+
+
+def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
+    """Return points of a flat convex polygon (n_corners, 2 or 3), evenly spread over its area [m].
+
+    Parameters
+    ----------
+    share : array (n, 3)
+        Between 0 and 1: which triangle of the fan about the first corner, and where in it.
+    """
+    first, second, third = corners_m[0], corners_m[1:-1], corners_m[2:]
+    u, v = second - first, third - first
+    gram = np.einsum("ik,ik->i", u, u) * np.einsum("ik,ik->i", v, v)
+    area = np.sqrt(np.maximum(gram - np.einsum("ik,ik->i", u, v) ** 2, 0.0))
+    total = np.cumsum(area)
+    which = np.minimum(np.searchsorted(total, share[:, 0] * total[-1]), len(area) - 1)
+    a, b = share[:, 1], share[:, 2]
+    beyond = a + b > 1.0
+    a, b = np.where(beyond, 1.0 - a, a), np.where(beyond, 1.0 - b, b)
+    return np.asarray(first + a[:, None] * u[which] + b[:, None] * v[which])
