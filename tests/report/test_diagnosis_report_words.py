@@ -9,8 +9,7 @@ from designer.diagnosis.result import Estimate
 from designer.diagnosis.whereabouts import in_runs, strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter
 from designer.report.diagnosis import words
-from designer.report.figures.diagnosis_carriers import running_median
-from designer.report.figures.diagnosis_style import MOST_POINTS, thinned, window
+from designer.report.figures.diagnosis import MOST_POINTS, running_median, thinned, window
 
 
 @pytest.mark.parametrize(

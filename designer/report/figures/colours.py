@@ -13,6 +13,7 @@ from designer.report.figures import palette
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import BoundaryNorm, Colormap
+    from matplotlib.figure import Figure
 
 _MUCH = 6.0
 
@@ -56,15 +57,8 @@ class Steps:
 
     def fill(self, axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray) -> None:
         """Colour a grid (rows, columns) of values."""
-        surface = axes.contourf(
-            x,
-            y,
-            values,
-            levels=self.levels,
-            cmap=self.colormap,
-            norm=self.norm,
-            extend=self.extend,
-        )
+        scale: dict[str, Any] = {"cmap": self.colormap, "norm": self.norm, "extend": self.extend}
+        surface = axes.contourf(x, y, values, levels=self.levels, **scale)
         surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
         surface.set_linewidth(0.3)
 
@@ -76,22 +70,19 @@ class Steps:
         number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
         return np.asarray(self.levels[number % 2 == 0])
 
-    @property
-    def mappable(self) -> Any:
-        """What a colour bar is made from."""
+    def bar(self, figure: Figure, label: str, **place: Any) -> None:
+        """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""
         from matplotlib.cm import ScalarMappable
 
-        return ScalarMappable(self.norm, self.colormap)
+        shown = ScalarMappable(self.norm, self.colormap)
+        layout = {"ticks": self.ticks, "extendfrac": 0.04, "label": label, **place}
+        bar = figure.colorbar(shown, **layout)
+        bar.outline.set_linewidth(0.4)
+        bar.ax.tick_params(length=2)
 
 
 def steps_over_decades(values: FloatArray) -> Steps | None:
-    """Return steps 1, 2, 5, 10, … where the bulk of the values spans much, else `steps_for`.
-
-    Parameters
-    ----------
-    values : array
-        Any shape; NaN where there is no value.
-    """
+    """Return steps 1, 2, 5, 10, … where the bulk of the values spans much, else `steps_for`."""
     finite = values[np.isfinite(values)]
     if len(finite) == 0 or finite.min() <= 0.0:
         return steps_for(values)

@@ -10,22 +10,51 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
-from designer.report.figures.names import names_of
+from designer.report.figures.canvas import Style
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.text import Annotation
 
-_DIRECTIONS = ((0, 1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (1, -1), (-1, -1))
-_HORIZONTAL = {1: "left", 0: "center", -1: "right"}
-_VERTICAL = {1: "bottom", 0: "center", -1: "top"}
-_OVER_TEXT = 1000.0
-_OVER_LINE = 5.0
+_SIDES = (
+    ((0, 1), "center", "bottom"),
+    ((1, 1), "left", "bottom"),
+    ((-1, 1), "right", "bottom"),
+    ((1, 0), "left", "center"),
+    ((-1, 0), "right", "center"),
+    ((0, -1), "center", "top"),
+    ((1, -1), "left", "top"),
+    ((-1, -1), "right", "top"),
+)
+"""Where a text may stand, right and up, and how it is aligned then."""
+_OVER_TEXT, _OVER_LINE = 1000.0, 5.0
 _LEADER_POINTS = 15.0
 _ROOM_PX = 3.0
 _NAMES_APART_PX = 45.0
-_PAPER: dict[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.2}
+
+
+def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
+    """Return a name and a place for each exit point, one for those closer together than a name.
+
+    Parameters
+    ----------
+    points_m : array (n_cables, 2 or 3)
+        Exit points [m].
+    apart_m : float
+        Names this close would overlap [m].
+    """
+    groups: list[list[int]] = []
+    for index, point in enumerate(points_m):
+        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
+        group = next(near, None)
+        if group is None:
+            groups.append([index])
+        else:
+            group.append(index)
+    return [
+        (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
+        for group in groups
+    ]
 
 
 def write_clear(
@@ -56,24 +85,30 @@ def write_clear(
     **style
         Of the text.
     """
-    looks = {"bbox": _PAPER, **style}
-    label = axes.annotate(
-        text, (0, 0), (0, 0), textcoords="offset points", annotation_clip=False, **looks
+    looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
+    label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
+    taken = _boxes(
+        *(bar.get_tightbbox() for bar in axes.figure.axes[1:]),
+        *(other.get_window_extent() for other in axes.texts if other is not label),
     )
-    taken = _taken(axes, label)
+
+    def put(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:
+        (right, up), ha, va = side
+        along = distance / np.hypot(right, up)
+        label.xy = (float(anchor_px[0]), float(anchor_px[1]))
+        label.set_position((along * right, along * up))
+        label.set(ha=ha, va=va)
+        return np.asarray(_boxes(label.get_window_extent())[0])
+
     anchors_px = view.pixels(np.atleast_2d(anchors_m))
-    places = [
-        (anchor, direction, distance)
-        for distance, anchor, direction in product(distances, anchors_px, _DIRECTIONS)
-    ]
-    costs = []
-    for order, place in enumerate(places):
-        _put(label, *place)
-        costs.append(_cost(_edges(label.get_window_extent()), taken, obstacles_px) + 0.02 * order)
-    anchor, direction, distance = places[int(np.argmin(costs))]
-    _put(label, anchor, direction, distance)
+    places = [(a, side, d) for d, a, side in product(distances, anchors_px, _SIDES)]
+    costs = [_cost(put(*place), taken, obstacles_px) for place in places]
+    anchor, side, distance = places[int(np.argmin(costs + 0.02 * np.arange(len(costs))))]
+    left, top, right, bottom = put(anchor, side, distance)
     if distance > _LEADER_POINTS:
-        _lead(axes, label, anchor)
+        end = np.clip(anchor, [left, top], [right, bottom])
+        line: Style = {"color": palette.INK, "linewidth": 0.7, "zorder": 1.9}
+        axes.plot(*np.stack([anchor, end]).T, path_effects=canvas.halo(), **line)
 
 
 def write_exits(
@@ -81,8 +116,7 @@ def write_exits(
 ) -> None:
     """Name the exit points (n_cables, 3) [m] that lie in the picture, neighbours together."""
     for name, place in names_of(exit_points_m, _NAMES_APART_PX / view.pixels_per_m):
-        x, y = view.pixels(place)
-        if 0.0 <= x <= WIDTH_PX and 0.0 <= y <= HEIGHT_PX:
+        if view.shows(place):
             style = {"bbox": None, "path_effects": canvas.halo()}
             write_clear(axes, view, place, name, obstacles_px, (5.0, 9.0), **style)
 
@@ -99,27 +133,10 @@ def obstacles(view: View, lines_m: Iterable[FloatArray]) -> FloatArray:
     return np.concatenate(parts)
 
 
-def _put(
-    label: Annotation, anchor_px: FloatArray, direction: tuple[int, int], distance: float
-) -> None:
-    """Let a text stand off from an anchor in one of eight directions."""
-    right, up = direction
-    along = distance / np.hypot(right, up)
-    label.xy = (float(anchor_px[0]), float(anchor_px[1]))
-    label.set_position((along * right, along * up))
-    label.set(ha=_HORIZONTAL[right], va=_VERTICAL[up])
-
-
-def _taken(axes: Axes, label: Annotation) -> FloatArray:
-    """Boxes (n, 4) of the other texts in the picture and of the colour bar beside it [px]."""
-    bars = [other.get_tightbbox() for other in axes.figure.axes[1:]]
-    texts = [other.get_window_extent() for other in axes.texts if other is not label]
-    return np.array([_edges(box) for box in (*bars, *texts)]).reshape(-1, 4)
-
-
-def _edges(box: Any) -> FloatArray:
-    """Left, upper, right and lower edge of a box that Matplotlib counts from below [px]."""
-    return np.array([box.x0, HEIGHT_PX - box.y1, box.x1, HEIGHT_PX - box.y0])
+def _boxes(*boxes: Any) -> FloatArray:
+    """Left, upper, right and lower edges (n, 4) of boxes that Matplotlib counts from below [px]."""
+    edges = [[box.x0, HEIGHT_PX - box.y1, box.x1, HEIGHT_PX - box.y0] for box in boxes]
+    return np.array(edges).reshape(-1, 4)
 
 
 def _cost(box: FloatArray, taken: FloatArray, obstacles_px: FloatArray) -> float:
@@ -131,21 +148,5 @@ def _cost(box: FloatArray, taken: FloatArray, obstacles_px: FloatArray) -> float
     high = np.minimum(bottom, taken[:, 3]) - np.maximum(top, taken[:, 1])
     x, y = obstacles_px.T
     covered = (x > left) & (x < right) & (y > top) & (y < bottom)
-    return float(
-        _OVER_TEXT * np.count_nonzero((wide > 0.0) & (high > 0.0))
-        + _OVER_LINE * np.count_nonzero(covered)
-    )
-
-
-def _lead(axes: Axes, label: Annotation, anchor_px: FloatArray) -> None:
-    """Draw a thin line from an anchor to the nearest point of its text."""
-    left, top, right, bottom = _edges(label.get_window_extent())
-    x, y = np.clip(anchor_px, [left, top], [right, bottom])
-    axes.plot(
-        [anchor_px[0], x],
-        [anchor_px[1], y],
-        color=palette.INK,
-        linewidth=0.7,
-        path_effects=canvas.halo(),
-        zorder=1.9,
-    )
+    texts = np.count_nonzero((wide > 0.0) & (high > 0.0))
+    return float(_OVER_TEXT * texts + _OVER_LINE * np.count_nonzero(covered))

@@ -1,34 +1,29 @@
-"""What a map shows: its name, its unit, and how it is taken from a field."""
+"""What a map is coloured by: its name, its unit, and how it is taken from a field."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.field import Field
+from designer.analysis.maps import Focus
 from designer.arrays import FloatArray
-from designer.report.figures import canvas
-
-if TYPE_CHECKING:
-    from designer.analysis.field import Field
-
+from designer.report import format as fmt
 
 _KILONEWTON = 1e3
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class MapQuantity:
     """One of the quantities that can be mapped.
 
     Parameters
     ----------
     key : str
         Short name, used in the ids of a drawing.
-    title : str
-        Name on the axis.
-    unit : str
-        Unit on the axis; empty for a pure number.
+    title, unit : str
+        Name and unit on the axis; no unit for a pure number.
     scale : float
         From SI to that unit.
     """
@@ -56,20 +51,22 @@ class Quantity:
         }[self.key]
         return np.asarray(values * self.scale)
 
-    def text(self, value: float) -> str:
-        """Return a value with its unit, to a few digits."""
+    def text_of(self, focus: Focus) -> str:
+        """Return what the pose is that figures turn to, and its value where it has one."""
+        value = float(self.of(focus.field))
+        if not np.isfinite(value):
+            return focus.label
         digits = 4 if self.unit in ("N", "kN") else 3
-        return f"{canvas.significant(value, digits)} {self.unit}".strip()
+        return f"{focus.label}, {fmt.number(value, digits)} {self.unit}".strip()
 
 
-DIAMETER = Quantity("diameter", "needed diameter", "mm", 1e3)
-TENSION = Quantity("tension", "largest tension", "kN", 1e-3)
-RATIO = Quantity("ratio", "tension with sag over tension without", "", 1.0)
+DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)
+TENSION = MapQuantity("tension", "largest tension", "kN", 1e-3)
+RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
 
 
-def tension_of(field: Field) -> Quantity:
+def tension_of(field: Field) -> MapQuantity:
     """Return the largest tension in the unit that suits the values of a field, kN or N."""
-    finite = field.tension_N[np.isfinite(field.tension_N)]
-    if len(finite) > 0 and float(finite.max()) < _KILONEWTON:
+    if np.nanmax(field.tension_N, initial=0.0) < _KILONEWTON and np.isfinite(field.tension_N).any():
         return replace(TENSION, unit="N", scale=1.0)
     return TENSION
