@@ -27,8 +27,7 @@ from designer.report.figures.charts_shares import (
     usable_chart,
     verdict_chart,
 )
-from designer.report.figures.colours import steps_for, steps_over_decades
-from designer.report.figures.map_quantity import TENSION
+from designer.report.figures.colours import TENSION, steps_for, steps_over_decades
 from designer.report.figures.sections import slice_chart, slice_panels
 from designer.selection.result import SelectionResult
 from designer.selection.select import select

@@ -19,7 +19,7 @@ from designer.model.space import Orientations
 from designer.report.design.drawings import draw
 from designer.report.design.scope import describe_orientations
 from designer.report.design.workspace import describe_region
-from designer.report.figures.workspace_scene import edges_m
+from designer.report.figures.scenes import edges_m
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.study import Study

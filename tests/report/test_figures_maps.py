@@ -19,8 +19,8 @@ from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.report.design import captions
-from designer.report.figures.labels import names_of
-from designer.report.figures.map_quantity import DIAMETER, RATIO, TENSION, tension_of
+from designer.report.figures.canvas import names_of
+from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses

@@ -24,22 +24,22 @@ from designer.analysis.maps import WorkspaceMaps
 from designer.errors import MissingLibraryError
 from designer.model.region import Prism
 from designer.report.figures import opengl, overlay, palette, stage
+from designer.report.figures.colours import DIAMETER, RATIO, TENSION
 from designer.report.figures.interactive import workspace_scene_html
-from designer.report.figures.map_quantity import DIAMETER, RATIO, TENSION
-from designer.report.figures.robot_scene import robot_scene
+from designer.report.figures.scenes import (
+    bounds_m,
+    edges_m,
+    robot_scene,
+    scale_of,
+    view_of,
+    workspace_scene,
+)
 from designer.report.figures.view import (
     HEIGHT_PX,
     WIDTH_PX,
     View,
     clear_azimuth_rad,
     fitting,
-)
-from designer.report.figures.workspace_scene import (
-    bounds_m,
-    edges_m,
-    scale_of,
-    view_of,
-    workspace_scene,
 )
 
 pytestmark = pytest.mark.slow

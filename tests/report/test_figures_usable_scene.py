@@ -13,7 +13,7 @@ from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.robot import Poses
 from designer.report.design import captions
-from designer.report.figures.usable_scene import colours, usable_scene
+from designer.report.figures.scenes import colours, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
 from designer.selection.usable import Usable, usable
 from designer.sizing.newton import size_poses

@@ -10,7 +10,7 @@ from designer.analysis.analyse import Analysis, PoseAnalysis
 from designer.analysis.field import Field
 from designer.analysis.maps import Served, WorkspaceMaps
 from designer.report import format as fmt
-from designer.report.figures.map_quantity import DIAMETER, RATIO
+from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
 from designer.selection.usable import Usable

@@ -53,14 +53,14 @@ def draw(analysis: Analysis) -> Pictures:
 def _robot(analysis: Analysis) -> Picture | None:
     if analysis.pose is None:
         return None
-    from designer.report.figures.robot_scene import robot_scene
+    from designer.report.figures.scenes import robot_scene
 
     caption = captions.robot(analysis.pose)
     return _scene(caption, "The robot with its cables, in space", robot_scene(analysis.pose))
 
 
 def _cover(maps: WorkspaceMaps) -> Picture:
-    from designer.report.figures.workspace_scene import cover_scene
+    from designer.report.figures.scenes import cover_scene
 
     alternative = "The region in space, coloured by diameter"
     return _scene(captions.cover(maps), alternative, cover_scene(maps))
@@ -99,10 +99,10 @@ def _verdicts(analysis: Analysis) -> Picture | None:
 def _workspace(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_shares import served_chart
+    from designer.report.figures.colours import DIAMETER, RATIO, tension_of
     from designer.report.figures.interactive import workspace_scene_html
-    from designer.report.figures.map_quantity import DIAMETER, RATIO, tension_of
+    from designer.report.figures.scenes import workspace_scene
     from designer.report.figures.sections import slice_chart, slice_panels
-    from designer.report.figures.workspace_scene import workspace_scene
 
     if draws_scenes:
         yield _scene(
@@ -172,7 +172,7 @@ def _usable_scene(analysis: Analysis, maps: WorkspaceMaps | None) -> Picture | N
     selection = analysis.selection
     if selection is None or selection.usable is None or maps is None:
         return None
-    from designer.report.figures.usable_scene import usable_scene
+    from designer.report.figures.scenes import usable_scene
 
     png = usable_scene(maps, selection.usable)
     if png is None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 from xml.sax.saxutils import escape, quoteattr
@@ -16,10 +16,10 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import ArrayLike
 
+from designer.arrays import FloatArray
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
@@ -112,10 +112,41 @@ def grid_lines(axes: Axes, axis: Literal["x", "y", "both"] = "y") -> None:
     axes.set_axisbelow(True)
 
 
-def legend(figure: Figure, entries: list[Artist], loc: str, **layout: Any) -> None:
-    """Explain what is drawn beside the axes; nothing where there are no entries."""
+def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layout: Any) -> None:
+    """Say what each look means, an area where it has a ``facecolor``, else a line or a mark."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    entries = [
+        Patch(label=label, **look) if "facecolor" in look else Line2D([], [], label=label, **look)
+        for label, look in looks
+    ]
     if entries:
         figure.legend(handles=entries, loc=loc, **layout)
+
+
+def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
+    """Return a name and a place for each exit point, one for those closer together than a name.
+
+    Parameters
+    ----------
+    points_m : array (n_cables, 2 or 3)
+        Exit points [m].
+    apart_m : float
+        Names this close would overlap [m].
+    """
+    groups: list[list[int]] = []
+    for index, point in enumerate(points_m):
+        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
+        group = next(near, None)
+        if group is None:
+            groups.append([index])
+        else:
+            group.append(index)
+    return [
+        (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
+        for group in groups
+    ]
 
 
 def svg(figure: Figure, key: str, title: str) -> str:

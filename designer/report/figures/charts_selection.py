@@ -21,6 +21,7 @@ from designer.study import Objective
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MOST = 25
 _ROW_MM = 4.6
@@ -70,7 +71,7 @@ def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
         more = f"; {left_out} more grades are not shown" if left_out > 0 else ""
         axes.set_xlabel(f"diameter [mm]{more}")
         canvas.grid_lines(axes, "x")
-        _candidates_legend(axes, shown)
+        _candidates_legend(figure, shown)
         return canvas.svg(figure, "candidates", "Sizes of each grade and what it would need")
 
 
@@ -152,23 +153,18 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
     )  # fmt: skip
 
 
-def _candidates_legend(axes: Axes, shown: Sequence[GradeOutcome]) -> None:
-    from matplotlib.lines import Line2D
-
+def _candidates_legend(figure: Figure, shown: Sequence[GradeOutcome]) -> None:
     one_each = {class_of(outcome.grade): outcome.grade for outcome in shown}
-    need = {"marker": "|", "markersize": 8, "markeredgewidth": 1.6, "color": palette.INK}
-    looks = [
-        *(
-            (f"sizes sold, {kind}", {"color": _pale(one_each[kind]), "linewidth": 5.0})
-            for kind in CLASSES
-            if kind in one_each
-        ),
-        ("continuous optimum", need | {"linestyle": "none"}),
-        ("best size that holds", canvas.DOTS | _SIZE | {"color": palette.INK}),
-        ("next thinner, does not hold", canvas.DOTS | _SIZE | {"color": "white"}),
+    need: Style = {"marker": "|", "markersize": 8, "markeredgewidth": 1.6, "linestyle": "none"}
+    looks: list[tuple[str, Style]] = [
+        (f"sizes sold, {kind}", {"color": _pale(one_each[kind]), "linewidth": 5.0})
+        for kind in CLASSES
+        if kind in one_each
     ]
-    entries = [Line2D([], [], label=label, **look) for label, look in looks]
-    axes.figure.legend(handles=entries, loc="outside upper center", ncols=4)
+    looks.append(("continuous optimum", need | {"color": palette.INK}))
+    looks.append(("best size that holds", canvas.DOTS | _SIZE | {"color": palette.INK}))
+    looks.append(("next thinner, does not hold", canvas.DOTS | _SIZE | {"color": "white"}))
+    canvas.legend(figure, looks, "outside upper center", ncols=4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +202,7 @@ def pareto_chart(selection: SelectionResult) -> str | None:
         for axes, other in zip(panels, others, strict=True):
             _panel(axes, selection, _Along.of(other, selection), up)
         panels[0].set_title(up.label, loc="left")
-        _pareto_legend(panels[0], selection)
+        _pareto_legend(figure, selection)
         return canvas.svg(figure, "pareto", "Sizes that hold, by what they are compared by")
 
 
@@ -266,9 +262,7 @@ def _scales(axes: Axes, values: list[FloatArray]) -> None:
     canvas.grid_lines(axes, "both")
 
 
-def _pareto_legend(axes: Axes, selection: SelectionResult) -> None:
-    from matplotlib.lines import Line2D
-
+def _pareto_legend(figure: Figure, selection: SelectionResult) -> None:
     there = {class_of(c.grade) for c in _holding(selection)}
     looks: list[tuple[str, Style]] = [
         (kind, _BEATEN | palette.look_of(kind) | {"markersize": 5.0})
@@ -278,5 +272,4 @@ def _pareto_legend(axes: Axes, selection: SelectionResult) -> None:
     looks.append(("chosen", _CHOSEN | palette.look_of(class_of(selection.front[0].grade))))
     if len(selection.front) > 1:
         looks.append(("no other beats it", canvas.DOTS | _FRONT | {"color": "white"}))
-    entries = [Line2D([], [], label=label, **look) for label, look in looks]
-    axes.figure.legend(handles=entries, loc="outside upper center", ncols=len(entries))
+    canvas.legend(figure, looks, "outside upper center", ncols=len(looks))

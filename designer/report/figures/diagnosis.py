@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MOST_POINTS = 500
 """Points of a panel; more would only make the file heavy."""
 _BEFORE, _AFTER, _TREND, _HELDOUT = "#8A8A8A", palette.SAG, palette.WARNING, "#DFECF6"
-_BAND: Style = {"color": palette.FAINT, "alpha": 0.25}
+_BAND: Style = {"facecolor": palette.FAINT, "alpha": 0.25}
 _SMALL = palette.FONT_POINTS - 1.0
 _PANEL_MM, _LONE_MM = 36.0, 25.0  # so that a lone row finds room on the first page
 _MOST_MM = 215.0
@@ -142,7 +142,11 @@ def rows_chart(diagnosis: Diagnosis) -> str:
             panels[0].set_ylim(window(np.hstack([before[:, block], after[:, block]])))
             panels[0].set_title(f"residual of {name} [times the noise]", loc="left")
             panels[-1].set_xlabel("row of the data")
-        _rows_legend(grid[0, 0], has_change=bool(diagnosis.findings))
+        dots = canvas.DOTS | {"markersize": 3.5}
+        looks = [("before", dots | {"color": _BEFORE}), ("after", dots | {"color": _AFTER})]
+        grounds = [("held out", {"facecolor": _HELDOUT}), ("± 2 times the noise", _BAND)]
+        shown = [*(looks if diagnosis.findings else []), *grounds]
+        canvas.legend(figure, shown, "outside upper center", ncols=4)
         title = "Residual of every reading over the rows, before and after"
         return canvas.svg(figure, "diagnosis-rows", title)
 
@@ -161,22 +165,6 @@ def _row_panel(axes: Axes, diagnosis: Diagnosis, channel: int) -> None:
         if diagnosis.findings or stage == "after":
             _points(axes, x[rows], residual[rows, channel], none, colour)
     axes.set_xlim(x[0], x[-1])
-
-
-def _rows_legend(axes: Axes, *, has_change: bool) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    stages = (("before", _BEFORE), ("after", _AFTER)) if has_change else ()
-    entries = [
-        *(
-            Line2D([], [], color=colour, label=name, **canvas.DOTS, markersize=3.5)
-            for name, colour in stages
-        ),
-        Patch(color=_HELDOUT, label="held out"),
-        Patch(**_BAND, label="± 2 times the noise"),
-    ]
-    axes.figure.legend(handles=entries, loc="outside upper center", ncols=4)
 
 
 def thinned(n_rows: int) -> IntArray:

@@ -17,12 +17,10 @@ import numpy as np
 
 from designer.analysis.maps import WorkspaceMaps
 from designer.report.figures import canvas, overlay
-from designer.report.figures.colours import Steps
-from designer.report.figures.labels import names_of
-from designer.report.figures.map_quantity import DIAMETER, MapQuantity
+from designer.report.figures.colours import DIAMETER, MapQuantity, Steps
+from designer.report.figures.scenes import add_workspace, scale_of, size_m, view_of
 from designer.report.figures.stage import SCREEN, Stage
 from designer.report.figures.view import View
-from designer.report.figures.workspace_scene import add_workspace, scale_of, size_m, view_of
 from designer.report.fonts import with_fonts
 
 if TYPE_CHECKING:
@@ -105,7 +103,7 @@ def _without_web(page: str) -> str:
 def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, view: View) -> str:
     """Return labels, colour scale and controls as HTML."""
     labels = [(maps.focus.position_m, quantity.text_of(maps.focus), "label strong")]
-    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
+    for name, place in canvas.names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
         labels.append((place, name, "label"))
     parts = []
     for point_m, text, kind in labels:

@@ -16,12 +16,17 @@ from designer.arrays import BoolArray, FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
-from designer.report.figures.colours import Steps, steps_for, steps_over_decades
-from designer.report.figures.labels import names_of
-from designer.report.figures.map_quantity import DIAMETER, RATIO, TENSION, MapQuantity
+from designer.report.figures.colours import (
+    DIAMETER,
+    RATIO,
+    TENSION,
+    MapQuantity,
+    Steps,
+    steps_for,
+    steps_over_decades,
+)
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -29,7 +34,8 @@ _WIDE_MM, _BESIDE_MM = 120.0, 150.0
 """Width of one map alone, of several together."""
 _CHARACTER = 0.013  # half the width of a character over the width of small axes
 _RIGHT_END = 1.15  # a text may pass the right end of the axes, where no numbers stand
-_LEFT_OUT = "left out: a cable hangs below the platform"
+_HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
+_GREY: Style = {"facecolor": palette.LEFT_OUT}
 _LIMIT: Style = {"colors": palette.WARNING, "linewidths": 1.6}
 
 
@@ -98,8 +104,6 @@ def section_map(
     limit : float or None
         The value that is asked for, whose contour is drawn boldly.
     """
-    from matplotlib.lines import Line2D
-
     flat, corners = shown.position_m[..., :2], shown.exit_points_m[:, :2]
     place = f"z = {fmt.trimmed(shown.position_m[0, 0, 2], 6)} m"
     finite = shown.values[np.isfinite(shown.values)]
@@ -119,12 +123,15 @@ def section_map(
         if steps is not None:
             form: Style = {"format": lambda value, _: fmt.trimmed(float(value), 6)}
             steps.bar(figure, label, ax=axes, shrink=0.9, aspect=26, **form)
-        asked = Line2D([], [], color=palette.WARNING, linewidth=1.6)
-        asked.set_label("the clearance that is asked for")
-        is_left_out = bool((np.isnan(shown.values) & ~shown.is_bad).any())
-        entries = _keys(why_bad if shown.is_bad.any() else "", "left out" if is_left_out else "")
-        entries = [asked, *entries] if has_limit else entries
-        canvas.legend(figure, entries, "outside lower center", ncols=3)
+        looks: list[tuple[str, Style]] = []
+        if has_limit:
+            asked: Style = {"color": palette.WARNING, "linewidth": 1.6}
+            looks.append(("the clearance that is asked for", asked))
+        if shown.is_bad.any():
+            looks.append((why_bad, _HATCHED))
+        if (np.isnan(shown.values) & ~shown.is_bad).any():
+            looks.append(("left out", _GREY))
+        canvas.legend(figure, looks, "outside lower center", ncols=3)
         return canvas.svg(figure, key, f"{label}, {place}")
 
 
@@ -132,10 +139,10 @@ def _slice_sheet(maps: WorkspaceMaps, frame_mm: float, wide_mm: float) -> Figure
     """A sheet for maps of this width, with its legend."""
     corners = maps.flat_m(maps.study.robot.exit_points_m)
     proportions = _height_over_width(maps.flat_m(maps.section.position_m), corners)
-    entries = _slice_keys(maps.section)
-    height_mm = frame_mm + (6.0 if entries else 0.0) + min(wide_mm * proportions, 70.0)
+    looks = _slice_looks(maps.section)
+    height_mm = frame_mm + (6.0 if looks else 0.0) + min(wide_mm * proportions, 70.0)
     figure = canvas.sheet(height_mm, keeps_aspect=True)
-    canvas.legend(figure, entries, "outside lower center", ncols=3)
+    canvas.legend(figure, looks, "outside lower center", ncols=3)
     return figure
 
 
@@ -182,25 +189,18 @@ def _place(maps: WorkspaceMaps) -> str:
     return "all poses, seen from above"
 
 
-def _slice_keys(field: Field) -> list[Artist]:
-    from matplotlib.lines import Line2D
-
-    left_out = _LEFT_OUT if field.is_left_out.any() else ""
-    entries = _keys(field.why_infeasible, left_out)
+def _slice_looks(field: Field) -> list[tuple[str, Style]]:
+    """What a legend explains beside the colours."""
+    left_out = bool(field.is_left_out.any())
+    border: Style = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
+    looks: list[tuple[str, Style]] = []
     if field.position_m.ndim == 3 and _has_border(field) and not left_out:
-        border = Line2D([], [], color=palette.INK, linewidth=0.9, linestyle=(0, (4, 2)))
-        border.set_label("beyond: a cable hangs below the platform")
-        entries = [border, *entries]
-    return entries
-
-
-def _keys(why_bad: str, left_out: str) -> list[Artist]:
-    """Legend entries for what has no value: of those that have a text."""
-    from matplotlib.patches import Patch
-
-    bad = Patch(**canvas.HATCHED, linewidth=0.5, label=why_bad)
-    grey = Patch(facecolor=palette.LEFT_OUT, label=left_out)
-    return [entry for entry in (bad, grey) if entry.get_label()]
+        looks.append(("beyond: a cable hangs below the platform", border))
+    if field.is_infeasible.any():
+        looks.append((field.why_infeasible, _HATCHED))
+    if left_out:
+        looks.append(("left out: a cable hangs below the platform", _GREY))
+    return looks
 
 
 def _has_border(field: Field) -> bool:
@@ -298,7 +298,7 @@ def mark_exit_points(axes: Axes, corners: FloatArray) -> None:
     """Mark and name the exit points (n_cables, 2) [m]."""
     axes.plot(*corners.T, "^", markersize=5, color=palette.INK, clip_on=False)
     middle = corners.mean(axis=0)
-    for text, place in names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
+    for text, place in canvas.names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
         _write_away(axes, text, place, place - middle, 6.0)
 
 

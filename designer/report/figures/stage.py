@@ -14,8 +14,7 @@ from designer.analysis.field import Field
 from designer.arrays import BoolArray, FloatArray
 from designer.errors import MissingLibraryError
 from designer.report.figures import palette
-from designer.report.figures.colours import Steps
-from designer.report.figures.map_quantity import MapQuantity
+from designer.report.figures.colours import MapQuantity, Steps
 from designer.report.figures.opengl import why_no_scenes
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
