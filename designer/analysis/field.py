@@ -14,7 +14,7 @@ from designer.model.verdict import Verdict
 from designer.physics import catenary
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.study import Study, Workspace
+from designer.study import Study
 from designer.workspace.demand import is_left_out, size_worst
 
 
@@ -86,20 +86,17 @@ class Field:
 def field_at(study: Study, position_m: FloatArray) -> Field:
     """Size the positions (..., 3) of a study's workspace, each in its worst orientation."""
     workspace = study.workspace
-    if workspace is None or workspace.orientations.count == 1:
-        return field_of(study, position_m if workspace is None else _turned(workspace, position_m))
-    flat = position_m.reshape(-1, 3)
+    if workspace is None:
+        return field_of(study, position_m)
+    flat, axes = position_m.reshape(-1, 3), position_m.shape[:-1]
+    if workspace.orientations.count == 1:
+        return field_of(study, workspace.space.places(flat).reshape(*axes, -1))
     step = max(CHUNK // workspace.orientations.count, 1)
     worst = [
         size_worst(study.robot, workspace, flat[at : at + step], study.material)[0]
         for at in range(0, len(flat), step)
     ]
-    return field_of(study, np.concatenate(worst).reshape(*position_m.shape[:-1], -1))
-
-
-def _turned(workspace: Workspace, position_m: FloatArray) -> FloatArray:
-    places = workspace.space.places(position_m.reshape(-1, 3))
-    return places.reshape(*position_m.shape[:-1], -1)
+    return field_of(study, np.concatenate(worst).reshape(*axes, -1))
 
 
 def field_of(study: Study, place: FloatArray) -> Field:
@@ -124,11 +121,10 @@ def cable_curves_m(statics: Statics, count: int = 81) -> FloatArray:
     Evenly spaced along the unstrained length, from where the cable leaves the base to the
     platform.
     """
-    share = np.linspace(0.0, 1.0, count)
     length = statics.free_length_m[:, None]
     with np.errstate(invalid="ignore"):
         x, z = catenary.position_m(
-            share * length,
+            np.linspace(0.0, 1.0, count) * length,
             length,
             statics.force_x_N[:, None],
             statics.force_z_N[:, None],
@@ -151,10 +147,7 @@ def chords_m(statics: Statics) -> FloatArray:
 
 
 def body_lines_m(statics: Statics) -> list[FloatArray]:
-    """Return lines (2, 3) between all attachment points, which span the platform [m].
-
-    Empty for a point mass.
-    """
+    """Return lines (2, 3) between all attachment points; none for a point mass [m]."""
     if statics.robot.is_point_mass:
         return []
     corners = statics.poses.attachment_points_m(statics.robot)

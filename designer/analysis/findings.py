@@ -8,7 +8,6 @@ cable below the platform count, or not? How wide is the strip that cannot be ser
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from designer.selection.result import Candidate, GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging
-from designer.study import HangsBelow
+from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep
@@ -130,12 +129,12 @@ class Findings:
 
 def find(analysis: Analysis) -> Findings:
     """Answer the questions of this module."""
-    chosen = analysis.selection.chosen if analysis.selection else None
     findings = Findings(
         other_policy=_other_policy(analysis),
         hanging=_hanging(analysis),
         unserved=_unserved(analysis),
     )
+    chosen = analysis.selection.chosen if analysis.selection else None
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
@@ -164,31 +163,27 @@ def modulus_utilisation(robot: Robot, candidate: Candidate) -> tuple[float, floa
 
 
 def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
-    study, workspace = analysis.study, analysis.workspace
-    assert study.workspace is not None
-    assert study.selection is not None
-    if workspace is None or workspace.massless is None:
+    workspace, found = analysis.study.workspace, analysis.workspace
+    if workspace is None or found is None or found.massless is None:
         return None
-    needed_N = workspace.massless.max_tension_N
-    enough = [c for c in outcome.candidates if c.cable.allowable_tension_N >= needed_N]
-    if not enough:
-        return None
-    first = enough[0]
-    if first.verification.is_refined:
-        return MasslessChoice(first, first.verification)
-    verification = verify(analysis.built.robot, study.workspace, first.cable)
-    return MasslessChoice(first, verification)
+    needed_N = found.massless.max_tension_N
+    for first in outcome.candidates:
+        if first.cable.allowable_tension_N >= needed_N:
+            proved = first.verification
+            if not proved.is_refined:
+                proved = verify(analysis.built.robot, workspace, first.cable)
+            return MasslessChoice(first, proved)
+    return None
 
 
 def _other_policy(analysis: Analysis) -> OtherPolicy | None:
-    study, workspace = analysis.study, analysis.workspace
-    if study.workspace is None or workspace is None or workspace.census.hangs_below == 0:
+    workspace, found, built = analysis.study.workspace, analysis.workspace, analysis.built
+    if workspace is None or found is None or found.census.hangs_below == 0:
         return None
-    built = analysis.built
-    other: HangsBelow = "exclude" if study.workspace.hangs_below == "include" else "include"
-    samples = min(study.workspace.samples, _MOST_SAMPLES)
-    changed = replace(study.workspace, hangs_below=other, samples=samples)
-    return OtherPolicy(other, map_workspace(built.robot, changed, built.material(study.material)))
+    other: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
+    changed = replace(_few(workspace), hangs_below=other)
+    material = built.material(analysis.study.material)
+    return OtherPolicy(other, map_workspace(built.robot, changed, material))
 
 
 def _hanging(analysis: Analysis) -> float | None:
@@ -199,31 +194,30 @@ def _hanging(analysis: Analysis) -> float | None:
     if analysis.qualities is None or not (chosen or analysis.has_groups):
         return found.census.hangs_below / found.census.samples
     robot, cable = analysis.built.robot, analysis.qualities.cable.cable
-    few = replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
-        for positions in few.places()
+        for positions in _few(workspace).places()
     ]
     return float(np.concatenate(hangs).mean())
 
 
+def _few(workspace: Workspace) -> Workspace:
+    return replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
+
+
 def _unserved(analysis: Analysis) -> Unserved | None:
-    study, workspace = analysis.study, analysis.workspace
-    if study.workspace is None or workspace is None or analysis.sweep_file is None:
+    workspace, found = analysis.study.workspace, analysis.workspace
+    if workspace is None or found is None or analysis.sweep_file is None:
         return None
-    region = study.workspace.region
-    if workspace.is_feasible or not isinstance(region, Prism):
+    region = workspace.region
+    if found.is_feasible or not isinstance(region, Prism):
         return None
     fine = [Verdict.SOLVED]
-    if study.workspace.hangs_below == "exclude":
+    if workspace.hangs_below == "exclude":
         fine.append(Verdict.NO_FINITE_CABLE)
-    return _locate(analysis.sweep_file, region, fine)
-
-
-def _locate(sweep_file: Path, region: Prism, fine: list[Verdict]) -> Unserved | None:
     depth_m = inradius_m = 0.0
     lowest_m = np.inf
-    with open_sweep(sweep_file) as sweep:
+    with open_sweep(analysis.sweep_file) as sweep:
         for start in range(0, sweep.sizes["sample"], _CHUNK):
             part = sweep.isel(sample=slice(start, start + _CHUNK))
             position = part["position"].values

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.analysis.analyse import Analysis, Provenance, analyse_pose
+from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.model.cable import Material
 from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Platform, Poses, Robot
-from designer.report.figures.maps import WorkspaceMaps, workspace_maps
 from designer.study import HangsBelow, Source, Study, Workspace
 from designer.workspace.sweep import map_workspace
 

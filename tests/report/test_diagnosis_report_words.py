@@ -9,8 +9,7 @@ from designer.diagnosis.result import Estimate
 from designer.diagnosis.trends import in_runs, strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter, Size
 from designer.report.diagnosis import words
-from designer.report.figures.diagnosis_carriers import running_median
-from designer.report.figures.diagnosis_style import MOST_POINTS, thinned, window
+from designer.report.figures.diagnosis import MOST_POINTS, running_median, thinned, window
 from designer.units import NUMBER, TIME
 
 

@@ -12,20 +12,23 @@ import pytest
 from figures_cases import CASES, THREE, maps_of, pose_at, solved
 
 from designer.analysis.analyse import analyse_pose
+from designer.analysis.maps import WorkspaceMaps
 from designer.grades.registry import load_catalogue
 from designer.model.region import Prism
+from designer.report import format as fmt
 from designer.report.figures import canvas
-from designer.report.figures.charts_candidates import candidates_chart, rank
 from designer.report.figures.charts_edge import edge_chart
-from designer.report.figures.charts_loop import _shown, loop_chart
-from designer.report.figures.charts_pareto import pareto_chart
-from designer.report.figures.charts_served import served_chart
-from designer.report.figures.charts_slice import slice_chart, slice_panels
-from designer.report.figures.charts_usable import usable_chart
-from designer.report.figures.charts_verdicts import parts, spread, verdict_chart
-from designer.report.figures.colours import steps_for, steps_over_decades
-from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.quantity import TENSION
+from designer.report.figures.charts_pose import loop_chart, shown_turns
+from designer.report.figures.charts_selection import candidates_chart, pareto_chart, rank
+from designer.report.figures.charts_shares import (
+    parts,
+    served_chart,
+    spread,
+    usable_chart,
+    verdict_chart,
+)
+from designer.report.figures.colours import TENSION, steps_for, steps_over_decades
+from designer.report.figures.sections import slice_chart, slice_panels
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.study import Selection, Workspace
@@ -148,7 +151,7 @@ class TestServed:
 
     def test_partly(self) -> None:
         served = maps_of("partly").served
-        share = canvas.significant(100.0 * served.unserved, 2)
+        share = fmt.number(100.0 * served.unserved, 2)
         found = texts(served_chart(served))
         assert f"no cable serves {share} %" in found
         assert not any(text.startswith("serves all") for text in found)
@@ -183,7 +186,7 @@ class TestLoop:
     def test_a_loop_that_runs_away_at_once_is_still_a_curve(self) -> None:
         pose = analyse_pose(pose_at("served", [250.0, 200.0, -1.0]))
         assert pose is not None
-        assert len(_shown(pose)) == 3
+        assert len(shown_turns(pose)) == 3
         assert pose.loop.iterates[1].max_tension_N > 10.0 * pose.loop.iterates[0].max_tension_N
         check(loop_chart(pose))
 
@@ -403,11 +406,11 @@ class TestStepsOverDecades:
     ],
 )
 def test_significant_digits(value: float, text: str) -> None:
-    assert canvas.significant(value) == text.replace(" ", "\N{NARROW NO-BREAK SPACE}")
+    assert fmt.number(value) == text.replace(" ", "\N{NARROW NO-BREAK SPACE}")
 
 
 def test_short_numbers() -> None:
-    assert canvas.number(-40.0) == "−40"
-    assert canvas.number(86240.0) == "86\N{NARROW NO-BREAK SPACE}240"
+    assert fmt.trimmed(-40.0, 6) == "−40"
+    assert fmt.trimmed(86240.0, 6) == "86\N{NARROW NO-BREAK SPACE}240"
     assert canvas.decimals([0.5, 1.0, 1.25]) == 2
     assert canvas.decimals([10.0, 20.0]) == 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import Analysis, Provenance, analyse_pose
+from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.io.config import read_study
@@ -18,8 +19,7 @@ from designer.model.space import Orientations
 from designer.report.design.drawings import draw
 from designer.report.design.scope import describe_orientations
 from designer.report.design.workspace import describe_region
-from designer.report.figures.maps import WorkspaceMaps, workspace_maps
-from designer.report.figures.workspace_scene import edges_m
+from designer.report.figures.scenes import edges_m
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.study import Study

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray
-from designer.report.figures import canvas, labels, overlay
+from designer.report.figures import canvas, overlay
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 FRONT = View(-np.pi / 2, 0.0, np.zeros(3), 5.0)
@@ -27,17 +27,17 @@ def test_texts_at_one_place_do_not_overlap() -> None:
     with canvas.drawing():
         _, axes = overlay.over(EMPTY)
         for text in ("worst pose, 51.2 mm", "119.6 kN", "sag 7.13 m"):
-            labels.write_clear(axes, FRONT, MIDDLE, text, NOTHING)
+            overlay.write_clear(axes, FRONT, MIDDLE, text, NOTHING)
         first, second, third = axes.texts
         assert not (overlap(first, second) or overlap(first, third) or overlap(second, third))
 
 
 def test_a_text_leaves_lines_free_and_stays_near() -> None:
     line = np.array([[-5.0, 0.0, 0.2], [5.0, 0.0, 0.2]])
-    clear = labels.obstacles(FRONT, [line])
+    clear = overlay.obstacles(FRONT, [line])
     with canvas.drawing():
         _, axes = overlay.over(EMPTY)
-        labels.write_clear(axes, FRONT, MIDDLE, "here", clear)
+        overlay.write_clear(axes, FRONT, MIDDLE, "here", clear)
         box = axes.texts[0].get_window_extent()
     height = HEIGHT_PX - float(FRONT.pixels(line)[0, 1])
     assert not box.y0 <= height <= box.y1
@@ -48,7 +48,7 @@ def test_a_text_far_off_is_led_to_its_place() -> None:
     grid = np.stack(np.meshgrid(np.arange(700.0, 900.0, 4.0), np.arange(400.0, 600.0, 4.0)), -1)
     with canvas.drawing():
         _, axes = overlay.over(EMPTY)
-        labels.write_clear(axes, FRONT, MIDDLE, "here", grid.reshape(-1, 2))
+        overlay.write_clear(axes, FRONT, MIDDLE, "here", grid.reshape(-1, 2))
         assert len(axes.lines) == 1
         start = np.array(axes.lines[0].get_xydata())[0]
     assert start == pytest.approx(FRONT.pixels(MIDDLE))
@@ -58,7 +58,7 @@ def test_a_text_far_off_is_led_to_its_place() -> None:
 def test_a_text_stays_in_the_picture(x_m: float) -> None:
     with canvas.drawing():
         _, axes = overlay.over(EMPTY)
-        labels.write_clear(axes, FRONT, np.array([x_m, 0.0, 4.9]), "a long name", NOTHING)
+        overlay.write_clear(axes, FRONT, np.array([x_m, 0.0, 4.9]), "a long name", NOTHING)
         box = axes.texts[0].get_window_extent()
     assert box.x0 >= 0.0
     assert box.x1 <= WIDTH_PX
@@ -69,14 +69,14 @@ def test_exit_points_outside_the_picture_have_no_name() -> None:
     exits: FloatArray = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
     with canvas.drawing():
         _, axes = overlay.over(EMPTY)
-        labels.write_exits(axes, FRONT, exits, NOTHING)
+        overlay.write_exits(axes, FRONT, exits, NOTHING)
         assert [text.get_text() for text in axes.texts] == ["A1"]
 
 
 def test_points_along_lines_are_close_together() -> None:
-    points = labels.obstacles(FRONT, [np.array([[-4.0, 0.0, 0.0], [4.0, 0.0, 0.0]])])
+    points = overlay.obstacles(FRONT, [np.array([[-4.0, 0.0, 0.0], [4.0, 0.0, 0.0]])])
     assert np.hypot(*np.diff(points, axis=0).T).max() < 10.0
-    assert labels.obstacles(FRONT, []).shape == (0, 2)
+    assert overlay.obstacles(FRONT, []).shape == (0, 2)
 
 
 def test_a_finished_picture_leaves_no_pixels_behind() -> None:

@@ -9,25 +9,18 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
+from designer.analysis import grids
 from designer.analysis.analyse import analyse_pose
-from designer.analysis.field import (
-    Field,
-    cable_curves_m,
-    chords_m,
-    field_at,
-    largest_sag,
-)
+from designer.analysis.edge import edge_profile, first_failure_m
+from designer.analysis.field import Field, cable_curves_m, chords_m, field_at, largest_sag
+from designer.analysis.maps import as_built, workspace_maps
 from designer.io.config import read_study
 from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.report.design import captions
-from designer.report.figures import grids
-from designer.report.figures.charts_edge import _not_held
-from designer.report.figures.edge import _limit, edge_profile
-from designer.report.figures.maps import as_built, workspace_maps
-from designer.report.figures.names import names_of
-from designer.report.figures.quantity import DIAMETER, RATIO, TENSION, tension_of
+from designer.report.figures.canvas import names_of
+from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
@@ -245,11 +238,11 @@ class TestEdge:
             )
 
         distance = np.linspace(1.0, 0.0, 101)
-        limit = _limit(at, distance, lambda some: some.is_solved)
+        limit = first_failure_m(at, distance, at(distance), lambda some: some.is_solved)
         assert limit == pytest.approx(0.3211, abs=1e-9)
         again = replace(profile, distance_m=distance, field=at(distance), limit_distance_m=limit)
         assert again.holds_again
-        assert len(_not_held(again)) == 2
+        assert len(again.stretches_not_held_m) == 2
 
     def test_where_straight_cables_end_is_told_apart_from_where_all_cables_do(self) -> None:
         """Beyond it this robot of seven cables is held by one that hangs as a counterweight."""
@@ -334,9 +327,9 @@ class TestMaps:
 
     def test_text_of_the_worst_pose(self) -> None:
         focus = maps_of("served").focus
-        assert focus.text(DIAMETER) == "worst pose, 51.2 mm"
-        assert focus.text(TENSION) == "worst pose, 371.0 kN"
-        assert focus.text(RATIO) == "worst pose, 3.06"
+        assert DIAMETER.text_of(focus) == "worst pose, 51.2 mm"
+        assert TENSION.text_of(focus) == "worst pose, 371.0 kN"
+        assert RATIO.text_of(focus) == "worst pose, 3.06"
 
     def test_forces_below_a_kilonewton_are_shown_in_newtons(self) -> None:
         field = maps_of("served").section

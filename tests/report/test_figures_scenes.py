@@ -20,26 +20,26 @@ from figures_cases import CASES, SIX, THREE, maps_of, pose_at, solved
 
 from designer.analysis.analyse import analyse_pose
 from designer.analysis.field import Field
+from designer.analysis.maps import WorkspaceMaps
 from designer.errors import MissingLibraryError
 from designer.model.region import Prism
 from designer.report.figures import opengl, overlay, palette, stage
+from designer.report.figures.colours import DIAMETER, RATIO, TENSION
 from designer.report.figures.interactive import workspace_scene_html
-from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.quantity import DIAMETER, RATIO, TENSION
-from designer.report.figures.robot_scene import robot_scene
+from designer.report.figures.scenes import (
+    bounds_m,
+    edges_m,
+    robot_scene,
+    scale_of,
+    view_of,
+    workspace_scene,
+)
 from designer.report.figures.view import (
     HEIGHT_PX,
     WIDTH_PX,
     View,
     clear_azimuth_rad,
     fitting,
-)
-from designer.report.figures.workspace_scene import (
-    bounds_m,
-    edges_m,
-    scale_of,
-    view_of,
-    workspace_scene,
 )
 
 pytestmark = pytest.mark.slow
@@ -187,7 +187,7 @@ class TestStage:
         slope = np.tile(np.linspace(10.0, 20.0, 7)[:, None], (1, 4))
         steps = steps_for(slope)
         assert steps is not None
-        lines = stage.contour_lines(plane(slope), DIAMETER, steps)
+        lines = stage.contour_lines(stage.counted_surface(plane(slope), DIAMETER), steps)
         inner = [tick for tick in steps.ticks if 10.0 < tick < 20.0]
         found = sorted({round(10.0 + 10.0 * float(x), 6) for line in lines for x in line[:, 0]})
         assert set(inner) <= set(found)
@@ -455,7 +455,7 @@ class TestOpenGL:
         monkeypatch.setattr(opengl, "_DRAW", code)
         assert opengl.why_no_scenes().startswith("Pictures in space are left out")
         with pytest.raises(MissingLibraryError):
-            stage.empty_stage()
+            stage.Stage(View(0.7, 0.4, np.ones(3), 30.0))
 
     def test_what_hangs_is_left_behind(
         self, asked_anew: None, monkeypatch: pytest.MonkeyPatch

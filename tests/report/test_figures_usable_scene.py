@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from figures_cases import STEEL, THREE, maps_of, solved
 
+from designer.analysis.layers import chosen_sizes, layers_of
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.robot import Poses
 from designer.report.design import captions
-from designer.report.figures.usable_scene import chosen_sizes, colours, layers_of, usable_scene
+from designer.report.figures.scenes import colours, usable_scene
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX
 from designer.selection.usable import Usable, usable
 from designer.sizing.newton import size_poses

@@ -9,9 +9,9 @@ import pytest
 from figures_cases import maps_of
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.maps import Served
 from designer.report.design import captions
 from designer.report.design.drawings import draw
-from designer.report.figures.maps import Served
 
 pytestmark = pytest.mark.slow
 

@@ -14,7 +14,7 @@ from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
 from designer.report.design.candidates import front_sentence
 from designer.report.design.context import ReportContext, build_context
-from designer.report.figures.charts_pareto import pareto_chart
+from designer.report.figures.charts_selection import pareto_chart
 from designer.report.material_class import class_of
 from designer.report.pictures import Pictures
 from designer.report.render import render_html

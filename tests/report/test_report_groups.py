@@ -14,7 +14,7 @@ from designer.analysis.selection_json import groups_dict
 from designer.cli import terminal
 from designer.report.design.first_page import first_page
 from designer.report.design.groups import groups_section
-from designer.report.figures.charts_groups import groups_plan
+from designer.report.figures.groups_plan import groups_plan
 from designer.report.pictures import Pictures
 
 pytestmark = pytest.mark.slow

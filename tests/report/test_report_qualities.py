@@ -10,12 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from designer.analysis import grids
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
+from designer.analysis.section import Section
 from designer.report.design.context import build_context
 from designer.report.design.drawings import draw
-from designer.report.figures import grids
-from designer.report.figures.height_map import HeightMap, height_map
+from designer.report.figures.sections import section_map
 from designer.report.pictures import Pictures
 from designer.report.render import render_html
 
@@ -182,10 +183,10 @@ def test_height_maps(case: str) -> None:
         values = np.full(values.shape, np.nan)
     exits = np.array([[0.0, 0, 5], [4, 0, 5], [2, 3, 5]])
     limit = 2.0 if case == "limit" else None
-    shown = HeightMap(position, values, bad, "not held", exits, "depth [m]", limit, "asked for")
-    svg = height_map(shown, "test")
+    shown = Section(position, values, bad, exits)
+    svg = section_map(shown, "test", "depth [m]", "not held", limit)
     assert ("not held" in svg) == (case != "all")
     assert "depth [m]" in svg
-    assert ("; asked for" in svg) == (case == "limit")
+    assert ("asked for" in svg) == (case == "limit")
     assert ("left out" in svg) == (case == "nothing")
     assert re.search(r"<title>depth \[m\], z = 1.5 m</title>", svg)

@@ -8,9 +8,9 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis, PoseAnalysis
 from designer.analysis.field import Field
+from designer.analysis.maps import Served, WorkspaceMaps
 from designer.report import format as fmt
-from designer.report.figures.maps import Served, WorkspaceMaps
-from designer.report.figures.quantity import DIAMETER, RATIO
+from designer.report.figures.colours import DIAMETER, RATIO
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
 from designer.selection.usable import Usable

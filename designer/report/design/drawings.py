@@ -15,7 +15,7 @@ from designer.report.pictures import Pictures
 from designer.selection.result import SelectionResult
 
 if TYPE_CHECKING:
-    from designer.report.figures.maps import WorkspaceMaps
+    from designer.analysis.maps import WorkspaceMaps
 
 _LITTLE = 0.02
 """A share by which sag may change a tension without a figure of that being worth its place."""
@@ -27,7 +27,7 @@ def draw(analysis: Analysis) -> Pictures:
 
     maps = None
     if analysis.workspace is not None:
-        from designer.report.figures.maps import workspace_maps
+        from designer.analysis.maps import workspace_maps
 
         maps = workspace_maps(analysis)
     missing = why_no_scenes()
@@ -53,14 +53,14 @@ def draw(analysis: Analysis) -> Pictures:
 def _robot(analysis: Analysis) -> Picture | None:
     if analysis.pose is None:
         return None
-    from designer.report.figures.robot_scene import robot_scene
+    from designer.report.figures.scenes import robot_scene
 
     caption = captions.robot(analysis.pose)
     return _scene(caption, "The robot with its cables, in space", robot_scene(analysis.pose))
 
 
 def _cover(maps: WorkspaceMaps) -> Picture:
-    from designer.report.figures.cover_scene import cover_scene
+    from designer.report.figures.scenes import cover_scene
 
     alternative = "The region in space, coloured by diameter"
     return _scene(captions.cover(maps), alternative, cover_scene(maps))
@@ -69,7 +69,7 @@ def _cover(maps: WorkspaceMaps) -> Picture:
 def _loop(analysis: Analysis) -> Picture | None:
     if analysis.pose is None or _is_idle(analysis.pose):
         return None
-    from designer.report.figures.charts_loop import loop_chart
+    from designer.report.figures.charts_pose import loop_chart
 
     caption = captions.loop(analysis.pose)
     return chart(caption, "Two curves that rise from the massless start", loop_chart(analysis.pose))
@@ -86,7 +86,7 @@ def _is_idle(pose: PoseAnalysis) -> bool:
 def _verdicts(analysis: Analysis) -> Picture | None:
     if analysis.workspace is None:
         return None
-    from designer.report.figures.charts_verdicts import parts, verdict_chart
+    from designer.report.figures.charts_shares import parts, verdict_chart
 
     census = analysis.workspace.census
     if len(parts(census)) < 2:
@@ -98,11 +98,11 @@ def _verdicts(analysis: Analysis) -> Picture | None:
 
 def _workspace(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
     from designer.report.figures.charts_edge import edge_chart
-    from designer.report.figures.charts_served import served_chart
-    from designer.report.figures.charts_slice import slice_chart, slice_panels
+    from designer.report.figures.charts_shares import served_chart
+    from designer.report.figures.colours import DIAMETER, RATIO, tension_of
     from designer.report.figures.interactive import workspace_scene_html
-    from designer.report.figures.quantity import DIAMETER, RATIO, tension_of
-    from designer.report.figures.workspace_scene import workspace_scene
+    from designer.report.figures.scenes import workspace_scene
+    from designer.report.figures.sections import slice_chart, slice_panels
 
     if draws_scenes:
         yield _scene(
@@ -132,7 +132,7 @@ def _workspace(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
 def _candidates(analysis: Analysis) -> Picture | None:
     if analysis.selection is None or not _has_need(analysis.selection):
         return None
-    from designer.report.figures.charts_candidates import candidates_chart
+    from designer.report.figures.charts_selection import candidates_chart
 
     caption = captions.candidates(analysis.selection)
     return chart(caption, "A row for each grade", candidates_chart(analysis.selection))
@@ -147,7 +147,7 @@ def _has_need(selection: SelectionResult) -> bool:
 def _pareto(analysis: Analysis) -> Picture | None:
     if analysis.selection is None:
         return None
-    from designer.report.figures.charts_pareto import pareto_chart
+    from designer.report.figures.charts_selection import pareto_chart
 
     svg = pareto_chart(analysis.selection)
     if svg is None:
@@ -160,7 +160,7 @@ def _usable_chart(analysis: Analysis) -> Picture | None:
     selection = analysis.selection
     if selection is None or selection.usable is None or not selection.usable.differs:
         return None
-    from designer.report.figures.charts_usable import usable_chart
+    from designer.report.figures.charts_shares import usable_chart
 
     caption = captions.usable(selection.usable, selection.chosen)
     return chart(
@@ -172,7 +172,7 @@ def _usable_scene(analysis: Analysis, maps: WorkspaceMaps | None) -> Picture | N
     selection = analysis.selection
     if selection is None or selection.usable is None or maps is None:
         return None
-    from designer.report.figures.usable_scene import usable_scene
+    from designer.report.figures.scenes import usable_scene
 
     png = usable_scene(maps, selection.usable)
     if png is None:
@@ -185,7 +185,7 @@ def _groups(analysis: Analysis) -> Picture | None:
     choice, workspace = analysis.groups, analysis.study.workspace
     if choice is None or choice.chosen is None or workspace is None:
         return None
-    from designer.report.figures.charts_groups import groups_plan
+    from designer.report.figures.groups_plan import groups_plan
 
     caption = "The robot from above. Cables are drawn as thick as they are to each other."
     svg = groups_plan(analysis.built.robot, workspace.region, choice, choice.chosen)
@@ -193,7 +193,7 @@ def _groups(analysis: Analysis) -> Picture | None:
 
 
 def _stiffness(analysis: Analysis) -> Picture | None:
-    from designer.report.figures.section_maps import stiffness_map
+    from designer.report.figures.sections import stiffness_map
 
     svg = stiffness_map(analysis)
     if svg is None:
@@ -202,7 +202,7 @@ def _stiffness(analysis: Analysis) -> Picture | None:
 
 
 def _clearance(analysis: Analysis) -> Picture | None:
-    from designer.report.figures.section_maps import clearance_map
+    from designer.report.figures.sections import clearance_map
 
     svg = clearance_map(analysis)
     if svg is None:
@@ -211,7 +211,7 @@ def _clearance(analysis: Analysis) -> Picture | None:
 
 
 def _scene(caption: str, alternative: str, png: bytes, page: str = "") -> Picture:
-    from designer.report.figures.trim import without_empty_rows
+    from designer.report.figures.overlay import without_empty_rows
 
     kept = base64.b64encode(without_empty_rows(png)).decode()
     address = f"data:image/png;base64,{kept}"

@@ -13,7 +13,7 @@ from designer.report.design.drawings import chart
 from designer.report.parts import Picture
 
 if TYPE_CHECKING:
-    from designer.report.figures.diagnosis_carriers import Layout
+    from designer.report.figures.diagnosis import Layout
 
 _MOST_CARRIERS = 4
 _FIRST_CARRIERS = 3
@@ -47,8 +47,7 @@ class DiagnosisPictures:
 
 def draw(diagnosis: Diagnosis) -> DiagnosisPictures:
     """Return all figures of a diagnosis."""
-    from designer.report.figures.diagnosis_errors import errors_chart
-    from designer.report.figures.diagnosis_rows import rows_chart
+    from designer.report.figures.diagnosis import errors_chart, rows_chart
 
     before = [c.name for c in diagnosis.structure_before.carriers]
     after = [c.name for c in diagnosis.structure_after.carriers]
@@ -107,7 +106,7 @@ def _left(diagnosis: Diagnosis, names: list[str]) -> Picture | None:
 def _against(
     diagnosis: Diagnosis, names: list[str], key: str, layout: Layout, caption: str
 ) -> Picture | None:
-    from designer.report.figures.diagnosis_carriers import carriers_chart
+    from designer.report.figures.diagnosis import carriers_chart
 
     if not names:
         return None

@@ -1,4 +1,4 @@
-"""A sheet to draw a chart on, and how it becomes SVG text.
+"""A sheet to draw a chart on, what charts share, and how they become SVG text.
 
 Matplotlib is used through figure objects only, so that nothing is left behind in its global
 state; glyphs are drawn as outlines, so that a chart looks the same where a font is missing.
@@ -7,50 +7,57 @@ state; glyphs are drawn as outlines, so that a chart looks the same where a font
 from __future__ import annotations
 
 import io
-import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from designer.arrays import FloatArray
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
+    from matplotlib.text import Annotation
 
-_TINY, _TOO_WIDE = 1e-9, 1e12
+Style = dict[str, Any]
+"""How Matplotlib shall draw something."""
 _STYLE = {
     "font.family": "DejaVu Sans",
-    "font.size": palette.FONT_POINTS,
-    "axes.titlesize": palette.FONT_POINTS,
-    "axes.labelsize": palette.FONT_POINTS,
-    "xtick.labelsize": palette.FONT_POINTS - 0.5,
-    "ytick.labelsize": palette.FONT_POINTS - 0.5,
+    **dict.fromkeys(("font.size", "axes.titlesize", "axes.labelsize"), palette.FONT_POINTS),
+    **dict.fromkeys(("xtick.labelsize", "ytick.labelsize"), palette.FONT_POINTS - 0.5),
     "legend.fontsize": palette.FONT_POINTS - 0.5,
-    "axes.edgecolor": palette.INK,
-    "axes.labelcolor": palette.INK,
-    "text.color": palette.INK,
-    "xtick.color": palette.INK,
-    "ytick.color": palette.INK,
-    "axes.linewidth": 0.6,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 2.5,
-    "ytick.major.size": 2.5,
+    "legend.frameon": False,
+    **dict.fromkeys(("axes.edgecolor", "axes.labelcolor", "text.color"), palette.INK),
+    **dict.fromkeys(("xtick.color", "ytick.color"), palette.INK),
+    **dict.fromkeys(("axes.linewidth", "xtick.major.width", "ytick.major.width"), 0.6),
+    **dict.fromkeys(("xtick.major.size", "ytick.major.size"), 2.5),
     "lines.linewidth": 1.3,
     "hatch.linewidth": 0.5,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
+    **dict.fromkeys(("axes.spines.top", "axes.spines.right"), False),
     "svg.fonttype": "path",
     "svg.hashsalt": "cdpr-designer",
     "text.parse_math": False,  # names from files are shown as they are
 }
+DASHES = (0, (5, 2))
+DOTS: Style = {"linestyle": "none", "marker": "o"}
+RING: Style = {
+    "marker": "o",
+    "color": "white",
+    "markeredgecolor": palette.INK,
+    "markeredgewidth": 1.1,
+}
+HATCHED: Style = {
+    "facecolor": palette.WARNING_PALE,
+    "edgecolor": palette.WARNING,
+    "hatch": "//////",
+}
+"""Where no cable holds the platform."""
 
 
 @contextmanager
@@ -65,35 +72,14 @@ def drawing() -> Iterator[None]:
 
 
 def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
-    """Return an empty figure of this height and of the column's width.
+    """Return an empty figure of this height on paper [mm] and of the column's width.
 
-    Parameters
-    ----------
-    height_mm : float
-        Height on paper [mm].
-    keeps_aspect : bool
-        Whether its axes have equal scales, so that they cannot fill the space they get.
+    ``keeps_aspect`` tells that its axes have equal scales, so that they cannot fill their space.
     """
     from matplotlib.figure import Figure
 
     size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
     return Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
-
-
-def number(value: float) -> str:
-    """Return a number as short as it can be, with a true minus sign."""
-    text = f"{value:,.0f}" if 1e4 <= abs(value) < _TOO_WIDE else f"{value:.6g}"
-    return text.replace(",", "\N{NARROW NO-BREAK SPACE}").replace("-", "\N{MINUS SIGN}")
-
-
-def significant(value: float, digits: int = 4) -> str:
-    """Return a number to so many significant digits; only a tiny or huge one has an exponent."""
-    if not _TINY <= abs(value) < _TOO_WIDE:
-        return f"{value:.{digits}g}"
-    places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
-    return f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}").replace(
-        "-", "\N{MINUS SIGN}"
-    )
 
 
 def decimals(ticks: ArrayLike) -> int:
@@ -108,10 +94,59 @@ def halo() -> list[AbstractPathEffect]:
     return [withStroke(linewidth=2.2, foreground="white")]
 
 
-def grid_lines(axes: Axes, axis: Literal["x", "y"] = "y") -> None:
-    """Draw faint lines at the ticks of one axis, behind the data."""
+def paper(pad: float, alpha: float) -> dict[str, Any]:
+    """Return a white ground for text."""
+    return {"facecolor": "white", "edgecolor": "none", "pad": pad, "alpha": alpha}
+
+
+def note(
+    axes: Axes, text: str, at: tuple[float, float], offset: tuple[float, float], **style: Any
+) -> Annotation:
+    """Write a text beside a point, ``offset`` in points."""
+    return axes.annotate(text, at, offset, textcoords="offset points", **style)
+
+
+def grid_lines(axes: Axes, axis: Literal["x", "y", "both"] = "y") -> None:
+    """Draw faint lines at the ticks, behind the data."""
     axes.grid(axis=axis, color=palette.FAINT, linewidth=0.4, alpha=0.6)
     axes.set_axisbelow(True)
+
+
+def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layout: Any) -> None:
+    """Say what each look means, an area where it has a ``facecolor``, else a line or a mark."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    entries = [
+        Patch(label=label, **look) if "facecolor" in look else Line2D([], [], label=label, **look)
+        for label, look in looks
+    ]
+    if entries:
+        figure.legend(handles=entries, loc=loc, **layout)
+
+
+def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
+    """Return a name and a place for each exit point, one for those closer together than a name.
+
+    Parameters
+    ----------
+    points_m : array (n_cables, 2 or 3)
+        Exit points [m].
+    apart_m : float
+        Names this close would overlap [m].
+    """
+    groups: list[list[int]] = []
+    for index, point in enumerate(points_m):
+        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
+        group = next(near, None)
+        if group is None:
+            groups.append([index])
+        else:
+            group.append(index)
+    return [
+        (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
+        for group in groups
+    ]
 
 
 def svg(figure: Figure, key: str, title: str) -> str:
@@ -131,8 +166,20 @@ def svg(figure: Figure, key: str, title: str) -> str:
     figure.savefig(stream, format="svg", transparent=True, metadata=nothing)
     text = stream.getvalue()
     words = _words(figure)
-    figure.clear()  # it lies in reference cycles, which Python would clear up much later
+    empty(figure)
     return _standalone(text[text.index("<svg") :].strip(), key, title, words)
+
+
+def empty(figure: Figure) -> None:
+    """Break the reference cycles of a figure, which Python would clear up much later.
+
+    Axes that share a logarithmic scale give it up first: each would be reset to begin at zero
+    while the others still are logarithmic, and some versions of Matplotlib complain.
+    """
+    for axes in figure.axes:
+        if "log" in (axes.get_xscale(), axes.get_yscale()):
+            axes.set(xscale="linear", yscale="linear")
+    figure.clear()
 
 
 def _words(figure: Figure) -> str:
@@ -147,7 +194,11 @@ def _words(figure: Figure) -> str:
 def _standalone(text: str, key: str, title: str, words: str) -> str:
     text = re.sub(r'\bid="', f'id="{key}-', text)
     text = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", text)
-    text = re.sub(r' d="[^"]+"', lambda match: _rounded(match.group()), text)
+    # A hundredth of a point is enough, and halves the size of a contour plot.
+    shorter = re.compile(r"(\.\d\d)\d+")
+    text = re.sub(
+        r' d="[^"]+"', lambda path: shorter.sub(r"\1", path.group()).replace(" \n", "\n"), text
+    )
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height)="[^"]*"', "", head)
     # Matplotlib has this as a style sheet, which would act on the whole page around the chart.
@@ -155,8 +206,3 @@ def _standalone(text: str, key: str, title: str, words: str) -> str:
     head += ' stroke-linejoin="round" stroke-linecap="butt"'
     head += f' role="img" aria-label={quoteattr(title)}>'
     return f"{head}\n <title>{escape(title)}</title>\n <desc>{escape(words)}</desc>{body}"
-
-
-def _rounded(path: str) -> str:
-    """Cut coordinates to a hundredth of a point, which halves the size of a contour plot."""
-    return re.sub(r"(\.\d\d)\d+", r"\1", path).replace(" \n", "\n")

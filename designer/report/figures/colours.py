@@ -1,20 +1,84 @@
-"""Round steps of a colour scale, and the scale itself."""
+"""What a map is coloured by: a quantity of the field, and the round steps of its colour scale."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from designer.analysis.field import Field
+from designer.analysis.maps import Focus
 from designer.arrays import FloatArray
+from designer.report import format as fmt
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import BoundaryNorm, Colormap
+    from matplotlib.figure import Figure
 
 _MUCH = 6.0
+_KILONEWTON = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class MapQuantity:
+    """One of the quantities that can be mapped.
+
+    Parameters
+    ----------
+    key : str
+        Short name, used in the ids of a drawing.
+    title, unit : str
+        Name and unit on the axis; no unit for a pure number.
+    scale : float
+        From SI to that unit.
+    """
+
+    key: str
+    title: str
+    unit: str
+    scale: float
+
+    @property
+    def label(self) -> str:
+        """Text of an axis or a colour bar."""
+        return f"{self.title} [{self.unit}]" if self.unit else self.title
+
+    def of(self, field: Field) -> FloatArray:
+        """Return the values in the unit of the axis; NaN where the pose does not count."""
+        return np.where(field.counts, self.everywhere(field), np.nan)
+
+    def everywhere(self, field: Field) -> FloatArray:
+        """Return the values where the study leaves the pose out as well."""
+        values = {
+            "diameter": field.diameter_m,
+            "tension": field.tension_N,
+            "ratio": field.tension_N / field.massless_tension_N,
+        }[self.key]
+        return np.asarray(values * self.scale)
+
+    def text_of(self, focus: Focus) -> str:
+        """Return what the pose is that figures turn to, and its value where it has one."""
+        value = float(self.of(focus.field))
+        if not np.isfinite(value):
+            return focus.label
+        digits = 4 if self.unit in ("N", "kN") else 3
+        return f"{focus.label}, {fmt.number(value, digits)} {self.unit}".strip()
+
+
+DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)
+TENSION = MapQuantity("tension", "largest tension", "kN", 1e-3)
+RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
+
+
+def tension_of(field: Field) -> MapQuantity:
+    """Return the largest tension in the unit that suits the values of a field, kN or N."""
+    if np.nanmax(field.tension_N, initial=0.0) < _KILONEWTON and np.isfinite(field.tension_N).any():
+        return replace(TENSION, unit="N", scale=1.0)
+    return TENSION
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,15 +120,8 @@ class Steps:
 
     def fill(self, axes: Axes, x: FloatArray, y: FloatArray, values: FloatArray) -> None:
         """Colour a grid (rows, columns) of values."""
-        surface = axes.contourf(
-            x,
-            y,
-            values,
-            levels=self.levels,
-            cmap=self.colormap,
-            norm=self.norm,
-            extend=self.extend,
-        )
+        scale: dict[str, Any] = {"cmap": self.colormap, "norm": self.norm, "extend": self.extend}
+        surface = axes.contourf(x, y, values, levels=self.levels, **scale)
         surface.set_edgecolor("face")  # closes the hairlines between neighbouring steps
         surface.set_linewidth(0.3)
 
@@ -76,22 +133,23 @@ class Steps:
         number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
         return np.asarray(self.levels[number % 2 == 0])
 
-    @property
-    def mappable(self) -> Any:
-        """What a colour bar is made from."""
+    def colours_of(self, values: FloatArray) -> NDArray[np.uint8]:
+        """Return red, green and blue (n, 3) of values (n,)."""
+        return np.asarray(self.colormap(self.norm(values), bytes=True)[:, :3])
+
+    def bar(self, figure: Figure, label: str, **place: Any) -> None:
+        """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""
         from matplotlib.cm import ScalarMappable
 
-        return ScalarMappable(self.norm, self.colormap)
+        shown = ScalarMappable(self.norm, self.colormap)
+        layout = {"ticks": self.ticks, "extendfrac": 0.04, "label": label, **place}
+        bar = figure.colorbar(shown, **layout)
+        bar.outline.set_linewidth(0.4)
+        bar.ax.tick_params(length=2)
 
 
 def steps_over_decades(values: FloatArray) -> Steps | None:
-    """Return steps 1, 2, 5, 10, … where the bulk of the values spans much, else `steps_for`.
-
-    Parameters
-    ----------
-    values : array
-        Any shape; NaN where there is no value.
-    """
+    """Return steps 1, 2, 5, 10, … where the bulk of the values spans much, else `steps_for`."""
     finite = values[np.isfinite(values)]
     if len(finite) == 0 or finite.min() <= 0.0:
         return steps_for(values)

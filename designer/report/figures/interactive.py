@@ -9,47 +9,33 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis.field import Field
-from designer.arrays import FloatArray
-from designer.report.figures import canvas, palette, stage
-from designer.report.figures.colours import Steps
-from designer.report.figures.maps import WorkspaceMaps
-from designer.report.figures.names import names_of
-from designer.report.figures.quantity import DIAMETER, Quantity
-from designer.report.figures.stage import SCREEN
+from designer.analysis.maps import WorkspaceMaps
+from designer.report.figures import canvas, overlay
+from designer.report.figures.colours import DIAMETER, MapQuantity, Steps
+from designer.report.figures.scenes import add_workspace, scale_of, size_m, view_of
+from designer.report.figures.stage import SCREEN, Stage
 from designer.report.figures.view import View
-from designer.report.figures.workspace_scene import add_workspace, scale_of, size_m, view_of
 from designer.report.fonts import with_fonts
 
 if TYPE_CHECKING:
     from pyvista import Plotter
 
 
-def workspace_scene_html(maps: WorkspaceMaps, quantity: Quantity = DIAMETER) -> str:
-    """Return the workspace, cut open, as an HTML page in which it can be turned.
-
-    Parameters
-    ----------
-    maps : WorkspaceMaps
-        What to draw.
-    quantity : Quantity
-        What the colours mean.
-    """
+def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
+    """Return the workspace, cut open, as an HTML page in which it can be turned."""
     steps = scale_of(maps, quantity)
-    view = view_of(maps)
-    plotter = stage.empty_stage()
-    add_workspace(plotter, maps.thinned(), quantity, steps, view, SCREEN)
-    stage.aim(plotter, view)
-    scene = _scene(plotter)
-    plotter.close()
-    return _page(scene, maps.study.name, _overlay(maps, quantity, steps, view))
+    stage = Stage(view_of(maps), SCREEN)
+    add_workspace(stage, maps.thinned(), quantity, steps)
+    stage.aim()
+    scene = _scene(stage.plotter)
+    stage.plotter.close()
+    return _page(scene, maps.study.name, _overlay(maps, quantity, steps, stage.view))
 
 
 def _scene(plotter: Plotter) -> bytes:
@@ -104,65 +90,47 @@ def _page(scene: bytes, title: str, overlay: str) -> str:
 
 def _without_web(page: str) -> str:
     """Drop the viewer's icons, which it would fetch, and its picture for dropping files."""
-    start = page.find("https://kitware.github.io/vtk-js/icon/")
-    if start >= 0:
-        end = page.index("`", start)
-        page = page[:start] + "data:," + page[end:]
-    start = page.find("data:image/jpeg;base64,")
-    if start >= 0:
-        end = page.index(")", start)
-        page = page[:start] + "data:," + page[end:]
+    for begins, ends in (
+        ("https://kitware.github.io/vtk-js/icon/", "`"),
+        ("data:image/jpeg;base64,", ")"),
+    ):
+        before, found, after = page.partition(begins)
+        if found:
+            page = f"{before}data:,{after[after.index(ends) :]}"
     return page
 
 
-def _overlay(maps: WorkspaceMaps, quantity: Quantity, steps: Steps | None, view: View) -> str:
+def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, view: View) -> str:
     """Return labels, colour scale and controls as HTML."""
-    focus = maps.focus
-    parts = [_label(focus.position_m, focus.text(quantity), "label strong")]
-    for name, place in names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
-        parts.append(_label(place, name, "label"))
+    labels = [(maps.focus.position_m, quantity.text_of(maps.focus), "label strong")]
+    for name, place in canvas.names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
+        labels.append((place, name, "label"))
+    parts = []
+    for point_m, text, kind in labels:
+        at = ",".join(f"{x:.6g}" for x in point_m)
+        parts.append(f'<div class="{kind}" data-at="{at}">{escape(text)}</div>')
     parts.append(_scale(quantity, steps) if steps is not None else "")
-    parts.append(_notes(list(maps.shell.values()) or [maps.section]))
-    parts.append('<button id="shield"><span>click to turn the scene</span></button>')
-    parts.append(
-        f'<button id="home" data-half-height="{view.half_height_m:.6g}">reset view</button>'
+    notes = (
+        f'<i style="background:{colour}"></i><span>{text}</span>'
+        for colour, text in overlay.meanings(maps.shown)
     )
+    found = "".join(notes)
+    parts.append(f'<p class="notes">{found}</p>' if found else "")
+    parts.append('<button id="shield"><span>click to turn the scene</span></button>')
+    half_height = f"{view.half_height_m:.6g}"
+    parts.append(f'<button id="home" data-half-height="{half_height}">reset view</button>')
     return "\n".join(parts)
 
 
-def _label(point_m: FloatArray, text: str, kind: str) -> str:
-    at = ",".join(f"{x:.6g}" for x in point_m)
-    return f'<div class="{kind}" data-at="{at}">{escape(text)}</div>'
-
-
-def _scale(quantity: Quantity, steps: Steps) -> str:
+def _scale(quantity: MapQuantity, steps: Steps) -> str:
     """Return the steps of the scale as a list, the greatest first."""
     from matplotlib.colors import to_hex
 
     decimals = canvas.decimals(steps.ticks)
-    colours = [to_hex(steps.colormap(index)) for index in range(steps.colormap.N)]
-    levels = [*steps.levels, *([np.inf] if steps.extend == "max" else [])]
     rows = []
-    for low, colour in zip(levels[:-1], colours, strict=True):
-        labelled = bool(np.isclose(low, steps.ticks).any())
-        number = f"{low:.{decimals}f}" if labelled else ""
+    for index, low in enumerate(steps.edges[:-1]):
+        number = f"{low:.{decimals}f}" if np.isclose(low, steps.ticks).any() else ""
+        colour = to_hex(steps.colormap(index))
         rows.append(f'<li><span>{number}</span><i style="background:{colour}"></i></li>')
-    return (
-        f'<div class="scale"><p>{escape(quantity.label)}</p><ul>'
-        + "".join(reversed(rows))
-        + "</ul></div>"
-    )
-
-
-def _notes(fields: Iterable[Field]) -> str:
-    """Return what grey and orange mean, where they occur."""
-    shown = list(fields)
-    reasons = sorted({field.why_infeasible for field in shown} - {""})
-    notes = []
-    if reasons:
-        text = reasons[0] if len(reasons) == 1 else "no cable holds the platform"
-        notes.append(f'<i style="background:{palette.WARNING}"></i><span>{text}</span>')
-    if any(field.is_left_out.any() for field in shown):
-        text = "left out: a cable hangs below the platform"
-        notes.append(f'<i style="background:{palette.LEFT_OUT}"></i><span>{text}</span>')
-    return f'<p class="notes">{"".join(notes)}</p>' if notes else ""
+    listed = "".join(reversed(rows))
+    return f'<div class="scale"><p>{escape(quantity.label)}</p><ul>{listed}</ul></div>'

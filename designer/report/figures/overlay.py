@@ -1,18 +1,23 @@
-"""Text, axes and colour bar that are written over the picture of a scene."""
+"""Axes and texts that are written over the picture of a scene, and the finished PNG.
+
+Matplotlib writes them and not VTK, so that a scene has the letters and the colour bar of a chart.
+Texts stand near what they name, clear of all else.
+"""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from designer.analysis.field import Field
 from designer.arrays import FloatArray
+from designer.report import format as fmt
 from designer.report.figures import canvas, palette
-from designer.report.figures.colours import Steps
-from designer.report.figures.quantity import Quantity
+from designer.report.figures.canvas import Style
 from designer.report.figures.stage import Image
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
@@ -20,21 +25,31 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_TICK_POINTS = 13.5
-_TICKS_APART_POINTS = 27.0
-_LINES_APART_POINTS = 15.0
+_TICK_POINTS, _TICKS_APART_POINTS, _LINES_APART_POINTS = 13.5, 27.0, 15.0
 _DOTS_PER_INCH = 240.0  # 1600 px fill the column of the printed report
+_MARGIN = 0.01
+_SIDES = (
+    ((0, 1), "center", "bottom"),
+    ((1, 1), "left", "bottom"),
+    ((-1, 1), "right", "bottom"),
+    ((1, 0), "left", "center"),
+    ((-1, 0), "right", "center"),
+    ((0, -1), "center", "top"),
+    ((1, -1), "left", "top"),
+    ((-1, -1), "right", "top"),
+)
+"""Where a text may stand, right and up, and how it is aligned then."""
+_OVER_TEXT, _OVER_LINE = 1000.0, 5.0
+_LEADER_POINTS = 15.0
+_ROOM_PX = 3.0
+_NAMES_APART_PX = 45.0
 
 
 def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
     """Return a figure with the picture in it, whose axes count pixels from the upper left.
 
-    Parameters
-    ----------
-    image : Image
-        The picture of a scene.
-    letters : float
-        Size of letters and lines over the usual, for a picture that is printed small.
+    ``letters`` is the size of letters and lines over the usual, for a picture that is printed
+    small.
     """
     from matplotlib.figure import Figure
 
@@ -49,89 +64,45 @@ def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
 
 
 def png(figure: Figure) -> bytes:
-    """Return the finished picture as a PNG file of 1600 by 1000 pixels, and empty the figure.
-
-    Figures lie in reference cycles, and a few objects that hold megabytes of pixels would wait
-    hundreds of pictures long for Python to clear them up.
-    """
+    """Return the finished picture as a PNG file of 1600 by 1000 pixels, and empty the figure."""
     stream = io.BytesIO()
-    figure.savefig(
-        stream,
-        format="png",
-        dpi=figure.dpi,
-        metadata={"Software": None},
-        pil_kwargs={"optimize": True},
-    )
-    figure.clear()
+    nothing: Style = {"metadata": {"Software": None}, "pil_kwargs": {"optimize": True}}
+    figure.savefig(stream, format="png", dpi=figure.dpi, **nothing)
+    canvas.empty(figure)
     return stream.getvalue()
 
 
-def write(
-    axes: Axes,
-    view: View,
-    point_m: FloatArray,
-    text: str,
-    offset: tuple[float, float] = (0, 0),
-    **style: Any,
-) -> None:
-    """Write a text beside a point of the scene, ``offset`` in points; none outside the picture."""
-    x, y = view.pixels(point_m)
-    if not (0.0 <= x <= WIDTH_PX and 0.0 <= y <= HEIGHT_PX):
-        return
-    placed = {"ha": "center", "va": "center", **style}
-    label = axes.annotate(text, (x, y), offset, textcoords="offset points", **placed)
-    label.set_path_effects(canvas.halo())
+def without_empty_rows(png: bytes) -> bytes:
+    """Return a PNG without the rows of one colour at its top and bottom, but for a narrow margin.
+
+    The width stays, so that all scenes of a page are drawn to one scale.
+    """
+    from PIL import Image as Pillow
+    from PIL import ImageChops
+
+    image = Pillow.open(io.BytesIO(png)).convert("RGB")
+    blank = Pillow.new("RGB", image.size, image.getpixel((0, 0)))
+    box = ImageChops.difference(image, blank).getbbox()
+    if box is None:
+        return png
+    margin = round(_MARGIN * image.height)
+    top, bottom = max(box[1] - margin, 0), min(box[3] + margin, image.height)
+    stream = io.BytesIO()
+    image.crop((0, top, image.width, bottom)).save(stream, format="png", optimize=True)
+    return stream.getvalue()
 
 
-def mark(axes: Axes, view: View, point_m: FloatArray, colour: str = "white") -> None:
-    """Draw a ring at a point of the scene."""
-    axes.plot(
-        *view.pixels(point_m),
-        marker="o",
-        markersize=5.5,
-        color=colour,
-        markeredgecolor=palette.INK,
-        markeredgewidth=1.1,
-    )
-
-
-def hidden_lines(axes: Axes, view: View, lines_m: Iterable[FloatArray]) -> None:
-    """Draw lines faintly over everything, so that what lies behind a surface can be guessed."""
-    for line in lines_m:
-        axes.plot(
-            *view.pixels(line).T, color=palette.INK, linewidth=0.6, linestyle=(0, (2, 2)), alpha=0.6
-        )
-
-
-def colour_bar(
-    figure: Figure,
-    steps: Steps,
-    quantity: Quantity,
-    place: tuple[float, float, float, float] = (0.895, 0.2, 0.016, 0.6),
-) -> None:
-    """Draw the colour bar at the right edge, where ``place`` (left, low, width, height) says."""
-    axes = figure.add_axes(place)
-    bar = figure.colorbar(
-        steps.mappable, cax=axes, ticks=steps.ticks, extendfrac=0.04, label=quantity.label
-    )
-    bar.outline.set_linewidth(0.4)
-    bar.ax.tick_params(length=2)
-
-
-def legend(figure: Figure, fields: Sequence[Field]) -> None:
-    """Say what the colours mean that are not on the colour bar."""
-    from matplotlib.patches import Patch
-
-    reasons = {field.why_infeasible for field in fields} - {""}
-    entries = []
+def meanings(fields: Iterable[Field]) -> list[tuple[str, str]]:
+    """Return colours that are not on the colour bar, and what they mean, where they occur."""
+    shown = list(fields)
+    found = []
+    reasons = {field.why_infeasible for field in shown} - {""}
     if reasons:
-        label = reasons.pop() if len(reasons) == 1 else "no cable holds the platform"
-        entries.append(Patch(facecolor=palette.WARNING, label=label))
-    if any(field.is_left_out.any() for field in fields):
-        label = "left out: a cable hangs below the platform"
-        entries.append(Patch(facecolor=palette.LEFT_OUT, label=label))
-    if entries:
-        figure.legend(handles=entries, loc="lower left", ncols=2, frameon=False)
+        text = reasons.pop() if len(reasons) == 1 else "no cable holds the platform"
+        found.append((palette.WARNING, text))
+    if any(field.is_left_out.any() for field in shown):
+        found.append((palette.LEFT_OUT, "left out: a cable hangs below the platform"))
+    return found
 
 
 def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
@@ -140,73 +111,51 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     The lines themselves belong to the scene, see `floor_lines`.
     """
     low, high = bounds_m
+    middle, corner = 0.5 * (low + high), leftmost_corner(view, bounds_m)
     near = np.where(view.toward_camera > 0.0, high, low)
-    middle = 0.5 * (low + high)
-    corner = leftmost_corner(view, bounds_m)
-    taken = view.pixels(np.array([*corner, low[2]]))
+    small = {"fontsize": palette.FONT_POINTS - 1.0}
     points = axes.figure.dpi / 72.0
+    taken = view.pixels(np.array([*corner, low[2]]))  # where the upright axis has its own label
     for axis, across in ((0, 1), (1, 0)):
-        for tick in _ticks_along(view, low, high, axis, _TICKS_APART_POINTS * points):
-            point = np.array([0.0, 0.0, low[2]])
-            point[axis], point[across] = tick, near[across]
-            if np.hypot(*(view.pixels(point) - taken)) < _TICK_POINTS * points:
-                continue  # the upright axis has its own label there
-            _tick(
-                axes, view, point, canvas.number(float(tick)), across, near[across] - middle[across]
-            )
-        name = np.array([0.0, 0.0, low[2]])
-        name[axis], name[across] = middle[axis], near[across]
-        _tick(axes, view, name, "xy"[axis] + " [m]", across, near[across] - middle[across], 24.0)
-    for tick in _ticks_along(view, low, high, 2, _LINES_APART_POINTS * points):
-        write(
-            axes,
-            view,
-            np.array([*corner, tick]),
-            canvas.number(float(tick)),
-            (-5, 0),
-            ha="right",
-            fontsize=palette.FONT_POINTS - 1.0,
-        )
-    write(axes, view, np.array([*corner, high[2]]), "z [m]", (-13, 12), ha="right")
+        name = np.array([*middle[:2], low[2]])
+        name[across] = near[across]
+        beyond = name.copy()
+        beyond[across] += near[across] - middle[across]
+        outward = (view.pixels(beyond) - view.pixels(name)) * [1.0, -1.0]
+        outward /= max(float(np.hypot(*outward)), 1e-9)
+        for tick in _ticks_along(view, bounds_m, axis, _TICKS_APART_POINTS * points):
+            point = name.copy()
+            point[axis] = tick
+            if np.hypot(*(view.pixels(point) - taken)) >= _TICK_POINTS * points:
+                _write(axes, view, point, fmt.trimmed(tick, 6), 9.0 * outward, **small)
+        # The name of an axis begins beyond its numbers, wherever these stand.
+        side = "left" if outward[0] > 0.0 else "right"
+        ha = side if abs(outward[0]) > 0.5 else "center"
+        _write(axes, view, name, f"{'xy'[axis]} [m]", 24.0 * outward, ha=ha)
+    for tick in _ticks_along(view, bounds_m, 2, _LINES_APART_POINTS * points):
+        place = np.array([*corner, tick])
+        _write(axes, view, place, fmt.trimmed(tick, 6), (-5, 0), ha="right", **small)
+    _write(axes, view, np.array([*corner, high[2]]), "z [m]", (-13, 12), ha="right")
 
 
-def _ticks_along(
-    view: View, low: FloatArray, high: FloatArray, axis: int, apart_px: float
-) -> FloatArray:
+def _ticks_along(view: View, bounds_m: FloatArray, axis: int, apart_px: float) -> FloatArray:
     """As many ticks as there is room for along an edge."""
     edge = np.zeros((2, 3))
-    edge[:, axis] = low[axis], high[axis]
+    edge[:, axis] = bounds_m[:, axis]
     length = float(np.hypot(*np.diff(view.pixels(edge), axis=0)[0]))
-    return ticks_between(
-        low[axis], high[axis], min(max(int(length / apart_px), 1), 4 if axis == 2 else 5)
-    )
+    most = min(max(int(length / apart_px), 1), 4 if axis == 2 else 5)
+    low, high = bounds_m[:, axis]
+    return ticks_between(low, high, most)
 
 
-def _tick(
-    axes: Axes,
-    view: View,
-    point: FloatArray,
-    text: str,
-    across: int,
-    side: float,
-    distance: float = 9.0,
+def _write(
+    axes: Axes, view: View, point_m: FloatArray, text: str, offset: Any, **style: Any
 ) -> None:
-    """Write outside the edge, in the direction in which the picture shows it to lie."""
-    beyond = point.copy()
-    beyond[across] += side
-    step = view.pixels(beyond) - view.pixels(point)
-    step = step / max(float(np.hypot(*step)), 1e-9) * distance
-    # The name of an axis begins beyond its numbers, wherever these stand.
-    aside = distance > 10.0 and abs(step[0]) > 0.5 * distance
-    write(
-        axes,
-        view,
-        point,
-        text,
-        (float(step[0]), -float(step[1])),
-        ha=("left" if step[0] > 0.0 else "right") if aside else "center",
-        fontsize=palette.FONT_POINTS - (1.0 if distance < 10.0 else 0.0),
-    )
+    """Write beside a point of the scene, ``offset`` in points; nothing outside the picture."""
+    if view.shows(point_m):
+        x, y = view.pixels(point_m)
+        placed = {"ha": "center", "va": "center", "path_effects": canvas.halo(), **style}
+        canvas.note(axes, text, (x, y), tuple(offset), **placed)
 
 
 def floor_lines(view: View, bounds_m: FloatArray) -> list[FloatArray]:
@@ -226,9 +175,13 @@ def floor_lines(view: View, bounds_m: FloatArray) -> list[FloatArray]:
 
 def leftmost_corner(view: View, bounds_m: FloatArray) -> FloatArray:
     """Return x and y of the upright edge of a box that is leftmost in the picture (2,) [m]."""
-    low, high = bounds_m
-    corners = np.array([[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])])
+    corners = floor_corners(bounds_m)
     return np.asarray(corners[np.argmin(view.pixels(corners)[:, 0]), :2])
+
+
+def floor_corners(bounds_m: FloatArray) -> FloatArray:
+    """Return the four lower corners (4, 3) of a box (2, 3) [m]."""
+    return np.array([*product(*bounds_m[:, :2].T, bounds_m[:1, 2])])
 
 
 def ticks_between(low: float, high: float, most: int = 5) -> FloatArray:
@@ -240,3 +193,98 @@ def ticks_between(low: float, high: float, most: int = 5) -> FloatArray:
     ticks = np.asarray(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]).tick_values(low, high))
     slack = 1e-9 * (high - low)
     return ticks[(ticks >= low - slack) & (ticks <= high + slack)]
+
+
+def write_clear(
+    axes: Axes,
+    view: View,
+    anchors_m: FloatArray,
+    text: str,
+    obstacles_px: FloatArray,
+    distances: Iterable[float] = (11.0, 18.0, 28.0, 42.0, 60.0),
+    **style: Any,
+) -> None:
+    """Write a text where it covers least, with a line to what it names where that is far off.
+
+    Parameters
+    ----------
+    axes : Axes
+        With the picture; the texts already in it are not covered.
+    view : View
+        Where points land.
+    anchors_m : array (n, 3)
+        Places that the text may stand beside, the best first [m].
+    text : str
+        What to write.
+    obstacles_px : array (k, 2)
+        Points of lines and bodies that are better left free, see `obstacles`.
+    distances : iterable of float
+        From anchor to the edge of the text, the best first [points].
+    **style
+        Of the text.
+    """
+    looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
+    label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
+    taken = _boxes(
+        *(bar.get_tightbbox() for bar in axes.figure.axes[1:]),
+        *(other.get_window_extent() for other in axes.texts if other is not label),
+    )
+
+    def put(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:
+        (right, up), ha, va = side
+        along = distance / np.hypot(right, up)
+        label.xy = (float(anchor_px[0]), float(anchor_px[1]))
+        label.set_position((along * right, along * up))
+        label.set(ha=ha, va=va)
+        return np.asarray(_boxes(label.get_window_extent())[0])
+
+    anchors_px = view.pixels(np.atleast_2d(anchors_m))
+    places = [(a, side, d) for d, a, side in product(distances, anchors_px, _SIDES)]
+    costs = [_cost(put(*place), taken, obstacles_px) for place in places]
+    anchor, side, distance = places[int(np.argmin(costs + 0.02 * np.arange(len(costs))))]
+    left, top, right, bottom = put(anchor, side, distance)
+    if distance > _LEADER_POINTS:
+        end = np.clip(anchor, [left, top], [right, bottom])
+        line: Style = {"color": palette.INK, "linewidth": 0.7, "zorder": 1.9}
+        axes.plot(*np.stack([anchor, end]).T, path_effects=canvas.halo(), **line)
+
+
+def write_exits(
+    axes: Axes, view: View, exit_points_m: FloatArray, obstacles_px: FloatArray
+) -> None:
+    """Name the exit points (n_cables, 3) [m] that lie in the picture, neighbours together."""
+    for name, place in canvas.names_of(exit_points_m, _NAMES_APART_PX / view.pixels_per_m):
+        if view.shows(place):
+            style = {"bbox": None, "path_effects": canvas.halo()}
+            write_clear(axes, view, place, name, obstacles_px, (5.0, 9.0), **style)
+
+
+def obstacles(view: View, lines_m: Iterable[FloatArray]) -> FloatArray:
+    """Return points (k, 2) a few pixels apart along lines (n, 3), to be kept free of text [px]."""
+    parts = [np.empty((0, 2))]
+    for line in lines_m:
+        corners = view.pixels(line)
+        steps = np.hypot(*np.diff(corners, axis=0).T)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        at = np.linspace(0.0, along[-1], max(int(along[-1] / 6.0), 2))
+        parts.append(np.stack([np.interp(at, along, corners[:, k]) for k in (0, 1)], axis=1))
+    return np.concatenate(parts)
+
+
+def _boxes(*boxes: Any) -> FloatArray:
+    """Left, upper, right and lower edges (n, 4) of boxes that Matplotlib counts from below [px]."""
+    edges = [[box.x0, HEIGHT_PX - box.y1, box.x1, HEIGHT_PX - box.y0] for box in boxes]
+    return np.array(edges).reshape(-1, 4)
+
+
+def _cost(box: FloatArray, taken: FloatArray, obstacles_px: FloatArray) -> float:
+    """How bad a place is: texts below it or the rim beyond it, then lines that it covers."""
+    left, top, right, bottom = box + _ROOM_PX * np.array([-1.0, -1.0, 1.0, 1.0])
+    if left < 0.0 or top < 0.0 or right > WIDTH_PX or bottom > HEIGHT_PX:
+        return 10.0 * _OVER_TEXT
+    wide = np.minimum(right, taken[:, 2]) - np.maximum(left, taken[:, 0])
+    high = np.minimum(bottom, taken[:, 3]) - np.maximum(top, taken[:, 1])
+    x, y = obstacles_px.T
+    covered = (x > left) & (x < right) & (y > top) & (y < bottom)
+    texts = np.count_nonzero((wide > 0.0) & (high > 0.0))
+    return float(_OVER_TEXT * texts + _OVER_LINE * np.count_nonzero(covered))

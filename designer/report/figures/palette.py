@@ -5,6 +5,8 @@ The accents are from M. Okabe and K. Ito, "Color Universal Design", 2008.
 
 from __future__ import annotations
 
+from typing import Any
+
 COLORMAP = "viridis"
 """Sequential, perceptually even, also in grey; for diameter, tension and their ratio."""
 
@@ -29,9 +31,17 @@ CLASS_COLOURS = {
     "not stated": MASSLESS,
 }
 """Of the classes of a rope's material."""
-CLASS_MARKERS = {"steel": "o", "stainless steel": "s", "fibre": "^", "not stated": "D"}
-"""Shapes, for those who cannot tell the colours apart."""
+_CLASS_MARKERS = {"steel": "o", "stainless steel": "s", "fibre": "^", "not stated": "D"}
 
 PAPER_WIDTH_MM = 170.0
 """Column width of the printed report."""
 FONT_POINTS = 8.0
+
+
+def look_of(kind: str) -> dict[str, Any]:
+    """Return colour and shape of the points of a class, for those who see no colours as well."""
+    return {
+        "linestyle": "none",
+        "color": CLASS_COLOURS[kind],
+        "marker": _CLASS_MARKERS[kind],
+    }

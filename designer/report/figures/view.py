@@ -40,14 +40,10 @@ class View:
     @property
     def toward_camera(self) -> FloatArray:
         """Unit vector from the scene to the camera."""
-        level = np.cos(self.elevation_rad)
-        return np.array(
-            [
-                level * np.cos(self.azimuth_rad),
-                level * np.sin(self.azimuth_rad),
-                np.sin(self.elevation_rad),
-            ]
+        level = np.cos(self.elevation_rad) * np.array(
+            [np.cos(self.azimuth_rad), np.sin(self.azimuth_rad)]
         )
+        return np.append(level, np.sin(self.elevation_rad))
 
     @property
     def right(self) -> FloatArray:
@@ -71,27 +67,20 @@ class View:
             [0.5 * WIDTH_PX + offset @ self.right, 0.5 * HEIGHT_PX - offset @ self.up], axis=-1
         )
 
+    def shows(self, point_m: FloatArray) -> bool:
+        """Tell whether a point (3,) lies in the picture."""
+        x, y = self.pixels(point_m)
+        return bool(0.0 <= x <= WIDTH_PX and 0.0 <= y <= HEIGHT_PX)
+
     def nearer(self, points_m: FloatArray, pixels: float) -> FloatArray:
         """Return points (..., 3) moved toward the camera, so that they lie before a surface."""
         return np.asarray(points_m + self.toward_camera * pixels / self.pixels_per_m)
 
 
-def fitting(
-    points_m: FloatArray,
-    azimuth_rad: float,
-    elevation_rad: float,
-    frame: Frame,
-) -> View:
-    """Return the view in which all points land within a frame, as large as can be.
+def fitting(points_m: FloatArray, azimuth_rad: float, elevation_rad: float, frame: Frame) -> View:
+    """Return the view in which all points (n, 3) land within a frame, as large as can be.
 
-    Parameters
-    ----------
-    points_m : array (n, 3)
-        What must be seen [m].
-    azimuth_rad, elevation_rad : float
-        Where the camera stands [rad].
-    frame : Frame
-        Where in the picture they land.
+    ``azimuth_rad`` and ``elevation_rad`` tell where the camera stands.
     """
     left, right, low, high = frame
     plain = View(azimuth_rad, elevation_rad, np.zeros(3), 1.0)
@@ -110,14 +99,9 @@ def fitting(
 
 
 def clear_azimuth_rad(lines_m: FloatArray, elevation_rad: float) -> float:
-    """Return the azimuth from which lines lie best apart in the picture [rad].
+    """Return the azimuth from which straight lines (n, 2, 3) [m] lie best apart in the picture.
 
-    Parameters
-    ----------
-    lines_m : array (n, 2, 3)
-        Straight lines to keep apart, such as cables and the outline of the base [m].
-    elevation_rad : float
-        How high the camera stands [rad].
+    They may be cables and the outline of the base; the camera stands ``elevation_rad`` high.
     """
     share = np.array([0.3, 0.5, 0.7])[:, None]
     points = np.concatenate([a + share * (b - a) for a, b in lines_m])
@@ -139,9 +123,6 @@ def clear_azimuth_rad(lines_m: FloatArray, elevation_rad: float) -> float:
 def facing_azimuth_rad(along: FloatArray) -> float:
     """Return the azimuth from which an upright plane is seen a little from the side [rad].
 
-    Parameters
-    ----------
-    along : array (2,)
-        Horizontal direction in the plane, which shall point to the right.
+    ``along`` (2,) is the horizontal direction in the plane that shall point to the right.
     """
     return float(np.arctan2(-along[0], along[1]) + _FROM_THE_SIDE_RAD)

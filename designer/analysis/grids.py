@@ -15,9 +15,8 @@ _OPENING_RAD = np.radians(100.0)
 
 def centroid_m(polygon_m: FloatArray) -> FloatArray:
     """Return the centre of area of a polygon (n_corners, 2), (2,) [m]."""
-    following = np.roll(polygon_m, -1, axis=0)
-    origin = polygon_m[0]  # far from the frame's origin the products would cancel
-    a, b = polygon_m - origin, following - origin
+    origin = polygon_m.mean(axis=0)  # coordinates from here, so that no digits are lost
+    a, b = polygon_m - origin, np.roll(polygon_m, -1, axis=0) - origin
     twice_area = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
     weighted = ((a + b) * twice_area[:, None]).sum(axis=0)
     return np.asarray(origin + weighted / (3.0 * twice_area.sum()))
@@ -51,14 +50,9 @@ def upright_disc_m(region: Rectangle, rings: int = 90, spokes: int = 240) -> Flo
 
 
 def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:
-    """Return points around a polygon, its corners among them, the first one again at the end.
+    """Return some ``count`` points around a polygon (n_corners, 2), all corners among them [m].
 
-    Parameters
-    ----------
-    polygon_m : array (n_corners, 2)
-        Corners [m].
-    count : int
-        How many points to aim at.
+    The first one stands again at the end.
     """
     following = np.roll(polygon_m, -1, axis=0)
     length = np.linalg.norm(following - polygon_m, axis=1)
@@ -73,14 +67,7 @@ def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:
 def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
     """Return the outside of the region with a piece cut out, so that one sees inside.
 
-    One of the two cuts runs from the axis of the region through a given position.
-
-    Parameters
-    ----------
-    region : Prism
-        The region.
-    toward_m : array (2 or 3,)
-        Position that one cut runs through [m].
+    One of the two cuts runs from the axis of the region through the position ``toward_m``.
 
     Returns
     -------
@@ -91,13 +78,16 @@ def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
     outline = _opened(region.polygon_m, centre, toward_m)
     rings = _rings(centre, outline, _RINGS)
     low, high = region.z_m
-    layers = np.linspace(low, high, _LAYERS)
+
+    def raised(line: FloatArray) -> FloatArray:
+        return np.stack([_at_height(line, z) for z in np.linspace(low, high, _LAYERS)])
+
     return {
         "top": _at_height(rings, high),
         "bottom": _at_height(rings, low),
-        "wall": _raised(outline, layers),
-        "cut": _raised(rings[:, 0], layers),
-        "other_cut": _raised(rings[:, -1], layers),
+        "wall": raised(outline),
+        "cut": raised(rings[:, 0]),
+        "other_cut": raised(rings[:, -1]),
     }
 
 
@@ -122,13 +112,13 @@ def reach_m(polygon_m: FloatArray, centre_m: FloatArray, azimuth_rad: float) -> 
 
 def opening_azimuth_rad(region: Prism, toward_m: FloatArray) -> float:
     """Return the direction in which `cutaway_m` is open, seen from the centre [rad]."""
-    toward = np.asarray(toward_m)[None, :2] - centroid_m(region.polygon_m)
-    return float(_azimuth(toward)[0] + 0.5 * _OPENING_RAD)
+    toward = _azimuth(toward_m[:2] - centroid_m(region.polygon_m))
+    return float(toward + 0.5 * _OPENING_RAD)
 
 
 def _opened(polygon_m: FloatArray, centre: FloatArray, toward_m: FloatArray) -> FloatArray:
     """Points around the polygon from the end of the opening on, back to its start."""
-    start = _azimuth(np.asarray(toward_m, dtype=np.float64)[None, :2] - centre)[0]
+    start = float(_azimuth(toward_m[:2] - centre))
     ends = [
         centre + reach_m(polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
         for a in (start, start + _OPENING_RAD)
@@ -148,12 +138,8 @@ def _rings(centre: FloatArray, outline: FloatArray, count: int) -> FloatArray:
 
 
 def _at_height(plan: FloatArray, z_m: float) -> FloatArray:
-    return np.concatenate([plan, np.full((*plan.shape[:-1], 1), z_m)], axis=-1)
-
-
-def _raised(line: FloatArray, layers: FloatArray) -> FloatArray:
-    return np.stack([_at_height(line, float(z)) for z in layers])
+    return np.insert(plan, 2, z_m, axis=-1)
 
 
 def _azimuth(direction: FloatArray) -> FloatArray:
-    return np.arctan2(direction[:, 1], direction[:, 0])
+    return np.arctan2(direction[..., 1], direction[..., 0])

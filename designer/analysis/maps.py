@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from designer.analysis import grids
 from designer.analysis.analyse import Analysis
+from designer.analysis.edge import EdgeProfile, edge_profile
 from designer.analysis.field import Field, field_at, field_of
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import FloatArray
 from designer.model.region import PointList, Rectangle, Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.report.figures import grids
-from designer.report.figures.edge import EdgeProfile, edge_profile
-from designer.report.figures.quantity import Quantity
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
 from designer.study import Study, Workspace, as_built_by
@@ -48,11 +47,6 @@ class Focus:
     label: str
     statics: Statics | None
     field: Field
-
-    def text(self, quantity: Quantity) -> str:
-        """Return what it is, and the value of a quantity where it has one."""
-        value = float(quantity.of(self.field))
-        return f"{self.label}, {quantity.text(value)}" if np.isfinite(value) else self.label
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,6 +119,11 @@ class WorkspaceMaps:
     def has_area(self) -> bool:
         """Whether the region is more than a list of points."""
         return bool(self.shell)
+
+    @property
+    def shown(self) -> Sequence[Field]:
+        """All fields that are seen in space."""
+        return [*self.shell.values()] or [self.section]
 
     @property
     def is_upright(self) -> bool:
@@ -210,27 +209,21 @@ def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Serve
     """Return the share of the workspace over diameter, from every sample of a sweep."""
     with open_sweep(sweep_file) as sweep:
         verdict = sweep["verdict"].to_numpy()
-        hanging = sweep["hangs_below"].to_numpy() == 1
-        diameter = sweep["diameter"].to_numpy()
-        massless = sweep["massless_diameter"].to_numpy()
-    counted = _counted(verdict, hanging, workspace)
-    total = max(int(counted.sum()), 1)
-    sagging_curve = _cumulative(diameter[counted], total)
-    massless_curve = _cumulative(massless[counted], total)
+        counts = np.ones(verdict.shape, dtype=np.bool_)
+        if workspace.hangs_below == "exclude":
+            hangs = sweep["hangs_below"].to_numpy() == 1
+            counts = ~(hangs | (verdict == Verdict.NO_FINITE_CABLE))
+        diameter = sweep["diameter"].to_numpy()[counts]
+        massless = sweep["massless_diameter"].to_numpy()[counts]
+    total = max(len(diameter), 1)
     return Served(
-        *sagging_curve,
-        *massless_curve,
-        unserved=float(np.isnan(diameter[counted]).sum() / total),
+        *_cumulative(diameter, total),
+        *_cumulative(massless, total),
+        unserved=float(np.isnan(diameter).sum() / total),
         needed_m=found.sagging.diameter_m if found.sagging else float("nan"),
         massless_needed_m=found.massless.diameter_m if found.massless else float("nan"),
-        samples=int(counted.sum()),
+        samples=len(diameter),
     )
-
-
-def _counted(verdict: FloatArray, hanging: BoolArray, workspace: Workspace) -> BoolArray:
-    if workspace.hangs_below == "include":
-        return np.ones(verdict.shape, dtype=np.bool_)
-    return np.asarray(~(hanging | (verdict == int(Verdict.NO_FINITE_CABLE))))
 
 
 def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatArray]:
@@ -250,14 +243,13 @@ def _focus(study: Study, found: WorkspaceMap) -> Focus:
         pose = found.infeasible_pose
     else:
         pose = Poses.at(_workspace(study).region.bounds_m.mean(axis=0))
-    position = pose.position_m
     field = field_of(study, pose.place)
     statics = size_poses(study.robot, pose, study.material).statics
     if found.sagging is not None:
         label = "worst pose"
     else:
         label = f"{field.why_infeasible}, for example here" if field.is_infeasible else "left out"
-    return Focus(position, label, statics if statics.is_solved else None, field)
+    return Focus(pose.position_m, label, statics if statics.is_solved else None, field)
 
 
 def _workspace(study: Study) -> Workspace:

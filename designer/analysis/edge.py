@@ -7,15 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from designer.analysis import grids
 from designer.analysis.field import Field, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.model.region import PointList, Prism, Rectangle
+from designer.model.region import Prism, Rectangle
 from designer.model.verdict import Verdict
-from designer.report.figures import grids
 from designer.study import Study
 
 _STEPS = 400
-_BISECTIONS = 40
 _IMPOSSIBLE = (Verdict.OUTSIDE_HULL, Verdict.NO_FINITE_CABLE, Verdict.RANK_DEFICIENT)
 
 
@@ -63,6 +62,17 @@ class EdgeProfile:
         limit = -np.inf if self.limit_distance_m is None else self.limit_distance_m
         return self.field.verdict[self.distance_m < limit]
 
+    @property
+    def stretches_not_held_m(self) -> list[tuple[float, float]]:
+        """Distances at which each stretch of poses that are not held starts and stops [m]."""
+        x, failed = self.distance_m, ~self.field.is_solved
+        turns = np.flatnonzero(np.diff(failed)) + 1
+        between = 0.5 * (x[turns - 1] + x[turns])
+        if self.limit_distance_m is not None:
+            between[0] = self.limit_distance_m
+        ends = [*x[:1][failed[:1]].tolist(), *between.tolist(), *([0.0] if failed[-1] else [])]
+        return list(zip(ends[::2], ends[1::2], strict=True))
+
 
 def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     """Size the level line from the centre of the region through a pose to the edge of the hull.
@@ -72,7 +82,8 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     study : Study
         With a workspace.
     focus_m : array (3,)
-        The line runs at its height, and through it unless it lies in the centre [m].
+        The line runs at its height, and through it; where it lies in the centre, to the nearest
+        edge [m].
 
     Returns
     -------
@@ -87,10 +98,18 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     if study.robot.gravity_direction[:2].any():
         return None
     hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
-    centre = _centre(region)
+    if isinstance(region, Prism):
+        centre = grids.centroid_m(region.polygon_m)
+    else:
+        centre = np.asarray(region.points_m[:, :2].mean(axis=0))
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
         return None
-    azimuth = _azimuth(hull, centre, focus_m)
+    offset = focus_m[:2] - centre
+    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
+        azimuth = float(np.arctan2(offset[1], offset[0]))
+    else:
+        around = np.linspace(-np.pi, np.pi, 361)
+        azimuth = float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])
     reach = grids.reach_m(hull, centre, azimuth)
     ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
@@ -106,42 +125,45 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     return EdgeProfile(
         distance_m=distance,
         field=field,
-        focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
+        focus_distance_m=reach - float(np.hypot(*offset)),
         region_distance_m=inside,
-        limit_distance_m=_limit(at, distance, lambda some: some.is_solved),
-        straight_distance_m=_limit(at, distance, lambda some: some.is_held_straight),
+        limit_distance_m=first_failure_m(at, distance, field, lambda some: some.is_solved),
+        straight_distance_m=first_failure_m(
+            at, distance, field, lambda some: some.is_held_straight
+        ),
     )
 
 
-def _limit(
+def first_failure_m(
     at: Callable[[FloatArray], Field],
-    distance: FloatArray,
+    distance_m: FloatArray,
+    field: Field,
     is_held: Callable[[Field], BoolArray],
 ) -> float | None:
-    """Bisect between the first pose that is not held and the one before it."""
-    failed = np.flatnonzero(~is_held(at(distance)))
+    """Return where the first pose that is not held lies, on the way outward [m].
+
+    Parameters
+    ----------
+    at : callable
+        Field at distances (n,) [m].
+    distance_m, field : array (n,), Field
+        Descending distances [m] and the field there; between two of them the place is found by
+        bisection.
+    is_held : callable
+        Whether each pose of a field is held.
+
+    Returns
+    -------
+    float or None
+        None where all are held, and where the first is not.
+    """
+    from scipy.optimize import bisect
+
+    failed = np.flatnonzero(~is_held(field))
     if len(failed) == 0 or failed[0] == 0:
         return None
-    holds, fails = distance[failed[0] - 1], distance[failed[0]]
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (holds + fails)
-        if is_held(at(np.array([middle])))[0]:
-            holds = middle
-        else:
-            fails = middle
-    return float(holds)
 
+    def sign(distance_m: float) -> float:
+        return 1.0 if is_held(at(np.array([distance_m])))[0] else -1.0
 
-def _centre(region: Prism | PointList) -> FloatArray:
-    if isinstance(region, Prism):
-        return grids.centroid_m(region.polygon_m)
-    return np.asarray(region.points_m[:, :2].mean(axis=0))
-
-
-def _azimuth(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> float:
-    """Direction to the focus, or to the nearest edge where the focus is in the centre."""
-    offset = focus_m[:2] - centre
-    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
-        return float(np.arctan2(offset[1], offset[0]))
-    around = np.linspace(-np.pi, np.pi, 361)
-    return float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])
+    return float(bisect(sign, distance_m[failed[0] - 1], distance_m[failed[0]], xtol=1e-12))

@@ -1,0 +1,88 @@
+"""Where sizes of one grade serve: one layer of the opened region for each size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.analysis.maps import WorkspaceMaps
+from designer.arrays import FloatArray
+from designer.model.region import Prism
+from designer.model.robot import Poses, Robot
+from designer.selection.usable import Usable, UsableSize
+from designer.statics.inverse import solve_sagging
+from designer.study import Workspace
+from designer.workspace.demand import is_left_out
+
+_MOST = 5
+_HEIGHTS = 25
+_MOST_SOLVED = 2_000_000
+"""Poses of all sizes and orientations; rings and heights are fewer where there would be more."""
+_BEYOND = 1e3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layers:
+    """Which sizes are shown, and what each of them meets on a grid through the opened region.
+
+    Parameters
+    ----------
+    sizes : tuple of UsableSize
+        Thinnest first.
+    position_m : array (rings, spokes, heights, 3)
+        Grid [m].
+    utilisation : array (n_sizes, rings, spokes, heights)
+        Largest over allowable tension; very large where a pose cannot be held or does not count.
+    """
+
+    sizes: tuple[UsableSize, ...]
+    position_m: FloatArray
+    utilisation: FloatArray
+
+
+def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
+    """Solve the grid with the sizes that are shown.
+
+    None for a list of points, and where no size serves a part only.
+    """
+    shown = chosen_sizes(usable)
+    workspace = maps.study.workspace
+    if not isinstance(maps.region, Prism) or not shown or workspace is None:
+        return None
+    plan = maps.shell["top"].position_m
+    solved = plan[..., 0].size * _HEIGHTS * len(shown) * len(workspace.orientations.turns_rad)
+    share = min(1.0, np.sqrt(_MOST_SOLVED / solved))
+    rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
+    heights = np.linspace(*maps.region.z_m, max(2, round(share * _HEIGHTS)))
+    position = np.repeat(plan[rings, :, None], len(heights), axis=2)
+    position[..., 2] = heights
+    used = [_utilisation(maps.study.robot, workspace, one, position) for one in shown]
+    return Layers(shown, position, np.stack(used))
+
+
+def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
+    """Return a few sizes that serve a part, spread over their shares, and one that serves all.
+
+    Thinnest first. Empty where no size serves a part only.
+    """
+    part = [one for one in usable.sizes if 0.0 < one.fraction < 1.0]
+    whole = [one for one in usable.sizes if one.fraction == 1.0][:1]
+    if not part:
+        return ()
+    shares = [one.fraction for one in part]
+    wanted = np.linspace(min(shares), max(shares), min(_MOST - len(whole), len(part)))
+    nearest = [min(part, key=lambda one: abs(one.fraction - share)) for share in wanted]
+    return tuple(one for one in usable.sizes if one in nearest or one in whole)
+
+
+def _utilisation(
+    robot: Robot, workspace: Workspace, one: UsableSize, position_m: FloatArray
+) -> FloatArray:
+    most = np.zeros(position_m.shape[:-1])
+    for turn_rad in workspace.orientations.turns_rad:
+        statics = solve_sagging(robot, Poses.at(position_m, turn_rad), one.cable)
+        serves = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        used = statics.largest_tension_N / one.cable.allowable_tension_N
+        most = np.maximum(most, np.where(serves, np.minimum(used, _BEYOND), _BEYOND))
+    return most

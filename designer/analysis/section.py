@@ -1,0 +1,88 @@
+"""Stiffness and clearance over a level section through the middle of the region."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.analysis import grids
+from designer.analysis.analyse import Analysis
+from designer.arrays import BoolArray, FloatArray
+from designer.model.region import Prism
+from designer.model.robot import Poses
+from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.workspace.clearance import smallest_clearance
+from designer.workspace.demand import is_left_out
+
+_STIFFNESS_GRID = (40, 144)
+_CLEARANCE_GRID = (16, 60)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Section:
+    """A value over rings about the centre of the region, see `grids.disc_m`.
+
+    Parameters
+    ----------
+    position_m : array (rings, spokes, 3)
+        Positions, all at one height [m].
+    values : array (rings, spokes)
+        In SI units; NaN where there is none.
+    is_bad : array (rings, spokes) of bool
+        Where the study asks for a value and there is none.
+    exit_points_m : array (n_cables, 3)
+        Of the robot [m].
+    """
+
+    position_m: FloatArray
+    values: FloatArray
+    is_bad: BoolArray
+    exit_points_m: FloatArray
+
+
+def displacement_section(analysis: Analysis) -> Section | None:
+    """Return the largest displacement under a unit force [m/N]; None without an area."""
+    statics = _statics(analysis, _STIFFNESS_GRID)
+    if statics is None:
+        return None
+    displacement = largest_displacement_m_per_N(statics)
+    return _section(analysis, statics, displacement, np.isnan(displacement))
+
+
+def clearance_section(analysis: Analysis) -> Section | None:
+    """Return the smallest clearance [m]; None without an area or anything to compare."""
+    found = None if analysis.qualities is None else analysis.qualities.interference
+    if found is None or found.worst is None:
+        return None
+    statics = _statics(analysis, _CLEARANCE_GRID)
+    if statics is None:
+        return None
+    distance = smallest_clearance(statics).distance_m
+    return _section(analysis, statics, distance, ~statics.is_solved)
+
+
+def _statics(analysis: Analysis, grid: tuple[int, int]) -> Statics | None:
+    """Solve the section at the middle height, with the cable of the design."""
+    workspace, qualities = analysis.study.workspace, analysis.qualities
+    if workspace is None or qualities is None or not isinstance(workspace.region, Prism):
+        return None
+    if analysis.built.robot.is_planar:  # it has no area in plan
+        return None
+    positions = grids.disc_m(workspace.region, 0.5 * sum(workspace.region.z_m), *grid)
+    poses = Poses.at(positions, workspace.orientations.turns_rad[0])
+    return solve_sagging(analysis.built.robot, poses, qualities.cable.cable)
+
+
+def _section(
+    analysis: Analysis, statics: Statics, values: FloatArray, is_missing: BoolArray
+) -> Section:
+    assert analysis.study.workspace is not None
+    asked_for = ~is_left_out(statics, analysis.study.workspace.hangs_below)
+    return Section(
+        position_m=statics.poses.position_m,
+        values=np.where(statics.is_solved & asked_for, values, np.nan),
+        is_bad=np.asarray(asked_for & is_missing),
+        exit_points_m=statics.robot.exit_points_m,
+    )

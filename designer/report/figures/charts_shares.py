@@ -1,0 +1,223 @@
+"""What share of the workspace is served: by any diameter, by each size of a grade, by verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.analysis.maps import Served
+from designer.report import format as fmt
+from designer.report.figures import canvas, palette
+from designer.report.figures.canvas import Style
+from designer.selection.result import Candidate
+from designer.selection.usable import Usable
+from designer.workspace.result import Census
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_APART = 0.03
+_LOW = 75.0  # where all sizes serve more, the axis begins here
+_HELD_BELOW = "#8CC1E0"
+_CHARACTER = 0.0098  # width of a character over the width of the figure
+
+
+def served_chart(served: Served) -> str:
+    """Return the cumulative share of the workspace over the diameter, as SVG."""
+    title = "Share of the workspace that a cable serves, over its diameter"
+    with canvas.drawing():
+        figure = canvas.sheet(64.0)
+        axes = figure.subplots()
+        axes.set(ylim=(0.0, 104.0), xlim=_served_range(served))
+        curves = (
+            (served.massless_diameter_m, served.massless_share, palette.MASSLESS),
+            (served.diameter_m, served.share, palette.SAG),
+        )
+        for diameter_m, share, colour in curves:
+            if len(diameter_m) > 0:  # a staircase: a pose is served by its diameter and all above
+                right = max(axes.get_xlim()[1], 1e3 * diameter_m[-1])
+                x = np.concatenate([[0.0], 1e3 * diameter_m, [right]])
+                y = 100.0 * np.concatenate([[0.0], share, share[-1:]])
+                axes.step(x, y, where="post", color=colour)
+        names = (("massless", "massless", "right"), ("with sag", "serves all", "left"))
+        needed = (served.massless_needed_m, served.needed_m)
+        for (diameter_m, share, colour), (name, _, side) in zip(curves, names, strict=True):
+            if len(diameter_m) > 0:
+                at = int(np.searchsorted(share, 0.45 * share[-1]))
+                place = (1e3 * diameter_m[at], 45.0 * share[-1])
+                offset, va = ((6, -4), "top") if side == "left" else ((-6, 4), "bottom")
+                canvas.note(axes, name, place, offset, ha=side, va=va, color=colour)
+        for needed_m, (_, _, colour), (_, what, side) in zip(needed, curves, names, strict=True):
+            if np.isfinite(needed_m):
+                axes.axvline(1e3 * needed_m, color=colour, linewidth=0.9, linestyle=canvas.DASHES)
+                text = f"{what}: {fmt.number(1e3 * needed_m, 3)} mm"
+                place, offset = (1e3 * needed_m, 3.0), (-3 if side == "right" else 3, 0)
+                canvas.note(
+                    axes, text, place, offset, rotation=90, ha=side, va="bottom", color=colour
+                )
+        _unserved(axes, served)
+        canvas.grid_lines(axes)
+        axes.set_yticks(range(0, 101, 20))
+        axes.set_title("share of the poses that the cable serves [%]", loc="left")
+        axes.set_xlabel("diameter of the cable [mm]")
+        return canvas.svg(figure, "served", title)
+
+
+def _served_range(served: Served) -> tuple[float, float]:
+    """Horizontal limits [mm]; the last few poses near the boundary may need any diameter."""
+    both = np.concatenate([served.diameter_m, served.massless_diameter_m])
+    if len(both) == 0:
+        return 0.0, 1.0
+    most = [served.needed_m, served.massless_needed_m]
+    if not np.isfinite(served.needed_m) and len(served.diameter_m) > 0:
+        at = np.searchsorted(served.share, 0.97 * served.share[-1])
+        most.append(1.4 * float(served.diameter_m[at]))
+    low, high = 1e3 * float(both.min()), 1e3 * float(np.nanmax(most))
+    room = max(0.06 * (high - low), 0.01 * high)
+    return max(low - room, 0.0), high + room
+
+
+def _unserved(axes: Axes, served: Served) -> None:
+    if served.samples == 0:
+        axes.text(0.5, 50.0, "every pose is left out", ha="center", va="center")
+    if served.unserved == 0.0:
+        return
+    low = 100.0 * (1.0 - served.unserved)
+    axes.axhspan(low, 100.0, **canvas.HATCHED, linewidth=0)
+    text = f"no cable serves {fmt.number(100.0 * served.unserved, 2)} %"
+    style = {"va": "top", "color": palette.WARNING, "bbox": canvas.paper(0.8, 0.85)}
+    frame = ("axes fraction", "data")
+    canvas.note(axes, text, (0.0, max(low, 20.0)), (6, -3), xycoords=frame, **style)
+
+
+def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
+    """Return the share of the workspace over the diameter of the sizes, as SVG."""
+    with canvas.drawing():
+        figure = canvas.sheet(62.0)
+        axes = figure.subplots()
+        x = 1e3 * np.array([one.size.diameter_m for one in usable.sizes])
+        y = 100.0 * np.array([one.fraction for one in usable.sizes])
+        low = _LOW if y.min() > _LOW else 0.0
+        room = 100.0 - low
+        axes.set(ylim=(low - 0.02 * room, 100.0 + 0.16 * room), xlim=_usable_range(usable, x))
+        axes.plot(x, y, color=palette.SAG, linewidth=1.0, alpha=0.6)
+        axes.plot(x, y, **canvas.DOTS, markersize=4.2, color=palette.SAG)
+        _name_sizes(axes, usable, x, y)
+        for k, one in enumerate(usable.sizes):
+            if chosen is not None and one.size is chosen.size:
+                ring = canvas.RING | {"markerfacecolor": "none", "markeredgewidth": 1.2}
+                axes.plot(x[k], y[k], **ring, markersize=8.0)
+                style = {"ha": "center", "va": "bottom", "fontweight": "bold"}
+                canvas.note(axes, "chosen", (x[k], y[k]), (0, 6), **style)
+        canvas.grid_lines(axes)
+        axes.set_yticks(np.linspace(low, 100.0, 6))
+        axes.set_title("share of the workspace that the size serves [%]", loc="left")
+        axes.set_xlabel(f"nominal diameter of the sizes of {usable.grade.id} [mm]")
+        return canvas.svg(figure, "usable", "Share of the workspace that each size serves")
+
+
+def _usable_range(usable: Usable, diameters: np.ndarray) -> tuple[float, float]:
+    """From the last size before any serves to a few above the one from which on all serve all."""
+    serving = [k for k, one in enumerate(usable.sizes) if one.fraction > 0.0]
+    low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
+    whole = usable.first_for_good
+    high = diameters[-1] if whole is None else min(1.5 * diameters[whole], diameters[-1])
+    room = max(0.05 * (high - low), 0.02 * high)
+    return low - room, high + room
+
+
+def _name_sizes(axes: Axes, usable: Usable, x: np.ndarray, y: np.ndarray) -> None:
+    """Name the sizes along the curve, as far as there is room."""
+    left, right = axes.get_xlim()
+    last = -1.0
+    for one, at, share in zip(usable.sizes, x, y, strict=True):
+        place = (at - left) / (right - left)
+        if not 0.0 <= place <= 1.0 or place - last < _APART:
+            continue
+        last = place
+        side, va = (-1, "top") if share > 50.0 else (1, "bottom")
+        canvas.note(
+            axes, one.size.id, (at, share), (3, 4 * side), rotation=60 * side, ha="left", va=va,
+            rotation_mode="anchor", fontsize=palette.FONT_POINTS - 1.0, path_effects=canvas.halo(),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One part of the bar of verdicts: its label, how many poses, its colour and hatch."""
+
+    label: str
+    count: int
+    colour: str
+    hatch: str = ""
+
+
+def parts(census: Census) -> tuple[Part, ...]:
+    """Return the parts of the bar that are not empty; together they hold every sample."""
+    status = census.statuses
+    leaves_out = census.excluded > 0
+    finite = status["no_finite_cable"]
+    everything = (
+        Part("held", status["solved"] - census.hangs_below, palette.SAG),
+        Part(
+            "left out: a cable hangs below" if leaves_out else "held, a cable hangs below",
+            census.hangs_below + (finite if leaves_out else 0),
+            palette.LEFT_OUT if leaves_out else _HELD_BELOW,
+        ),
+        Part("no finite cable", 0 if leaves_out else finite, palette.WARNING_PALE, "//////"),
+        Part("no cables hold it", status["outside_hull"], palette.WARNING),
+        Part("none found", status["not_found"], palette.WARNING_PALE, "......"),
+        Part("rank deficient", status.get("rank_deficient", 0), palette.LEFT_OUT),
+        Part("not converged", status["not_converged"], palette.INK),
+    )
+    return tuple(part for part in everything if part.count > 0)
+
+
+def verdict_chart(census: Census) -> str:
+    """Return all samples by their verdict as one stacked bar with labels, as SVG."""
+    found = parts(census)
+    shares = [part.count / census.samples for part in found]
+    texts = []
+    for part, share in zip(found, shares, strict=True):
+        percent = "< 0.1" if share < 0.001 else f"{100.0 * share:.1f}"
+        texts.append(f"{part.label}\n{percent} %, {fmt.count(part.count)}")
+    starts = [sum(shares[:index]) for index in range(len(shares))]
+    with canvas.drawing():
+        figure = canvas.sheet(19.0)
+        axes = figure.subplots()
+        axes.set(xlim=(0.0, 1.0), ylim=(-1.9, 0.5))
+        axes.set_axis_off()
+        for part, start, share in zip(found, starts, shares, strict=True):
+            _bar(axes, part, start, share, 0.0, 0.9)
+        for part, at, text in zip(found, spread(starts, texts), texts, strict=True):
+            _bar(axes, part, at, 0.012, -0.98, 0.42)
+            axes.text(at + 0.018, -0.78, text, va="top")
+        return canvas.svg(figure, "verdicts", "Poses of the workspace by verdict")
+
+
+def spread(starts: Sequence[float], texts: Sequence[str]) -> list[float]:
+    """Return where to begin each text so that none overlaps, near its start, within 0 to 1."""
+    widths = [0.03 + _CHARACTER * max(len(line) for line in text.split("\n")) for text in texts]
+    places: list[float] = []
+    for start in starts:
+        before = places[-1] + widths[len(places) - 1] if places else 0.0
+        places.append(max(start, before))
+    limit = 1.0
+    for index in reversed(range(len(places))):
+        places[index] = max(min(places[index], limit - widths[index]), 0.0)
+        limit = places[index]
+    return places
+
+
+def _bar(axes: Axes, part: Part, start: float, width: float, middle: float, height: float) -> None:
+    rim = palette.WARNING if part.hatch else "white"
+    look: Style = {
+        "color": part.colour,
+        "hatch": part.hatch,
+        "edgecolor": rim,
+        "linewidth": 0.6,
+    }
+    axes.barh(middle, width, left=start, height=height, **look)

@@ -1,0 +1,85 @@
+"""The robot from above, with the product that each group of cables gets."""
+
+from __future__ import annotations
+
+from itertools import cycle
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.region import PointList, Prism, Region
+from designer.model.robot import Poses, Robot
+from designer.report.figures import canvas, palette
+from designer.report.figures.canvas import Style
+from designer.report.figures.sections import mark_exit_points
+from designer.selection.groups.result import Assigned, GroupChoice
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Okabe and Ito again; vermilion stays a warning.
+_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#222222")
+_STYLES = ("-", "--", ":")
+_THINNEST_PT, _THICKEST_PT = 1.2, 4.2
+_REGION = "#EEF1F4"
+
+
+def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assigned) -> str:
+    """Return the plan as SVG: cables as thick as their products are to each other.
+
+    The platform stands where the most used group is used most. A planar robot is seen from the
+    side.
+    """
+    most = int(np.argmax(chosen.verification.utilisation))
+    ends = Poses.at(chosen.verification.worst_place[most]).attachment_points_m(robot)
+    exits, plane = robot.exit_points_m, [0, 1]
+    if robot.is_planar:
+        plane = [int(np.argmax(np.ptp(exits[:, :2], axis=0))), 2]
+    thickest = max(one.size.diameter_m for one in chosen.products)
+    styles = cycle([(colour, style) for style in _STYLES for colour in _COLOURS])
+    used = chosen.verification.utilisation
+    with canvas.drawing():
+        figure = canvas.sheet(104.0, keeps_aspect=True)
+        axes = figure.subplots()
+        _region(axes, region, plane)
+        for group, product, share in zip(choice.groups, chosen.products, used, strict=True):
+            colour, style = next(styles)
+            label = f"{group.name}: {product.size.id}\n{product.grade.id}\n{100 * share:.1f} % used"
+            width = max(_THICKEST_PT * product.size.diameter_m / thickest, _THINNEST_PT)
+            for cable in group.cables:
+                line = np.stack([exits[cable - 1], ends[cable - 1]])[:, plane]
+                look: Style = {"color": colour, "linestyle": style, "linewidth": width}
+                axes.plot(*line.T, solid_capstyle="round", label=label, **look)
+                label = ""
+        _platform(axes, ends[:, plane])
+        mark_exit_points(axes, exits[:, plane])
+        axes.set_aspect("equal")
+        axes.margins(0.08)  # room for the names of the exit points
+        axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
+        figure.legend(loc="outside right upper", handlelength=2.6)
+        return canvas.svg(figure, "groups", "The robot from above with the cables of each group")
+
+
+def _region(axes: Axes, region: Region, plane: list[int]) -> None:
+    label = "where the platform goes"
+    if isinstance(region, PointList):
+        points = region.points_m[:, plane]
+        axes.plot(*points.T, ".", color=palette.FAINT, markersize=2.5, label=label)
+        return
+    (left, low), (right, high) = region.bounds_m[:, plane]
+    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    if isinstance(region, Prism) and plane == [0, 1]:
+        corners = region.polygon_m
+    axes.fill(*corners.T, facecolor=_REGION, edgecolor=palette.FAINT, label=label)
+
+
+def _platform(axes: Axes, ends_m: FloatArray) -> None:
+    points = np.unique(ends_m.round(9), axis=0)
+    if len(points) > 2:
+        centre = points.mean(axis=0)
+        around = np.argsort(np.arctan2(*(points - centre).T[::-1]))
+        axes.fill(*points[around].T, facecolor="white", edgecolor=palette.INK, zorder=4)
+    style: Style = {"markersize": 4.5, "color": palette.INK, "zorder": 5}
+    label = "platform\nat the most used cable's worst pose"
+    axes.plot(*ends_m.mean(axis=0), **canvas.DOTS, **style, label=label)

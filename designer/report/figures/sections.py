@@ -1,0 +1,334 @@
+"""Sections of the workspace, coloured by a value, as in Riehl et al., ICRA 2010, Fig. 9."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.field import Field
+from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.section import Section, clearance_section, displacement_section
+from designer.arrays import BoolArray, FloatArray
+from designer.report import format as fmt
+from designer.report.figures import canvas, palette
+from designer.report.figures.canvas import Style
+from designer.report.figures.colours import (
+    DIAMETER,
+    RATIO,
+    TENSION,
+    MapQuantity,
+    Steps,
+    steps_for,
+    steps_over_decades,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDE_MM, _BESIDE_MM = 120.0, 150.0
+"""Width of one map alone, of several together."""
+_CHARACTER = 0.013  # half the width of a character over the width of small axes
+_RIGHT_END = 1.15  # a text may pass the right end of the axes, where no numbers stand
+_HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
+_GREY: Style = {"facecolor": palette.LEFT_OUT}
+_LIMIT: Style = {"colors": palette.WARNING, "linewidths": 1.6}
+
+
+def slice_chart(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
+    """Return a large map of the section of a workspace at its greatest height, as SVG.
+
+    A list of points is drawn as points, seen from above.
+    """
+    bar = {"location": "right", "shrink": 0.9, "aspect": 26}
+    with canvas.drawing():
+        figure = _slice_sheet(maps, 24.0, _WIDE_MM)
+        _slice(figure, figure.subplots(), maps, quantity, 0.045, bar)
+        return canvas.svg(figure, f"slice-{quantity.key}", f"{_place(maps)}: {quantity.title}")
+
+
+def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSION, RATIO)) -> str:
+    """Return small maps of the same section side by side, one for each quantity, as SVG."""
+    bar = {"location": "bottom", "shrink": 0.92, "aspect": 30}
+    with canvas.drawing():
+        figure = _slice_sheet(maps, 38.0, _BESIDE_MM / len(quantities))
+        row = figure.subplots(1, len(quantities), squeeze=False)[0]
+        for axes, quantity in zip(row, quantities, strict=True):
+            _slice(figure, axes, maps, quantity, 0.09, bar)
+        for axes in row[1:]:
+            axes.set_ylabel("")
+            axes.tick_params(labelleft=False)
+        titles = ", ".join(quantity.title for quantity in quantities)
+        return canvas.svg(figure, "slice-panels", f"{_place(maps)}: {titles}")
+
+
+def stiffness_map(analysis: Analysis) -> str | None:
+    """Return a map of the largest displacement under a unit force; None without an area."""
+    found = displacement_section(analysis)
+    if found is None:
+        return None
+    shown = replace(found, values=1e6 * found.values)
+    label = "largest displacement [mm/kN]"
+    return section_map(shown, "stiffness", label, "not held, or not stably")
+
+
+def clearance_map(analysis: Analysis) -> str | None:
+    """Return a map of the smallest clearance; None without an area or anything to compare."""
+    found = clearance_section(analysis)
+    if found is None or analysis.qualities is None or analysis.qualities.interference is None:
+        return None
+    shown = replace(found, values=1e3 * found.values)
+    limit = 1e3 * analysis.qualities.interference.clearance_m
+    return section_map(shown, "clearance", "smallest clearance [mm]", "not held", limit)
+
+
+def section_map(
+    shown: Section, key: str, label: str, why_bad: str, limit: float | None = None
+) -> str:
+    """Return a map of any value over a level section, as SVG.
+
+    Parameters
+    ----------
+    shown : Section
+        Values in the unit of the label.
+    key : str
+        Short name, put before every id of the drawing.
+    label : str
+        Of the colour bar, with the unit.
+    why_bad : str
+        What the hatching means.
+    limit : float or None
+        The value that is asked for, whose contour is drawn boldly.
+    """
+    flat, corners = shown.position_m[..., :2], shown.exit_points_m[:, :2]
+    place = f"z = {fmt.trimmed(shown.position_m[0, 0, 2], 6)} m"
+    finite = shown.values[np.isfinite(shown.values)]
+    has_limit = limit is not None and len(finite) > 0 and finite.min() < limit < finite.max()
+    values, steps = np.ma.masked_invalid(shown.values), steps_over_decades(shown.values)
+    with canvas.drawing():
+        height_mm = 20.0 + min(_WIDE_MM * _height_over_width(flat, corners), 64.0)
+        figure = canvas.sheet(height_mm, keeps_aspect=True)
+        axes = figure.subplots()
+        _paint(axes, flat, values, shown.is_bad, steps)
+        if has_limit:
+            axes.contour(*np.moveaxis(flat, -1, 0), values, levels=[limit], **_LIMIT)
+        _outline(axes, flat)
+        _set_limits(axes, flat, corners)
+        axes.set(xlabel="x [m]", ylabel="y [m]")
+        axes.set_title(f"section at {place}", loc="left")
+        if steps is not None:
+            form: Style = {"format": lambda value, _: fmt.trimmed(float(value), 6)}
+            steps.bar(figure, label, ax=axes, shrink=0.9, aspect=26, **form)
+        looks: list[tuple[str, Style]] = []
+        if has_limit:
+            asked: Style = {"color": palette.WARNING, "linewidth": 1.6}
+            looks.append(("the clearance that is asked for", asked))
+        if shown.is_bad.any():
+            looks.append((why_bad, _HATCHED))
+        if (np.isnan(shown.values) & ~shown.is_bad).any():
+            looks.append(("left out", _GREY))
+        canvas.legend(figure, looks, "outside lower center", ncols=3)
+        return canvas.svg(figure, key, f"{label}, {place}")
+
+
+def _slice_sheet(maps: WorkspaceMaps, frame_mm: float, wide_mm: float) -> Figure:
+    """A sheet for maps of this width, with its legend."""
+    corners = maps.flat_m(maps.study.robot.exit_points_m)
+    proportions = _height_over_width(maps.flat_m(maps.section.position_m), corners)
+    looks = _slice_looks(maps.section)
+    height_mm = frame_mm + (6.0 if looks else 0.0) + min(wide_mm * proportions, 70.0)
+    figure = canvas.sheet(height_mm, keeps_aspect=True)
+    canvas.legend(figure, looks, "outside lower center", ncols=3)
+    return figure
+
+
+def _slice(
+    figure: Figure,
+    axes: Axes,
+    maps: WorkspaceMaps,
+    quantity: MapQuantity,
+    room: float,
+    bar: dict[str, Any],
+) -> None:
+    """One map, its contour labels ``room`` apart (over the size of the region), and its scale."""
+    field, flat = maps.section, maps.flat_m(maps.section.position_m)
+    steps = steps_for(quantity.of(field))
+    if maps.has_area:
+        values = np.ma.masked_invalid(quantity.of(field))
+        _paint(axes, flat, values, field.is_infeasible, steps, room)
+        if _has_border(field):
+            border: Style = {"colors": palette.INK, "linewidths": 0.9, "linestyles": "--"}
+            uplift = np.ma.masked_invalid(field.uplift)
+            axes.contour(*np.moveaxis(flat, -1, 0), uplift, levels=[0.0], **border)
+        _outline(axes, flat)
+    else:
+        _scatter(axes, flat, field, quantity.of(field), steps)
+    _set_limits(axes, flat, maps.flat_m(maps.study.robot.exit_points_m))
+    _mark_focus(axes, maps, flat, quantity)
+    right, up = maps.axis_labels
+    axes.set(xlabel=right, ylabel=up)
+    if steps is None:
+        why = "all left out" if field.is_left_out.all() else "no pose can be held"
+        axes.set_title(f"{_place(maps)}; {why}", loc="left")
+        return
+    axes.set_title(_place(maps), loc="left")
+    crowded = bar["location"] == "bottom" and canvas.decimals(steps.ticks) > 2
+    ticks = steps.ticks[:: 2 if crowded else 1]
+    steps.bar(figure, quantity.label, ax=axes, ticks=ticks, **bar)
+
+
+def _place(maps: WorkspaceMaps) -> str:
+    if maps.is_upright:
+        return "the region" if maps.has_area else "all poses"
+    if maps.has_area:
+        return f"top of the region, z = {fmt.trimmed(maps.section.position_m[0, 0, 2], 6)} m"
+    return "all poses, seen from above"
+
+
+def _slice_looks(field: Field) -> list[tuple[str, Style]]:
+    """What a legend explains beside the colours."""
+    left_out = bool(field.is_left_out.any())
+    border: Style = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
+    looks: list[tuple[str, Style]] = []
+    if field.position_m.ndim == 3 and _has_border(field) and not left_out:
+        looks.append(("beyond: a cable hangs below the platform", border))
+    if field.is_infeasible.any():
+        looks.append((field.why_infeasible, _HATCHED))
+    if left_out:
+        looks.append(("left out: a cable hangs below the platform", _GREY))
+    return looks
+
+
+def _has_border(field: Field) -> bool:
+    """Whether cables begin to hang below the platform somewhere within the section."""
+    finite = field.uplift[np.isfinite(field.uplift)]
+    return bool(len(finite) > 0 and finite.min() < 0.0 < finite.max())
+
+
+def _paint(
+    axes: Axes,
+    flat: FloatArray,
+    values: FloatArray,
+    is_bad: BoolArray,
+    steps: Steps | None,
+    room: float | None = None,
+) -> None:
+    """Colour rings (rings, spokes, 2): grey, hatched where bad, in steps where there are values.
+
+    Contour lines have labels, ``room`` apart, unless that is None.
+    """
+    x, y = np.moveaxis(flat, -1, 0)
+    axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
+    if is_bad.any():
+        bad: Style = {"levels": [0.5, 1.5]}
+        axes.contourf(x, y, is_bad.astype(np.float64), colors=[palette.WARNING_PALE], **bad)
+        bad |= {"colors": "none", "hatches": ["//////"]}
+        hatched = axes.contourf(x, y, is_bad.astype(np.float64), **bad)
+        hatched.set(edgecolor=palette.WARNING, linewidth=0.0)
+    if steps is None:
+        return
+    steps.fill(axes, x, y, values)
+    lines = axes.contour(x, y, values, levels=steps.ticks, colors="white", linewidths=0.5)
+    if room is None:
+        return
+    form = f"%.{canvas.decimals(steps.ticks)}f"
+    style: Style = {"fontsize": palette.FONT_POINTS - 1.5, "colors": palette.INK}
+    placed = list(flat[-1])  # keeps labels off the outline, too
+    for label in axes.clabel(lines, fmt=form, inline=False, **style):
+        at = np.array(label.get_position())
+        if np.hypot(*(np.array(placed) - at).T).min() < room * max(np.ptp(x), np.ptp(y)):
+            label.remove()
+            continue
+        placed.append(at)
+        label.set_bbox(canvas.paper(0.7, 0.85))
+
+
+def _outline(axes: Axes, flat: FloatArray) -> None:
+    axes.plot(*flat[-1].T, color=palette.INK, linewidth=0.8)
+
+
+def _scatter(
+    axes: Axes, flat: FloatArray, field: Field, values: FloatArray, steps: Steps | None
+) -> None:
+    """A list of points, the greatest value on top."""
+    order = np.argsort(np.nan_to_num(values, nan=-1.0))
+    x, y = flat.T
+    if steps is not None:
+        shown = order[np.isfinite(values[order])]
+        scale: Style = {"c": values[shown], "cmap": steps.colormap, "norm": steps.norm}
+        axes.scatter(x[shown], y[shown], s=26, linewidths=0.4, edgecolors=palette.INK, **scale)
+    bad, left = (order[mask[order]] for mask in (field.is_infeasible, field.is_left_out))
+    axes.scatter(x[bad], y[bad], marker="x", s=16, linewidths=1.0, color=palette.WARNING)
+    axes.scatter(x[left], y[left], marker="o", s=10, color=palette.LEFT_OUT)
+
+
+def _set_limits(axes: Axes, flat: FloatArray, corners: FloatArray) -> None:
+    """Set the limits, around the exit points as well unless the region would be a speck."""
+    middle, half, shows_corners = _frame(flat, corners)
+    axes.set_aspect("equal")
+    (left, low), (right, high) = middle - half, middle + half
+    axes.set(xlim=(left, right), ylim=(low, high))
+    if shows_corners:
+        mark_exit_points(axes, corners)
+
+
+def _height_over_width(flat: FloatArray, corners: FloatArray) -> float:
+    half = _frame(flat, corners)[1]
+    return float(half[1] / half[0])
+
+
+def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatArray, bool]:
+    """Centre and half extent (2,) [m] of what is shown, and whether exit points are in it."""
+    flat = points.reshape(-1, 2)
+    everything = np.concatenate([flat, corners])
+    wide = np.ptp(everything, axis=0).max()
+    shows_corners = bool(np.ptp(flat, axis=0).max() > 0.2 * wide or len(flat) == 1)
+    shown = everything if shows_corners else flat
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
+    half = np.maximum(half, 0.35 * half.max())  # no slivers
+    return 0.5 * (low + high), half, shows_corners
+
+
+def mark_exit_points(axes: Axes, corners: FloatArray) -> None:
+    """Mark and name the exit points (n_cables, 2) [m]."""
+    axes.plot(*corners.T, "^", markersize=5, color=palette.INK, clip_on=False)
+    middle = corners.mean(axis=0)
+    for text, place in canvas.names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
+        _write_away(axes, text, place, place - middle, 6.0)
+
+
+def _mark_focus(axes: Axes, maps: WorkspaceMaps, flat: FloatArray, quantity: MapQuantity) -> None:
+    focus = maps.focus
+    is_level = maps.has_area and not maps.is_upright
+    if is_level and not np.isclose(focus.position_m[2], maps.section.position_m[0, 0, 2]):
+        return
+    place = maps.flat_m(focus.position_m)
+    ring = canvas.RING | {"color": "white" if maps.has_area else "none"}
+    axes.plot(*place, **ring, markersize=6, clip_on=False, zorder=5)
+    middle = flat[0, 0] if flat.ndim == 3 else flat.mean(axis=0)
+    text = quantity.text_of(focus)
+    _write_away(axes, text, place, place - middle, 9.0, fontweight="bold", zorder=6)
+
+
+def _write_away(
+    axes: Axes, text: str, place: FloatArray, away: FloatArray, points: float, **style: Any
+) -> None:
+    """Write beside a place, or above or below it, on the side of a direction, within the axes."""
+    right, up = away if away.any() else (0.0, 1.0)
+    left_end, right_end = axes.get_xlim()
+    share = float((place[0] - left_end) / (right_end - left_end))
+    half = _CHARACTER * len(text)
+    has_room = 2.0 * half < (_RIGHT_END - share if right > 0.0 else share)
+    if 2.0 * abs(right) > abs(up) and has_room:
+        offset = (points if right > 0.0 else -points, 0.0)
+        style |= {"ha": "left" if right > 0.0 else "right", "va": "center"}
+    else:
+        offset = (0.0, points if up > 0.0 else -points)
+        inward = "left" if share < half else "right" if share > 1.0 - half else "center"
+        style |= {"ha": inward, "va": "bottom" if up > 0.0 else "top"}
+    canvas.note(axes, text, (place[0], place[1]), offset, path_effects=canvas.halo(), **style)
