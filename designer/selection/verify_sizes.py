@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
+from designer.kernel.calling import Meets
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.progress import Advance
 from designer.selection.verify import Verification, searched
-from designer.statics.sizes import Meets, add_slowly, is_quick, meet
+from designer.statics.sizes import add_slowly, is_quick, meet
 from designer.study import Workspace
 from designer.workspace.refine import cells_of
 from designer.workspace.samples import places
