@@ -9,6 +9,7 @@ import pytest
 
 from designer.arrays import frozen_array
 from designer.kernel.batch import solve_batch
+from designer.kernel.calling import situation_of
 from designer.model.cable import Cable, Cables, Material
 from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
@@ -93,7 +94,8 @@ def test_arrays_of_another_length_do_not_enter_compiled_code(what) -> None:
     else:
         object.__setattr__(poses, "rotation", np.stack([np.eye(3)] * 2))
     with pytest.raises(ValueError, match=r"fit|shape"):
-        solve_batch(ROBOT, poses, exits, kappa, np.ones(6), np.full(6, 2e3), None, force)
+        situation = situation_of(ROBOT, poses, exits, force)
+        solve_batch(ROBOT, situation, kappa, np.ones(6), np.full(6, 2e3), None)
 
 
 def test_lists_are_taken_and_what_is_right_stays_as_it_is() -> None:

@@ -11,7 +11,7 @@ from designer.model.machine import Machine
 from designer.model.measured_data import Measured
 from designer.model.robot import Poses
 from designer.statics.inverse import solve_sagging
-from designer.statics.nearest import solve_nearest
+from designer.statics.taut import solve_taut
 from designer.statics.underactuated import imbalance, solve_underactuated
 
 AIR_DENSITY_KG_PER_M3 = 1.225
@@ -23,11 +23,11 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
 
     Robots with as many cables as degrees of freedom are solved exactly, those with fewer as
     `designer.statics.underactuated` has it. With more, the tensions nearest to balance are taken,
-    see `designer.statics.nearest`.
+    see `designer.statics.taut`.
     """
     force = None if measured is None else added_force_N(machine, measured)
     if machine.robot.is_redundant:
-        length, tension, span = solve_nearest(machine.robot, poses, machine.cable, force)
+        length, tension, span = solve_taut(machine.robot, poses, machine.cable, force)
         return Readings(length - straightened_m(machine, tension, span), tension)
     solve = solve_sagging if machine.robot.is_square else solve_underactuated
     statics = solve(machine.robot, poses, machine.cable, force)

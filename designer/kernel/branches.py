@@ -18,45 +18,35 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.compiling import kernel
-from designer.kernel.layout import FORCE_X, LENGTH, LOAD_FACTOR, WEIGHT
+from designer.kernel.answer import FORCE_X, LENGTH, LOAD_FACTOR, SOLVED, WEIGHT, Answers
+from designer.kernel.calling import Figures, Situation
+from designer.kernel.compiling import element, kernel
+from designer.kernel.interior import Scratch, new_scratch
 from designer.kernel.linear import solve_small
-from designer.kernel.redundant_layout import (
-    CHORD,
+from designer.kernel.pose import (
     FORCE,
-    KAPPA,
     LEAST,
     LOWEST,
     SHARE,
     SIZE,
     STRENGTH,
-    T_P,
     UNIT,
-    V_P,
     WRENCH,
-    X2,
-    D,
-    L,
-    P,
     Pose,
-    T,
-    V,
-)  # fmt: skip
-from designer.kernel.redundant_pose import (
-    lift,
+    along,
     linearise,
     new_pose,
     place,
-    settled_length,
     smallest_pull,
     write_wrenches,
 )
-from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.model.verdict import Verdict
+from designer.kernel.table import CHORD, LIFT, T_P, V_P, X2, D, L, P, T, V
+from designer.kernel.unit_cable import PULL_FLOOR
 
-_SOLVED = int(Verdict.SOLVED)
 _AT_LIMIT = 1e-6
+"""Relative distance from a limit at which a cable counts as at it."""
 _NEARLY_SINGULAR = 1e-13
+"""Beside squares of unit wrenches; without, the system is singular, as it is meant to be nearly."""
 _HANGING = 0.2
 """Pull of a cable that hangs, about two and a half times as long as its horizontal distance; then
 C and S of `designer.kernel.unit_cable`, for a rigid cable."""
@@ -68,93 +58,54 @@ _HANGING_S = (np.sinh(2.5) / 2.5) ** 2
 def rate_range(
     start: int,
     stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
+    situation: Situation,
+    figures: Figures,
     is_sizing: bool,
-    rows: IntArray,
-    least_tension: float,
-    cables: FloatArray,
-    poses: FloatArray,
-    verdict: IntArray,
+    found: Answers,
     out: FloatArray,
 ) -> None:
-    """Fill the potential of the solved poses `start` to `stop`.
+    """Fill the potential (n_poses,) of the solved poses `start` to `stop`, of cables of weight w.
 
     Relative to the inverse weight when sizing, else to the load factor; infinite where the
     multipliers are not to be had.
-
-    Parameters
-    ----------
-    cables, poses, verdict
-        What was found, in the layout of `designer.kernel.layout`, forces of cables of weight w.
-    out : array (n_poses,)
-        Receives the potential.
     """
-    m, n = rows.size, kappa.size
-    pose = new_pose(kappa, weights, strength, rows, least_tension)
-    system, value, before = np.zeros((m, m + 1)), np.zeros(m), np.zeros(m)
+    m, n = situation.rows.size, figures.kappa.size
+    pose = new_pose(figures, situation.rows)
+    scratch = new_scratch(m, n)
     for at in range(start, stop):
         out[at] = 0.0
-        if verdict[at] != _SOLVED:
+        if found.verdict[at] != SOLVED:
             continue
-        place(
-            pose,
-            exit_points[at if exit_points.shape[0] > 1 else 0],
-            attachments,
-            rotations[at if rotations.shape[0] > 1 else 0],
-            positions[at],
-            load[at if load.shape[0] > 1 else 0],
-            load_point,
-            weight,
-        )
-        c = pose.cables
-        w = poses[at, WEIGHT]
+        place(pose, situation, at)
+        c, w = pose.cables, found.poses[at, WEIGHT]
         for i in range(n):
-            c[L, i] = cables[at, i, LENGTH]
-            c[P, i] = cables[at, i, FORCE_X] / (w * np.sqrt(c[X2, i]))
+            c[L, i] = found.cables[at, i, LENGTH]
+            c[P, i] = found.cables[at, i, FORCE_X] / (w * np.sqrt(c[X2, i]))
         scaled_c = pose.scale[SIZE] / (w * pose.scale[FORCE])
-        limit = 1.0 if is_sizing else poses[at, LOAD_FACTOR]
+        limit = 1.0 if is_sizing else found.poses[at, LOAD_FACTOR]
         linearise(pose)
         write_wrenches(pose)
         out[at] = np.inf
-        if find_value(pose, scaled_c, limit, system, value, before):
-            out[at] = _potential(pose, scaled_c, limit, is_sizing, value)
+        if _find_value(pose, scaled_c, limit, scratch):
+            out[at] = _potential(pose, scaled_c, limit, is_sizing, scratch.value)
 
 
 @kernel
-def find_value(
-    pose: Pose,
-    scaled_c: float,
-    limit: float,
-    system: FloatArray,
-    value: FloatArray,
-    before: FloatArray,
-) -> bool:
+def _find_value(pose: Pose, scaled_c: float, limit: float, scratch: Scratch) -> bool:
     """Fill the multipliers of the balance: the wrench that no cable off its limits can add to.
 
     By one inverse iteration, from the cables at their limit, which add to it.
     """
-    c, rows = pose.cables, pose.rows
+    c, rows, system, value = pose.cables, pose.rows, scratch.square, scratch.value
     m, n = rows.size, c.shape[1]
-    before[:] = 0.0
+    system[:] = 0.0
+    for k in range(m):
+        system[k, k] = _NEARLY_SINGULAR
     for i in range(n):
         if _is_full(c, i, limit):
             for k in range(m):
-                before[k] += c[WRENCH + rows[k], i]
-    for k in range(m):
-        for q in range(m):
-            system[k, q] = _NEARLY_SINGULAR if k == q else 0.0
-        system[k, m] = before[k]
-    for i in range(n):
-        if not _is_full(c, i, limit) and not _is_least(c, pose.scale, i, scaled_c):
+                system[k, m] += c[WRENCH + rows[k], i]
+        elif not _is_least(pose, i, scaled_c):
             _add_square(system, c, rows, i)
     if not solve_small(system, value):
         return False
@@ -163,9 +114,13 @@ def find_value(
         size = max(size, abs(value[k]))
     if not 0.0 < size < np.inf:
         return False
-    for k in range(m):
-        value[k] /= size
-    return _orient(pose, limit, value)
+    of_full = 0.0
+    for i in range(n):
+        if _is_full(c, i, limit):
+            of_full += along(pose, value, WRENCH, i)
+    for k in range(m):  # cables at their limit are to add to it
+        value[k] /= -size if of_full < 0.0 else size
+    return of_full != 0.0
 
 
 @kernel
@@ -179,53 +134,16 @@ def _add_square(system: FloatArray, c: FloatArray, rows: IntArray, i: int) -> No
             system[k, q] += c[WRENCH + rows[k], i] * c[WRENCH + rows[q], i] / size
 
 
-@kernel
-def _orient(pose: Pose, limit: float, value: FloatArray) -> bool:
-    """Turn the wrench so that cables at their limit add to it."""
-    total = 0.0
-    for i in range(pose.cables.shape[1]):
-        if _is_full(pose.cables, i, limit):
-            total += _slope(pose, value, i)
-    if total < 0.0:
-        for k in range(value.size):
-            value[k] = -value[k]
-    return total != 0.0
-
-
-@kernel
-def _slope(pose: Pose, value: FloatArray, i: int) -> float:
-    total = 0.0
-    for k in range(value.size):
-        total += value[k] * pose.cables[WRENCH + pose.rows[k], i]
-    return total
-
-
-@kernel
+@element
 def _is_full(c: FloatArray, i: int, limit: float) -> bool:
     return bool(c[T, i] >= limit * c[STRENGTH, i] * (1.0 - _AT_LIMIT))
 
 
-@kernel
-def _is_least(c: FloatArray, scale: FloatArray, i: int, scaled_c: float) -> bool:
+@element
+def _is_least(pose: Pose, i: int, scaled_c: float) -> bool:
+    c, scale = pose.cables, pose.scale
     least = scaled_c * scale[FORCE] / scale[SIZE] * c[LEAST, i]
     return bool(least > 0.0 and c[LOWEST, i] <= least * (1.0 + _AT_LIMIT))
-
-
-@kernel
-def upward_share(pose: Pose, value: FloatArray, i: int) -> float:
-    """Return β: what a vertical pull of unit length at the attachment adds."""
-    total = 0.0
-    for k in range(value.size):
-        total += value[k] * lift(pose, pose.rows[k], i)
-    return float(total * pose.cables[SHARE, i] / pose.scale[FORCE])
-
-
-@kernel
-def rise(pose: Pose, i: int, p: float) -> float:
-    """Return the upward pull of a cable at a pull."""
-    c = pose.cables
-    length = settled_length(p, c[X2, i], c[D, i], c[KAPPA, i])
-    return float(unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])[3])
 
 
 @kernel
@@ -238,17 +156,18 @@ def _potential(
     for k in range(value.size):
         worth += scaled_c * value[k] * pose.load[pose.rows[k]] if is_sizing else 0.0
     for i in range(c.shape[1]):
-        slope = _slope(pose, value, i) / c[UNIT, i]
-        if not is_sizing and _is_full(c, i, limit):
+        is_full = _is_full(c, i, limit)
+        slope = along(pose, value, WRENCH, i) / c[UNIT, i]
+        if not is_sizing and is_full:
             worth += slope * limit * c[STRENGTH, i] / c[T_P, i]
-        beta = upward_share(pose, value, i)
+        beta = along(pose, value, LIFT, i) * c[SHARE, i] / pose.scale[FORCE]
         alpha = slope - beta * c[V_P, i]
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
         low, low_c = smallest_pull(pose, i, PULL_FLOOR)
         least = (low + low_c * scaled_c) * c[UNIT, i]
         if beta < 0.0:
             best = 0.0
-            if not _is_full(c, i, limit):  # pulled tight, when the lift nears p D - L/2
+            if not is_full:  # pulled tight, when the lift nears p D - L/2
                 sag = 0.5 * c[CHORD, i] + c[X2, i] / (48.0 * c[CHORD, i] * tight * tight)
                 moved = alpha * (tight - c[P, i]) + beta * (tight * c[D, i] - sag - c[V, i])
                 best = max(best, moved)
@@ -258,9 +177,9 @@ def _potential(
                 moved = alpha * (_HANGING - c[P, i]) + beta * (lift_there - c[V, i])
                 best = max(best, moved)
             gain += best
-        elif slope > 0.0 and not (_is_full(c, i, limit) and c[T_P, i] > 0.0):
+        elif slope > 0.0 and not (is_full and c[T_P, i] > 0.0):
             gain += slope * max(tight - c[P, i], 0.0)
-        elif slope < 0.0 and not _is_least(c, pose.scale, i, scaled_c):
+        elif slope < 0.0 and not _is_least(pose, i, scaled_c):
             gain -= slope * (c[P, i] - least)
     if not (worth > 0.0 and gain >= 0.0):
         return np.inf

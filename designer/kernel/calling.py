@@ -1,15 +1,137 @@
-"""How the kernels are called: the one kind of array that they are compiled for, and threads."""
+"""How the kernels are called: what they are given, in the one kind of array they know, and threads.
+
+Importing this imports no Numba.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import FloatArray
+from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
+from designer.model.robot import Poses, Robot
+
+
+class Situation(NamedTuple):
+    """Poses, and what the cables have to hold in them: SI units, z axis the vertical.
+
+    Parameters
+    ----------
+    exit_points : array (1 or n_poses, n_cables, 3)
+        Where the cables begin.
+    attachments : array (n_cables, 3)
+        Where they end, body frame.
+    load : array (1 or n_poses, 6)
+        What they have to pull with: force at the origin of the body frame, then moment.
+    load_point, weight : array (3,), float
+        The weight, which is part of the force, acts at this point of the body; what that makes of
+        moment comes on top.
+    positions, rotations : array (n_poses, 3), (1 or n_poses, 3, 3)
+        The poses.
+    rows : array (degrees of freedom,)
+        Which components of the wrench are balanced, of 0 … 5.
+    """
+
+    exit_points: FloatArray
+    attachments: FloatArray
+    load: FloatArray
+    load_point: FloatArray
+    weight: float
+    positions: FloatArray
+    rotations: FloatArray
+    rows: IntArray
+
+
+class Figures(NamedTuple):
+    """What is the same of the cables in all poses.
+
+    Parameters
+    ----------
+    kappa, weights, strength : array (n_cables,)
+        Weight over axial stiffness [1/m], weight relative to w (or, where there is no common w,
+        weight per length [N/m]), allowable tension over weight [m].
+    least_tension : float
+        Least tension that is asked for anywhere in a cable [N].
+    """
+
+    kappa: FloatArray
+    weights: FloatArray
+    strength: FloatArray
+    least_tension: float
+
+
+class Meets(NamedTuple):
+    """What cables meet in some poses at worst; the kernel raises or increases all but `failed`.
+
+    Parameters
+    ----------
+    utilisation : array (n_cables_tried, n_cells)
+        Largest over allowable tension in each part of the region; -inf where no pose counts.
+    pose : array (n_cables_tried, n_cells)
+        Index of the pose that it was met in.
+    longest_m : array (n_cables_tried, n_cables)
+        Longest unstrained length of each cable of the robot [m].
+    counted, overloaded, left_out : array (n_cables_tried,)
+        Poses that count, those of them above the allowable tension, and those left out.
+    failed : array (n_cables_tried, n_poses)
+        Where no solution was found; such a pose is in none of the other results.
+    """
+
+    utilisation: FloatArray
+    pose: IntArray
+    longest_m: FloatArray
+    counted: IntArray
+    overloaded: IntArray
+    left_out: IntArray
+    failed: BoolArray
+
+
+def situation_of(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None = None
+) -> Situation:
+    """Return what the kernels are told of poses (n_poses,).
+
+    Parameters
+    ----------
+    poses : Poses
+        One leading axis, in a frame whose z axis is the vertical.
+    exit_points_m : array (n_cables, 3) or (n_poses, n_cables, 3)
+        Where the cables begin, in that frame [m].
+    force_N : array (n_poses, 3), optional
+        Force on the platform beside its weight, in that frame [N].
+
+    Raises
+    ------
+    ValueError
+        If the arrays differ in length: compiled code would read beyond their ends.
+    """
+    count, n = len(poses.position_m), robot.n_cables
+    rotations = poses.rotation.reshape(-1, 3, 3)
+    require_shape("position_m", poses.position_m, count, 3)
+    if len(rotations) not in (1, count):
+        raise ValueError(f"{len(rotations)} rotations do not fit {count} poses")
+    if exit_points_m.shape not in ((n, 3), (1, n, 3), (count, n, 3)):
+        raise ValueError(
+            f"exit points {exit_points_m.shape} do not fit {count} poses of {n} cables"
+        )
+    if force_N is not None and force_N.shape not in ((1, 3), (count, 3)):
+        raise ValueError(f"forces {force_N.shape} do not fit {count} poses")
+    return Situation(
+        plain(exit_points_m.reshape(-1, n, 3)),
+        plain(robot.attachments_m),
+        plain(robot.loads_N(force_N)),
+        plain(robot.platform.centre_of_mass_m),
+        robot.weight_N,
+        plain(poses.position_m),
+        plain(rotations),
+        robot.balance_rows,
+    )
 
 
 def plain(values: ArrayLike) -> FloatArray:
@@ -19,7 +141,20 @@ def plain(values: ArrayLike) -> FloatArray:
     return array
 
 
+def share_out(solve: Callable[..., None], count: int, share: int, *arguments: Any) -> None:
+    """Call ``solve(first, last, …)`` for all of ``count``, on all processors where there are many.
+
+    Each call gets as many as a ``share``.
+    """
+    shares = [(at, min(at + share, count)) for at in range(0, count, share)]
+    if len(shares) == 1:
+        solve(0, count, *arguments)
+    else:
+        for future in [_pool().submit(solve, *each, *arguments) for each in shares]:
+            future.result()
+
+
 @cache
-def pool() -> ThreadPoolExecutor:
+def _pool() -> ThreadPoolExecutor:
     """Return one thread a processor; starting them anew costs as much as some thousand poses."""
     return ThreadPoolExecutor(os.cpu_count())

@@ -24,21 +24,34 @@ the straight cable over the pulley still bounds it. Nearer ones are left without
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import FloatArray, IntArray, VerdictArray
+from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
-from designer.kernel.redundant_layout import LEAST, WRENCH, Pose
-from designer.kernel.redundant_pose import lift, make_straight, new_pose, place, write_wrenches
+from designer.kernel.pose import (
+    LEAST,
+    SIZE,
+    WRENCH,
+    Pose,
+    make_straight,
+    new_pose,
+    place,
+    write_wrenches,
+)
+from designer.kernel.table import LIFT
 from designer.model.verdict import Verdict
 
 _BEYOND = 1e6
 _ROUNDING = 1e-15
 _LEAST_SEPARATION = 1e-8
 _RANK = 1e-9
+"""Length of what is left of a unit ray, others taken out, below which it depends on them."""
 _ENTERS = 1e-12
+"""Product of a ray with what is left of the load above which it can still help."""
 _MOST_TURNS = 40
 _OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
 _NOT_FOUND = int(Verdict.NOT_FOUND)
@@ -94,18 +107,11 @@ def new_cone(m: int, n: int) -> Cone:
 def refuse_range(
     start: int,
     stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    rows: IntArray,
-    least_tension: float,
+    situation: Situation,
+    figures: Figures,
     out_wrench: FloatArray,
     out_separation: FloatArray,
-    out_verdict: IntArray,
+    out_verdict: VerdictArray,
 ) -> None:
     """Say of the poses `start` to `stop`, which nothing has solved, what is proved of them.
 
@@ -114,21 +120,11 @@ def refuse_range(
     both of unit length, moments over the reach of the attachments. Not found: the cone of straight
     cables alone does not hold the load. Not converged: nothing is proved.
     """
-    n, m = exit_points.shape[1], rows.size
-    one = np.ones(n)
-    pose = new_pose(one, one, one, rows, least_tension)
-    cone = new_cone(m, n)
+    n = figures.kappa.size
+    pose = new_pose(figures, situation.rows)
+    cone = new_cone(situation.rows.size, n)
     for at in range(start, stop):
-        place(
-            pose,
-            exit_points[at if exit_points.shape[0] > 1 else 0],
-            attachments,
-            rotations[at if rotations.shape[0] > 1 else 0],
-            positions[at],
-            load[at if load.shape[0] > 1 else 0],
-            load_point,
-            weight,
-        )
+        place(pose, situation, at)
         out_verdict[at] = _NOT_CONVERGED
         out_separation[at] = np.nan
         out_wrench[at] = np.nan
@@ -148,69 +144,66 @@ def refuse_range(
 @kernel
 def _set_rays(pose: Pose, cone: Cone) -> bool:
     """Fill rays and load; False where some cable has no length, hence no direction, or no load."""
-    c, rows, scale = pose.cables, pose.rows, pose.scale
-    m, n = rows.size, c.shape[1]
+    c, rows = pose.cables, pose.rows
+    n = c.shape[1]
     make_straight(pose, 0.0)
     write_wrenches(pose)
-    size = 0.0
-    for k in range(m):
+    for k in range(rows.size):
         cone.load[k] = pose.load[rows[k]]
+        for i in range(n):
+            cone.rays[i, k] = c[WRENCH + rows[k], i]
+            cone.rays[n + i, k] = -c[LIFT + rows[k], i]
+            cone.load[k] -= c[LEAST, i] / pose.scale[SIZE] * cone.rays[i, k]
     for i in range(n):
-        straight, down = 0.0, 0.0
-        for k in range(m):
-            ray = c[WRENCH + rows[k], i]
-            cone.rays[i, k] = ray
-            cone.rays[n + i, k] = -lift(pose, rows[k], i)
-            cone.load[k] -= c[LEAST, i] / scale[1] * ray
-            straight += ray * ray
-            down += cone.rays[n + i, k] ** 2
-        if not 0.0 < straight < np.inf:
+        _normalise(cone.rays[n + i])
+        if not 0.0 < _normalise(cone.rays[i]) < np.inf:
             return False
-        for k in range(m):
-            cone.rays[i, k] /= np.sqrt(straight)
-            cone.rays[n + i, k] /= np.sqrt(down) if down > 0.0 else 1.0
-    for k in range(m):
-        size += cone.load[k] ** 2
-    for k in range(m):
-        cone.load[k] /= np.sqrt(size)
-    return 0.0 < size < np.inf
+    return 0.0 < _normalise(cone.load) < np.inf
+
+
+@kernel
+def _along(a: FloatArray, b: FloatArray) -> float:
+    total = 0.0
+    for q in range(a.size):
+        total += a[q] * b[q]
+    return total
+
+
+@kernel
+def _normalise(vector: FloatArray) -> float:
+    """Bring a vector to unit length, unless it has none; return what it had."""
+    size = math.sqrt(_along(vector, vector))
+    for q in range(vector.size):
+        vector[q] /= size if size > 0.0 else 1.0
+    return size
 
 
 @kernel
 def _spans(cone: Cone, n: int) -> bool:
     """Tell whether straight cables span all wrenches: elimination, the longest remainder first."""
-    m = cone.rest.size
-    basis = cone.basis
-    for k in range(m):
+    for k in range(cone.rest.size):
         best = 0.0
         for i in range(n):
-            for q in range(m):
-                cone.rest[q] = cone.rays[i, q]
-            size = _clear(cone.rest, basis, k)
+            cone.rest[:] = cone.rays[i]
+            size = _clear(cone.rest, cone.basis, k)
             if size > best:
                 best = size
-                for q in range(m):
-                    basis[k, q] = cone.rest[q] / size
+                cone.basis[k] = cone.rest
         if not best > _RANK:
             return False
+        _normalise(cone.basis[k])
     return True
 
 
 @kernel
 def _clear(vector: FloatArray, basis: FloatArray, count: int) -> float:
     """Take its share in the first rows of a basis from a vector, twice; return what is left."""
-    m = vector.size
     for _ in range(2):
         for k in range(count):
-            along = 0.0
-            for q in range(m):
-                along += basis[k, q] * vector[q]
-            for q in range(m):
-                vector[q] -= along * basis[k, q]
-    size = 0.0
-    for q in range(m):
-        size += vector[q] * vector[q]
-    return float(np.sqrt(size))
+            share = _along(basis[k], vector)
+            for q in range(vector.size):
+                vector[q] -= share * basis[k, q]
+    return math.sqrt(_along(vector, vector))
 
 
 @kernel
@@ -267,15 +260,12 @@ def _project(cone: Cone, count: int) -> bool:
 
     False if those rays depend on each other.
     """
-    basis, triangle, m = cone.basis, cone.triangle, cone.rest.size
+    basis, triangle = cone.basis, cone.triangle
     for k in range(count):
-        for q in range(m):
-            basis[k, q] = cone.rays[cone.used[k], q]
-        size = _clear(basis[k], basis, k)
-        if not size > _RANK:
+        basis[k] = cone.rays[cone.used[k]]
+        if not _clear(basis[k], basis, k) > _RANK:
             return False
-        for q in range(m):
-            basis[k, q] /= size
+        _normalise(basis[k])
     for k in range(count):
         for j in range(k, count):
             triangle[k, j] = _along(basis[k], cone.rays[cone.used[j]])
@@ -285,18 +275,9 @@ def _project(cone: Cone, count: int) -> bool:
         for j in range(k + 1, count):
             total -= triangle[k, j] * cone.trial[cone.used[j]]
         cone.trial[cone.used[k]] = total / triangle[k, k]
-    for q in range(m):
-        cone.rest[q] = cone.load[q]
+    cone.rest[:] = cone.load
     _clear(cone.rest, basis, count)
     return True
-
-
-@kernel
-def _along(a: FloatArray, b: FloatArray) -> float:
-    total = 0.0
-    for q in range(a.size):
-        total += a[q] * b[q]
-    return total
 
 
 @kernel
@@ -307,11 +288,8 @@ def _separation(cone: Cone, n_rays: int) -> float:
     """
     if not _reach(cone, n_rays):
         return 0.0
-    size = np.sqrt(_along(cone.rest, cone.rest))
-    if not size > 0.0:
+    if not _normalise(cone.rest) > 0.0:
         return 0.0
-    for q in range(cone.rest.size):
-        cone.rest[q] /= size
     most = _ROUNDING
     for j in range(n_rays):
         most = max(most, _along(cone.rest, cone.rays[j]))

@@ -23,31 +23,24 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
+from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import element, kernel
-from designer.kernel.layout import (
-    CABLE_ROWS,
-    FORCE_X,
-    FORCE_Z,
-    L_0,
-    L_P,
-    LANES,
-    LENGTH,
+from designer.kernel.lanes import (
     POSE_ROWS,
     STEP,
-    V_P,
-    X2,
     C,
-    L,
-    P,
-    T,
-    V,
-)  # fmt: skip
+    advance,
+    assemble,
+    lanes_of,
+    linearise,
+    place,
+    write_lane,
+)
 from designer.kernel.linear import solve_lanes
-from designer.kernel.step import advance, assemble, linearise, place
+from designer.kernel.table import CHORD, L_0, L_P, LANE_ROWS, LANES, V_P, X2, L, P, T, V
 
-# Rows of a cable beside those of the layout: gradient and curvature of the sum.
-_GRADIENT, _CURVATURE = CABLE_ROWS, CABLE_ROWS + 1
-_ROWS = CABLE_ROWS + 2
+# Rows of a cable beside those of the table: gradient and curvature of the sum.
+_GRADIENT, _CURVATURE = LANE_ROWS, LANE_ROWS + 1
 
 _MOST_TURNS = 100
 _PATIENCE = 15
@@ -58,20 +51,13 @@ _SMALL_STEP = 1e-10
 _CLOSED = 1e-10
 """Newton's last correction of a length, relative; the error is its square."""
 _HUBER = 3.0
+"""Standard deviations up to which a reading counts in full."""
 
 
 @kernel
 def solve_internal_poses(
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    cable_weight: FloatArray,
-    kappa: FloatArray,
-    rows: IntArray,
+    situation: Situation,
+    figures: Figures,
     read: FloatArray,
     noise: FloatArray,
     pull: FloatArray,
@@ -84,12 +70,8 @@ def solve_internal_poses(
 
     Parameters
     ----------
-    exit_points, attachments, load, load_point, weight, positions, rotations
-        See `designer.kernel.step.place`; SI units.
-    cable_weight, kappa : array (n_cables,)
-        Weight per length [N/m], and that over EA [1/m], of each cable.
-    rows : array (degrees of freedom,)
-        Components of the wrench that are balanced, of 0 … 5.
+    figures : Figures
+        With weights per length [N/m].
     read : array (n_poses, n_cables, 2)
         Lengths [m] and tensions at the exit points [N] that were read; NaN where none was.
     noise : array (2,)
@@ -105,50 +87,43 @@ def solve_internal_poses(
     out_rest : array (n_poses,)
         Filled with what is left of the balance, over the largest tension.
     """
-    count, n, m = positions.shape[0], attachments.shape[0], rows.size
-    cables = np.empty((n, _ROWS, LANES))
-    slopes = np.empty((n + 1, n + 2, LANES))
+    weights, kappa, rows = figures.weights, figures.kappa, situation.rows
+    count, n, m = situation.positions.shape[0], kappa.size, rows.size
+    cables = np.empty((n, LANE_ROWS + 2, LANES))
+    slopes = np.zeros((n + 1, n + 2, LANES))
     normal = np.empty((m + 1, m + 1, LANES))
     poses = np.empty((POSE_ROWS, LANES))
+    every = np.arange(count)
     for first in range(0, count, LANES):
-        lane = np.minimum(np.arange(first, first + LANES), count - 1)
-        place(
-            cables, poses, exit_points, attachments, load, load_point, weight, positions, rotations,
-            lane,
-        )  # fmt: skip
+        lane = lanes_of(every, first)
+        place(cables, poses, situation, lane)
         poses[C] = 0.0
-        _start(cables, pull, kappa, lane, n)
+        for i in range(n):  # straight cables that pull so
+            row = cables[i]
+            for j in range(LANES):
+                p, chord = pull[lane[j], i], row[CHORD, j]
+                row[P, j] = p
+                row[L, j] = chord / (1.0 + kappa[i] * p * chord)
         for turn in range(_MOST_TURNS):
-            linearise(cables, kappa, n)
-            assemble(slopes, cables, poses, cable_weight, rows, n)
+            linearise(cables, kappa)
+            assemble(slopes, cables, poses, weights, rows)
             for i in range(n):
-                _judge(cables[i], read, noise, pull, cable_weight[i], spread, lane, i)
+                _judge(cables[i], read, noise, pull, weights[i], spread, lane, i)
                 cables[i, _CURVATURE] *= 1.0 + turn // _PATIENCE
                 if turn >= _MOST_TURNS - _LAST_TURNS:
                     cables[i, _GRADIENT] = 0.0
-            _set_normal(normal, slopes, cables, n, m)
+            _set_normal(normal, slopes, cables, m)
             solve_lanes(normal, m, m + 1)
-            _set_step(slopes, normal, cables, n, m)
+            _set_step(slopes, normal, cables, m)
             poses[STEP] = 0.0
-            advance(cables, slopes, poses, n)
+            advance(cables, slopes, poses)
             if np.max(poses[STEP]) < _SMALL_STEP:
                 break
-        used = min(LANES, count - first)
-        linearise(cables, kappa, n)
-        _report(cables, cable_weight, out, lane, used, n)
-        assemble(slopes, cables, poses, cable_weight, rows, n)
-        _report_rest(slopes, cables, cable_weight, scale, out_rest, lane, used, n)
-
-
-@kernel
-def _start(cables: FloatArray, pull: FloatArray, kappa: FloatArray, lane: IntArray, n: int) -> None:
-    """Set the first pulls, and the lengths of straight cables that pull so."""
-    for i in range(n):
-        row = cables[i]
-        for j in range(LANES):
-            p, chord = pull[lane[j], i], row[L, j]
-            row[P, j] = p
-            row[L, j] = chord / (1.0 + kappa[i] * p * chord)
+        linearise(cables, kappa)
+        assemble(slopes, cables, poses, weights, rows)
+        for j in range(min(LANES, count - first)):
+            write_lane(out[lane[j]], cables, weights, j)
+            out_rest[lane[j]] = _rest(slopes, cables, weights, scale, j)
 
 
 @kernel
@@ -192,8 +167,9 @@ def _share(residual: float) -> float:
 
 
 @kernel
-def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, n: int, m: int) -> None:
+def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: int) -> None:
     """Set G h⁻¹ Gᵀ and, beside it, -r - G h⁻¹ ∇."""
+    n = cables.shape[0]
     for r in range(m):
         for c in range(r, m):
             entry = normal[r, c]
@@ -213,8 +189,9 @@ def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, n: i
 
 
 @kernel
-def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, n: int, m: int) -> None:
+def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, m: int) -> None:
     """Write dp where `advance` looks for it, over what `assemble` had there."""
+    n = cables.shape[0]
     for i in range(n):
         row = cables[i]
         for j in range(LANES):
@@ -222,45 +199,18 @@ def _set_step(slopes: FloatArray, normal: FloatArray, cables: FloatArray, n: int
             for r in range(m):
                 total += slopes[r, i, j] * normal[r, m, j]
             slopes[i, n, j] = -total / row[_CURVATURE, j]
-            slopes[i, n + 1, j] = 0.0
 
 
 @kernel
-def _report(
-    cables: FloatArray,
-    cable_weight: FloatArray,
-    out: FloatArray,
-    lane: IntArray,
-    used: int,
-    n: int,
-) -> None:
-    for i in range(n):
-        row, w = cables[i], cable_weight[i]
-        for j in range(used):
-            out[lane[j], i, LENGTH] = row[L, j] + row[L_0, j]
-            out[lane[j], i, FORCE_X] = w * row[P, j] * np.sqrt(row[X2, j])
-            out[lane[j], i, FORCE_Z] = -w * row[V, j]
-
-
-@kernel
-def _report_rest(
-    slopes: FloatArray,
-    cables: FloatArray,
-    cable_weight: FloatArray,
-    scale: FloatArray,
-    out_rest: FloatArray,
-    lane: IntArray,
-    used: int,
-    n: int,
-) -> None:
-    """Cables close to rounding after `linearise`; what is left is in the balance."""
-    for j in range(used):
-        largest = 0.0
-        for i in range(n):
-            largest = max(largest, cable_weight[i] * cables[i, T, j])
-        rest = 0.0
-        for r in range(scale.size):
-            rest = max(rest, abs(slopes[r, n, j] + slopes[r, n + 1, j]) * scale[r])
-        for i in range(n):  # a cable that does not close, and NaN, must show
-            rest += 0.0 if abs(cables[i, L_0, j]) <= _CLOSED * cables[i, L, j] else np.inf
-        out_rest[lane[j]] = rest / largest
+def _rest(
+    slopes: FloatArray, cables: FloatArray, weights: FloatArray, scale: FloatArray, j: int
+) -> float:
+    """Return what is left of a balance; cables close to rounding after `linearise`."""
+    n = cables.shape[0]
+    largest, rest = 0.0, 0.0
+    for r in range(scale.size):
+        rest = max(rest, abs(slopes[r, n, j] + slopes[r, n + 1, j]) * scale[r])
+    for i in range(n):  # a cable that does not close, and NaN, must show
+        largest = max(largest, weights[i] * cables[i, T, j])
+        rest += 0.0 if abs(cables[i, L_0, j]) <= _CLOSED * cables[i, L, j] else np.inf
+    return rest / largest

@@ -1,4 +1,4 @@
-"""Many small linear systems at once, one per lane."""
+"""Small linear systems: many at once, one per lane, and one alone."""
 
 from __future__ import annotations
 
@@ -23,9 +23,13 @@ def solve_lanes(A: FloatArray, n: int, columns: int) -> None:
             _eliminate(A[k], A[r], k, columns, A[n, 0], A[n, 1])
     for k in range(n - 1, -1, -1):
         for m in range(n, columns):
+            target = A[k, m]
             for i in range(k + 1, n):
-                _subtract(A[k, m], A[k, i], A[i, m])
-            _divide(A[k, m], A[k, k])
+                factor, solved = A[k, i], A[i, m]
+                for j in range(target.size):
+                    target[j] -= factor[j] * solved[j]
+            for j in range(target.size):
+                target[j] /= A[k, k, j]
 
 
 @kernel
@@ -60,18 +64,6 @@ def _eliminate(
 
 
 @kernel
-def _subtract(target: FloatArray, a: FloatArray, b: FloatArray) -> None:
-    for j in range(target.size):
-        target[j] -= a[j] * b[j]
-
-
-@kernel
-def _divide(target: FloatArray, a: FloatArray) -> None:
-    for j in range(target.size):
-        target[j] /= a[j]
-
-
-@kernel
 def solve_small(A: FloatArray, x: FloatArray) -> bool:
     """Solve one system by elimination with row exchange; False if it is singular.
 
@@ -91,9 +83,7 @@ def solve_small(A: FloatArray, x: FloatArray) -> bool:
         if not abs(A[row, k]) > 0.0:
             return False
         for j in range(k, m + 1):
-            keep = A[k, j]
-            A[k, j] = A[row, j]
-            A[row, j] = keep
+            A[k, j], A[row, j] = A[row, j], A[k, j]
         for i in range(k + 1, m):
             factor = A[i, k] / A[k, k]
             for j in range(k, m + 1):

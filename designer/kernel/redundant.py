@@ -20,34 +20,49 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import FloatArray, VerdictArray
+from designer.kernel.answer import NOT_CONVERGED, SOLVED, Answers
+from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import element, kernel
-from designer.kernel.redundant_answer import (
-    NOTHING,
-    OPTIMAL_WITHIN,
-    store,
-    store_deficient,
+from designer.kernel.interior import (
+    START_OF_STRAIGHT,
+    Scratch,
+    climb,
+    new_scratch,
+    pull_straight,
 )
-from designer.kernel.redundant_hanging import settle_hanging, value_wrenches
-from designer.kernel.redundant_interior import improve, new_scratch
-from designer.kernel.redundant_layout import (
-    CHORD,
+from designer.kernel.linear import solve_small
+from designer.kernel.pose import (
     FORCE,
     HANGS,
-    L_0,
-    L_P,
+    KAPPA,
     LEAST,
+    NOTHING,
+    OPTIMAL_WITHIN,
     REACH,
     SHARE,
     SIZE,
-    STRAIGHT,
+    STRENGTH,
+    TOP,
+    TOP_S,
+    UNIT,
+    UP,
+    WRENCH,
     Ask,
-    L,
-    P,
     Pose,
-    Scratch,
-)  # fmt: skip
-from designer.kernel.redundant_lp import (
+    along,
+    asked,
+    linearise,
+    make_straight,
+    new_pose,
+    place,
+    settled_length,
+    smallest_pull,
+    store,
+    write_wrenches,
+)
+from designer.kernel.simplex import (
+    AT_TOP,
     OPTIMAL,
     Programme,
     choose_basis,
@@ -55,26 +70,117 @@ from designer.kernel.redundant_lp import (
     new_programme,
     rebuild,
 )
-from designer.kernel.redundant_pose import (
-    linearise,
-    make_straight,
-    new_pose,
-    place,
-    pose_programme,
-    pull_of,
+from designer.kernel.table import (
+    CHORD,
+    L_0,
+    L_P,
+    LIFT,
+    STRAIGHT,
+    T_P,
+    V_P,
+    X2,
+    D,
+    L,
+    P,
+    T,
+    V,
 )
-from designer.kernel.unit_cable import PULL_FLOOR
+from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 from designer.model.verdict import Verdict
 
+KEPT_PULLS = (0.5, 0.9)
+"""Share of its pull that a cable keeps in a step of the interior point; then more careful."""
 _MOST_STEPS = 8
 _SMALL_STEP = 1e-6
-# Share of its pull that a cable keeps at least in a step of the interior point; then more careful.
-_KEPT_PULLS = (0.5, 0.9)
-_START_OF_STRAIGHT = 0.8
-_SOLVED = int(Verdict.SOLVED)
-_NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
+_LEAST_SLOPE = 0.3
+"""Of the top tension in the pull, over the chord: a cable of less is far from its strength."""
+# Newton for the pull of a hanging cable: turns, when it is settled (the error left is about the
+# square), relative step of the difference for its slope, largest turn of the pull's logarithm.
+_MOST_TURNS = 12
+_SETTLED = 1e-4
+_ALONG = 1e-5
+_LARGEST_TURN = 1.5
 _OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
 _RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
+
+
+@kernel
+def solve_redundant_range(
+    start: int,
+    stop: int,
+    situation: Situation,
+    figures: Figures,
+    inverse_weight: float,
+    out: Answers,
+) -> None:
+    """Solve the poses from `start` to `stop`: by linear programmes, else by the interior point."""
+    m, n = situation.rows.size, figures.kappa.size
+    pose = new_pose(figures, situation.rows)
+    lp = new_programme(m, n)
+    scratch = new_scratch(m, n)
+    sizing = inverse_weight < 0.0
+    for at in range(start, stop):
+        place(pose, situation, at)
+        straight_c, spans = massless(pose, lp)
+        if not spans:
+            out.cables[at] = np.nan
+            out.poses[at] = np.nan
+            out.verdict[at] = NOT_CONVERGED
+            continue
+        to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
+        ask = asked(pose, inverse_weight)
+        s, gap = _walk(pose, lp, ask, scratch)
+        verdict = NOT_CONVERGED
+        if gap <= OPTIMAL_WITHIN:
+            c = (ask.c_0 + s * ask.c_s) / to_scaled
+            verdict = store(out, at, pose, c, gap, straight_c, sizing)
+        for keep in KEPT_PULLS:
+            if verdict != SOLVED:
+                s = START_OF_STRAIGHT * straight_c if sizing else -1.0
+                pull_straight(pose, ask, s)
+                s, gap = climb(pose, ask, s, keep, scratch)
+                c = (ask.c_0 + s * ask.c_s) / to_scaled
+                verdict = store(out, at, pose, c, gap, straight_c, sizing)
+
+
+@kernel
+def solve_massless_range(
+    start: int,
+    stop: int,
+    situation: Situation,
+    figures: Figures,
+    out_tension: FloatArray,
+    out_wrench: FloatArray,
+    out_verdict: VerdictArray,
+) -> None:
+    """Find straight cables' tensions with the smallest largest one, poses `start` to `stop`.
+
+    Tensions are NaN where there are none; the wrenches are then such that no tensions can do work
+    against them, although the load does. Elsewhere they tell by how much the largest tension falls
+    with the load.
+    """
+    rows, least_tension = situation.rows, figures.least_tension
+    m, n = rows.size, figures.kappa.size
+    pose = new_pose(figures, rows)
+    lp = new_programme(m, n)
+    scratch = new_scratch(m, n)
+    for at in range(start, stop):
+        place(pose, situation, at)
+        c, spans = massless(pose, lp)
+        held = c > NOTHING
+        for i in range(n):
+            tension = pose.cables[STRAIGHT, i] * pose.scale[SIZE] / c
+            # Of a cable at its least, the linear programme may leave a rounding error.
+            out_tension[at, i] = max(tension, least_tension) if held else np.nan
+        out_verdict[at] = SOLVED
+        if not spans:
+            out_verdict[at] = _RANK_DEFICIENT
+        elif not held:
+            out_verdict[at] = _OUTSIDE_HULL if c <= NOTHING else NOT_CONVERGED
+        known = spans and _value_wrenches(pose, lp, scratch)
+        for k in range(m):
+            value = scratch.value[k] if rows[k] < 3 else scratch.value[k] / pose.scale[REACH]
+            out_wrench[at, k] = value if known else np.nan
 
 
 @element
@@ -87,74 +193,18 @@ def massless(pose: Pose, lp: Programme) -> tuple[float, bool]:
     n = c.shape[1]
     ask = Ask(0.0, 1.0, 1.0, 0.0)
     make_straight(pose, 0.0)
-    pose_programme(lp, pose, ask, 0.0)
+    _write_programme(lp, pose, ask, 0.0)
     if not choose_basis(lp):
         return 0.0, False
     if maximise(lp) != OPTIMAL:
         return np.nan, True
     for i in range(n):
-        c[STRAIGHT, i] = pull_of(lp, pose, ask, i) * c[CHORD, i] * c[SHARE, i]
+        c[STRAIGHT, i] = _pull_of(lp, pose, ask, i) * c[CHORD, i] * c[SHARE, i]
     return float(lp.z[n]), True
 
 
-@kernel
-def solve_massless_range(
-    start: int,
-    stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    rows: IntArray,
-    least_tension: float,
-    out_tension: FloatArray,
-    out_wrench: FloatArray,
-    out_verdict: IntArray,
-) -> None:
-    """Find straight cables' tensions with the smallest largest one, poses `start` to `stop`.
-
-    Tensions are NaN where there are none; the wrenches are then such that no tensions can do work
-    against them, although the load does. Elsewhere they tell by how much the largest tension falls
-    with the load.
-    """
-    n, m = exit_points.shape[1], rows.size
-    one = np.ones(n)
-    pose = new_pose(one, one, one, rows, least_tension)
-    lp = new_programme(m, n)
-    scratch = new_scratch(m, n)
-    for at in range(start, stop):
-        place(
-            pose,
-            exit_points[at if exit_points.shape[0] > 1 else 0],
-            attachments,
-            rotations[at if rotations.shape[0] > 1 else 0],
-            positions[at],
-            load[at if load.shape[0] > 1 else 0],
-            load_point,
-            weight,
-        )
-        c, spans = massless(pose, lp)
-        held = c > NOTHING
-        for i in range(n):
-            tension = pose.cables[STRAIGHT, i] * pose.scale[SIZE] / c
-            # Of a cable at its least, the linear programme may leave a rounding error.
-            out_tension[at, i] = max(tension, least_tension) if held else np.nan
-        out_verdict[at] = _SOLVED
-        if not spans:
-            out_verdict[at] = _RANK_DEFICIENT
-        elif not held:
-            out_verdict[at] = _OUTSIDE_HULL if c <= NOTHING else _NOT_CONVERGED
-        known = spans and value_wrenches(pose, lp, scratch.value, scratch.square)
-        for k in range(m):
-            value = scratch.value[k] if rows[k] < 3 else scratch.value[k] / pose.scale[REACH]
-            out_wrench[at, k] = value if known else np.nan
-
-
 @element
-def walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float, float]:
+def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float, float]:
     """Solve by linear programmes, one a Newton step; return s and the last relative step.
 
     The basis of the straight cables is the start. A cable that wants less than no tension is left
@@ -165,14 +215,19 @@ def walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float, 
     s = 0.0
     make_straight(pose, 0.5)
     for iteration in range(_MOST_STEPS):
-        pose_programme(lp, pose, ask, PULL_FLOOR)
+        _write_programme(lp, pose, ask, PULL_FLOOR)
         if not rebuild(lp) or maximise(lp) != OPTIMAL:
             return s, np.inf
         before, s = s, float(lp.z[n])
         step = abs(s - before) / abs(s)
-        step = max(step, pull(pose, lp, ask, iteration == 0))
-        if some_hang(pose, lp):
-            step = max(step, hang(pose, lp, scratch))
+        step = max(step, _pull(pose, lp, ask, iteration == 0))
+        some_hang = False
+        for i in range(n):
+            if lp.dual[i] < 0.0 and c[LEAST, i] == 0.0:
+                c[HANGS, i] = 1.0
+            some_hang = some_hang or c[HANGS, i] > 0.0
+        if some_hang:
+            step = max(step, _hang(pose, lp, scratch))
         if not step < np.inf:
             return s, np.inf
         if iteration > 0 and step < _SMALL_STEP:
@@ -182,13 +237,13 @@ def walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float, 
 
 
 @element
-def pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
+def _pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
     """Pull the cables as the linear programme has it; return the largest relative step."""
     c = pose.cables
     largest = 0.0
     for i in range(c.shape[1]):
         old, length = c[P, i], c[L, i]
-        new = pull_of(lp, pose, ask, i)
+        new = _pull_of(lp, pose, ask, i)
         if not is_first:
             new = min(max(new, 0.2 * old), 5.0 * old)
         c[P, i] = new = max(new, PULL_FLOOR)
@@ -201,103 +256,137 @@ def pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
 
 
 @element
-def some_hang(pose: Pose, lp: Programme) -> bool:
-    """Mark the cables that want no tension as hanging; tell whether any hangs."""
+def _write_programme(lp: Programme, pose: Pose, ask: Ask, floor: float) -> None:
+    """Write the linearised pose as a linear programme in the rooms below the strengths.
+
+    The scaled pulls are y = u + s u' - z with u + s u' the pull at which the linearised top tension
+    reaches its limit.
+    """
+    c, table = pose.cables, lp.table
+    m, n = lp.basis.size, lp.dual.size
+    for i in range(n):
+        hangs = c[HANGS, i] > 0.0
+        rest, slope = _tension_line(c, i)
+        reach = 1.0 / (slope * c[UNIT, i])
+        low, low_c = smallest_pull(pose, i, floor)
+        top = (ask.f_0 * c[STRENGTH, i] - rest) * reach
+        top_s = ask.f_s * c[STRENGTH, i] * reach
+        # The pull of a hanging cable is settled elsewhere: here it is a part of the load.
+        c[TOP, i] = c[P, i] / c[UNIT, i] if hangs else top
+        c[TOP_S, i] = 0.0 if hangs else top_s
+        lp.room[i] = 0.0 if hangs else top - low - low_c * ask.c_0
+        lp.room_slope[i] = 0.0 if hangs else top_s - low_c * ask.c_s
+        c[UP, i] = c[SHARE, i] * (c[V, i] - c[V_P, i] * c[P, i]) / pose.scale[FORCE]
+    write_wrenches(pose)
+    for k in range(m):
+        row = pose.rows[k]
+        slope, rest = ask.c_s * pose.load[row], -ask.c_0 * pose.load[row]
+        for i in range(n):
+            wrench = c[WRENCH + row, i]
+            slope -= wrench * c[TOP_S, i]
+            rest += wrench * c[TOP, i] + c[UP, i] * c[LIFT + row, i]
+            table[k, i] = 0.0 if c[HANGS, i] > 0.0 else wrench
+        lp.slope[k] = table[k, n] = slope
+        table[k, n + 1] = rest
+
+
+@element
+def _pull_of(lp: Programme, pose: Pose, ask: Ask, i: int) -> float:
+    """Return the pull of a cable in the solution of the linear programme."""
     c = pose.cables
-    some = False
-    for i in range(c.shape[1]):
-        if lp.dual[i] < 0.0 and c[LEAST, i] == 0.0:
-            c[HANGS, i] = 1.0
-        some = some or c[HANGS, i] > 0.0
-    return some
+    if c[HANGS, i] > 0.0:
+        return float(c[P, i])
+    limit = (ask.f_0 + lp.z[lp.dual.size] * ask.f_s) * c[STRENGTH, i]
+    rest, slope = _tension_line(c, i)
+    return float((limit - rest) / slope - lp.z[i] * c[UNIT, i])
+
+
+@element
+def _tension_line(c: FloatArray, i: int) -> tuple[float, float]:
+    """Return the linear top tension: its value at no pull, and its slope.
+
+    A cable so slack that its tension falls with the pull is far from its strength, and taken as
+    straight; were it to come near, it would be taut.
+    """
+    if c[T_P, i] > _LEAST_SLOPE * c[CHORD, i]:
+        return c[T, i] - c[T_P, i] * c[P, i], c[T_P, i]
+    return 0.5 * abs(c[D, i]), c[CHORD, i]
 
 
 @kernel
-def hang(pose: Pose, lp: Programme, scratch: Scratch) -> float:
+def _value_wrenches(pose: Pose, lp: Programme, scratch: Scratch) -> bool:
+    """Fill by how much s rises per unit of each component of the scaled wrench; False if undefined.
+
+    Cables in the basis are free, so what they can give is worth nothing: value · Aⱼ = 0 for them,
+    and value · h = 1 with h the column of s, but for what s itself changes through the bounds.
+    """
+    value, A = scratch.value, scratch.square
+    m, n = lp.basis.size, lp.dual.size
+    for k in range(m):
+        j = lp.basis[k]
+        for q in range(m):
+            A[k, q] = pose.cables[WRENCH + pose.rows[q], j] if j < n else lp.slope[q]
+        A[k, m] = 0.0 if j < n else 1.0
+    if not solve_small(A, value):
+        return False
+    coupling = 1.0
+    for j in range(n):
+        if lp.rests[j] == AT_TOP:
+            coupling += along(pose, value, WRENCH, j) * lp.room_slope[j]
+    for q in range(m):
+        value[q] /= coupling
+    return True
+
+
+@kernel
+def _hang(pose: Pose, lp: Programme, scratch: Scratch) -> float:
     """Let hanging cables find their pull; return the largest relative step of them."""
     c = pose.cables
-    if not value_wrenches(pose, lp, scratch.value, scratch.square):
+    if not _value_wrenches(pose, lp, scratch):
         return np.inf
     largest = 0.0
     for i in range(c.shape[1]):
         if c[HANGS, i] > 0.0:
-            largest = max(largest, settle_hanging(pose, scratch.value, i))
+            largest = max(largest, _settle_hanging(pose, scratch.value, i))
     return largest
 
 
 @kernel
-def solve_redundant_range(
-    start: int,
-    stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
-    inverse_weight: float,
-    rows: IntArray,
-    least_tension: float,
-    out_cables: FloatArray,
-    out_poses: FloatArray,
-    out_verdict: IntArray,
-) -> None:
-    """Solve the poses from `start` to `stop`."""
-    m, n = rows.size, kappa.size
-    pose = new_pose(kappa, weights, strength, rows, least_tension)
-    lp = new_programme(m, n)
-    scratch = new_scratch(m, n)
-    for at in range(start, stop):
-        place(
-            pose,
-            exit_points[at if exit_points.shape[0] > 1 else 0],
-            attachments,
-            rotations[at if rotations.shape[0] > 1 else 0],
-            positions[at],
-            load[at if load.shape[0] > 1 else 0],
-            load_point,
-            weight,
-        )
-        straight_c, spans = massless(pose, lp)
-        if spans:
-            solve_pose(
-                out_cables, out_poses, out_verdict, at, pose, lp, scratch, straight_c,
-                inverse_weight,
-            )  # fmt: skip
-        else:
-            store_deficient(out_cables, out_poses, out_verdict, at)
+def _settle_hanging(pose: Pose, value: FloatArray, i: int) -> float:
+    """Move a hanging cable to the pull at which s cannot rise; return the relative step.
+
+    There value · W'(p) = 0: it is at no limit, but where its own weight harms least. W' is its
+    horizontal part plus the slope v' of the upward pull, so the condition asks for one v'. What
+    that is above the drop falls about as X² / (24 L p³), L being the chord: Newton in logarithms.
+    An infinite step tells that there is no such pull.
+    """
+    c = pose.cables
+    upward = along(pose, value, LIFT, i) * (c[SHARE, i] * c[UNIT, i] / pose.scale[FORCE])
+    sideways = along(pose, value, WRENCH, i) - upward * c[V_P, i]
+    wanted = -sideways / upward - c[D, i]
+    if not (upward > 0.0 and wanted > 0.0):
+        return np.inf
+    before = c[P, i]
+    p = (c[X2, i] / (24.0 * c[CHORD, i] * wanted)) ** (1.0 / 3.0)
+    for _ in range(_MOST_TURNS):
+        excess = _lift_slope(c, i, p) - c[D, i]
+        excess_ahead = _lift_slope(c, i, p * (1.0 + _ALONG)) - c[D, i]
+        if not (excess_ahead > 0.0 and excess > excess_ahead):
+            return np.inf
+        turn = np.log(excess / wanted) / np.log(excess / excess_ahead) * np.log(1.0 + _ALONG)
+        p *= np.exp(min(max(turn, -_LARGEST_TURN), _LARGEST_TURN))
+        if abs(turn) < _SETTLED:
+            break
+    if not (PULL_FLOOR < p < np.inf):
+        return np.inf
+    c[P, i] = p
+    c[L, i] = settled_length(c, i, p)
+    return float(abs(p - before) / p)
 
 
-@element
-def solve_pose(
-    out_cables: FloatArray,
-    out_poses: FloatArray,
-    out_verdict: IntArray,
-    at: int,
-    pose: Pose,
-    lp: Programme,
-    scratch: Scratch,
-    straight_c: float,
-    inverse_weight: float,
-) -> None:
-    """Solve a placed pose: by linear programmes, else by the interior point."""
-    to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
-    sizing = inverse_weight < 0.0
-    ask = Ask(0.0, 1.0, 1.0, 0.0) if sizing else Ask(inverse_weight * to_scaled, 0.0, 0.0, -1.0)
-    s, gap = walk(pose, lp, ask, scratch)
-    if gap <= OPTIMAL_WITHIN:
-        c = (ask.c_0 + s * ask.c_s) / to_scaled
-        verdict = store(out_cables, out_poses, out_verdict, at, pose, c, gap, straight_c, sizing)
-        if verdict == _SOLVED:
-            return
-    for keep in _KEPT_PULLS:
-        start = _START_OF_STRAIGHT * straight_c if sizing else -1.0
-        s, gap = improve(pose, ask, start, keep, scratch)
-        c = (ask.c_0 + s * ask.c_s) / to_scaled
-        verdict = store(out_cables, out_poses, out_verdict, at, pose, c, gap, straight_c, sizing)
-        if verdict == _SOLVED:
-            return
+@kernel
+def _lift_slope(c: FloatArray, i: int, p: float) -> float:
+    """Return the slope of a cable's upward pull in its pull."""
+    length = settled_length(c, i, p)
+    _, F_p, F_l, _, v_p, v_l, _, _, _ = unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])
+    return float(v_p - v_l * F_p / F_l)

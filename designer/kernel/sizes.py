@@ -12,163 +12,123 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.kernel.answer import TOLERANCE, check, evaluate
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.answer import TOLERANCE
+from designer.kernel.calling import Meets, Situation
 from designer.kernel.compiling import kernel
-from designer.kernel.layout import (
-    CABLE_ROWS,
-    LANES,
+from designer.kernel.lanes import (
     OVERLOAD,
     POSE_ROWS,
     RESIDUAL,
     STEP,
-    X2,
     C,
-    D,
-    L,
-    P,
-    V,
-)  # fmt: skip
-from designer.kernel.linear import solve_lanes
-from designer.kernel.step import (
     advance,
     assemble,
     first_guess,
+    lanes_of,
     linearise,
-    linearise_taut,
     place,
-)  # fmt: skip
+)
+from designer.kernel.linear import solve_lanes
+from designer.kernel.square import check, evaluate
+from designer.kernel.table import CHORD, LANE_ROWS, LANES, D, L, P, V
 
 _ITERATIONS = 6
 _SMALLEST_STEP = 1e-6
 _LEAST_PULL = 0.01
+"""Of a start: a slack cable hangs, never pushes."""
 
 
 @kernel
 def sweep_sizes(
     first: int,
     last: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    cells: IntArray,
+    situation: Situation,
     kappa: FloatArray,
     inverse_weight: FloatArray,
     strength: FloatArray,
-    rows: IntArray,
+    cells: IntArray,
     leaves_out_hanging: bool,
-    worst: FloatArray,
-    worst_at: IntArray,
-    longest: FloatArray,
-    counted: IntArray,
-    overloaded: IntArray,
-    left_out: IntArray,
-    failed: BoolArray,
+    found: Meets,
 ) -> None:
     """Solve all poses with the sizes from `first` to `last`, and keep what they ask for.
 
     Parameters
     ----------
-    exit_points, load : array (n_cables, 3), (6,)
-        The same in all poses; what follows is as in `designer.kernel.square.solve_range`.
-    cells : array (n_poses,)
-        Part of the region that each pose lies in.
     kappa, inverse_weight, strength : array (n_sizes,)
         Weight over axial stiffness [1/m], 1 / w [m/N], allowable tension over weight [m].
+    cells : array (n_poses,)
+        Part of the region that each pose lies in.
     leaves_out_hanging : bool
         Whether poses in which a cable hangs below the platform do not count.
-    worst, worst_at : array (n_sizes, n_cells)
-        Raised to the largest tension over the allowable one in each cell; index of that pose.
-    longest : array (n_sizes, n_cables)
-        Raised to the longest unstrained length of each cable [m].
-    counted, overloaded, left_out : array (n_sizes,)
-        Increased by the poses that count, those above the allowable tension, those left out.
-    failed : array (n_sizes, n_poses)
-        Set where no solution was found; such a pose is in none of the other results.
     """
-    n = exit_points.shape[0]
-    points, loads = exit_points.reshape(1, n, 3), load.reshape(1, 6)
-    cables = np.empty((n, CABLE_ROWS, LANES))
+    n, count, rows = situation.attachments.shape[0], cells.size, situation.rows
+    cables = np.empty((n, LANE_ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
-    guess = np.empty((2, n, LANES))
-    ones = np.ones(n)
-    for start in range(0, positions.shape[0], LANES):
-        lane = np.minimum(np.arange(start, start + LANES), positions.shape[0] - 1)
-        place(
-            cables, poses, points, attachments, loads, load_point, weight,
-            positions, rotations, lane,
-        )  # fmt: skip
-        linearise_taut(cables, n)
-        assemble(A, cables, poses, ones, rows, n)
+    guess = np.empty((n, 2, LANES))
+    ones, every = np.ones(n), np.arange(count)
+    for start in range(0, count, LANES):
+        lane = lanes_of(every, start)
+        place(cables, poses, situation, lane)
+        assemble(A, cables, poses, ones, rows)
         solve_lanes(A, n, n + 2)
-        for i in range(n):
-            guess[0, i] = A[i, n]
-            guess[1, i] = A[i, n + 1]
+        guess[:] = A[:n, n:]
         poses[C] = inverse_weight[first]
-        first_guess(cables, A, poses, ones, n)
+        first_guess(cables, A, poses, ones)
         for size in range(first, last):
             poses[C] = inverse_weight[size]
-            _solve(cables, A, poses, kappa[size] * ones, ones, rows, n)
-            evaluate(cables, kappa[size] * ones, n)
+            for _ in range(_ITERATIONS):  # Newton, from the state that the poses are in
+                linearise(cables, kappa[size] * ones)
+                assemble(A, cables, poses, ones, rows)
+                solve_lanes(A, n, n + 2)
+                poses[STEP] = 0.0
+                advance(cables, A, poses)
+                if np.max(poses[STEP]) < _SMALLEST_STEP:
+                    break
+            evaluate(cables, kappa[size] * ones)
             check(poses, cables, ones, strength[size] * ones, rows)
-            for j in range(min(LANES, positions.shape[0] - start)):
-                at = lane[j]
-                # Negated, so that NaN counts as failed.
-                if not (poses[RESIDUAL, j] <= TOLERANCE and poses[OVERLOAD, j] < np.inf):
-                    failed[size, at] = True
-                elif leaves_out_hanging and _hangs_below(cables, j):
-                    left_out[size] += 1
-                else:
-                    counted[size] += 1
-                    overloaded[size] += poses[OVERLOAD, j] > 1.0
-                    for i in range(n):
-                        longest[size, i] = max(longest[size, i], cables[i, L, j])
-                    if poses[OVERLOAD, j] > worst[size, cells[at]]:
-                        worst[size, cells[at]] = poses[OVERLOAD, j]
-                        worst_at[size, cells[at]] = at
-            _restart_failed(cables, poses, guess, n)
+            for j in range(min(LANES, count - start)):
+                _keep(found, size, cables, poses, j, lane[j], cells[lane[j]], leaves_out_hanging)
+            _restart_failed(cables, poses, guess)
 
 
 @kernel
-def _solve(
+def _keep(
+    found: Meets,
+    size: int,
     cables: FloatArray,
-    A: FloatArray,
     poses: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    rows: IntArray,
-    n: int,
+    j: int,
+    at: int,
+    cell: int,
+    leaves_out_hanging: bool,
 ) -> None:
-    """Newton on one block at given weight, from the state that it is in."""
-    for _ in range(_ITERATIONS):
-        linearise(cables, kappa, n)
-        assemble(A, cables, poses, weights, rows, n)
-        solve_lanes(A, n, n + 2)
-        poses[STEP] = 0.0
-        advance(cables, A, poses, n)
-        if np.max(poses[STEP]) < _SMALLEST_STEP:
-            break
-
-
-@kernel
-def _hangs_below(cables: FloatArray, j: int) -> bool:
-    found = False
+    hangs = False
     for i in range(cables.shape[0]):
-        found = found or (cables[i, V, j] < 0.0 and cables[i, D, j] >= 0.0)
-    return found
+        hangs = hangs or (cables[i, V, j] < 0.0 and cables[i, D, j] >= 0.0)
+    overload = poses[OVERLOAD, j]
+    # Negated, so that NaN counts as failed.
+    if not (poses[RESIDUAL, j] <= TOLERANCE and overload < np.inf):
+        found.failed[size, at] = True
+    elif leaves_out_hanging and hangs:
+        found.left_out[size] += 1
+    else:
+        found.counted[size] += 1
+        found.overloaded[size] += overload > 1.0
+        for i in range(cables.shape[0]):
+            found.longest_m[size, i] = max(found.longest_m[size, i], cables[i, L, j])
+        if overload > found.utilisation[size, cell]:
+            found.utilisation[size, cell] = overload
+            found.pose[size, cell] = at
 
 
 @kernel
-def _restart_failed(cables: FloatArray, poses: FloatArray, guess: FloatArray, n: int) -> None:
+def _restart_failed(cables: FloatArray, poses: FloatArray, guess: FloatArray) -> None:
     """Put lanes that failed back to straight cables, so that the next size has a start."""
     for j in range(LANES):
         if not poses[RESIDUAL, j] <= TOLERANCE:
-            for i in range(n):
+            for i in range(cables.shape[0]):
                 row = cables[i]
-                row[P, j] = max(guess[0, i, j] + poses[C, j] * guess[1, i, j], _LEAST_PULL)
-                row[L, j] = np.sqrt(row[X2, j] + row[D, j] ** 2)
+                row[P, j] = max(guess[i, 0, j] + poses[C, j] * guess[i, 1, j], _LEAST_PULL)
+                row[L, j] = row[CHORD, j]

@@ -10,8 +10,6 @@ eᵢ is the horizontal vector from attachment to exit point, ωᵢ the cable's w
 Each cable's length is eliminated by its closure, so a Newton step is one n × n solve with two
 right-hand sides: the step at c = 0 and the change per c. Sizing then takes the largest c, hence
 the lightest cable, for which every linearised top tension stays within the strength length.
-
-Poses are worked on in blocks of lanes; every array is laid out with the lane as its last axis.
 """
 
 from __future__ import annotations
@@ -19,118 +17,98 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.answer import TOLERANCE, check, evaluate, store
-from designer.kernel.compiling import kernel
-from designer.kernel.layout import CABLE_ROWS, GOAL, LANES, POSE_ROWS, RESIDUAL, STEP, C
-from designer.kernel.linear import solve_lanes
-from designer.kernel.step import (
+from designer.kernel.answer import (
+    LOAD_FACTOR,
+    MASSLESS_TENSION,
+    TOLERANCE,
+    Answers,
+    judge,
+    write_cable,
+    write_pose,
+)
+from designer.kernel.calling import Figures, Situation
+from designer.kernel.compiling import element, kernel
+from designer.kernel.lanes import (
+    CLOSURE,
+    GOAL,
+    HIGHEST,
+    LOAD,
+    LOWEST,
+    OVERLOAD,
+    POSE_ROWS,
+    PULL,
+    REACH,
+    RESIDUAL,
+    REST,
+    SCALE,
+    STEP,
+    C,
     advance,
     aim_at_strength,
     approach,
     assemble,
     first_guess,
+    lanes_of,
     linearise,
-    linearise_taut,
     place,
-)  # fmt: skip
+)
+from designer.kernel.linear import solve_lanes
+from designer.kernel.table import (
+    L_0,
+    LANE_ROWS,
+    LANES,
+    LEVEL,
+    LEVER,
+    LIFT,
+    STRAIGHT,
+    X2,
+    D,
+    L,
+    P,
+    T,
+    V,
+)
+from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
 _ATTEMPTS = ((5, 1e-6, 0.0), (12, 1e-6, 0.0), (60, 1e-11, 0.0), (120, 1e-11, 30.0))
 """Iterations, relative step at which Newton stops, and lightness of the start of each attempt; only
 the poses that fail go on to the next one. Newton converges quadratically, so as a rule a step of
 1e-6 leaves an error near 1e-12."""
-
-
-@kernel
-def _solve_block(
-    cables: FloatArray,
-    A: FloatArray,
-    poses: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
-    rows: IntArray,
-    inverse_weight: float,
-    iterations: int,
-    smallest_step: float,
-    lightness: float,
-) -> None:
-    """Newton on one placed block; a negative `inverse_weight` asks for the largest instead.
-
-    With `lightness` above zero it starts from cables lighter by that factor, which are nearly
-    straight, and lets them grow heavier step by step.
-    """
-    n = kappa.size
-    poses[GOAL] = inverse_weight
-    for iteration in range(iterations):
-        if iteration == 0:
-            linearise_taut(cables, n)
-        else:
-            linearise(cables, kappa, n)
-        assemble(A, cables, poses, weights, rows, n)
-        solve_lanes(A, n, n + 2)
-        if inverse_weight < 0.0:
-            aim_at_strength(poses, A, cables, strength, n)
-        if iteration == 0:
-            for j in range(LANES):
-                poses[C, j] = poses[GOAL, j] + lightness * abs(poses[GOAL, j])
-            first_guess(cables, A, poses, weights, n)
-            poses[STEP] = 0.0
-        else:
-            approach(poses, lightness > 0.0)
-            advance(cables, A, poses, n)
-            if np.max(poses[STEP]) < smallest_step:
-                break
+_ON_BOUNDARY = 1e-12
+"""Compression over the largest tension that is rounding: the pose is on the hull's boundary."""
+_SINGULAR = 1e12
+"""Tension of straight cables over the load: beyond, they leave some wrench without tension."""
 
 
 @kernel
 def solve_range(
     start: int,
     stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
+    situation: Situation,
+    figures: Figures,
     inverse_weight: float,
-    rows: IntArray,
-    out_cables: FloatArray,
-    out_poses: FloatArray,
-    out_verdict: IntArray,
+    out: Answers,
 ) -> None:
-    """Solve the poses from `start` to `stop`: all quickly, then the failed ones again."""
-    n = kappa.size
-    cables = np.empty((n, CABLE_ROWS, LANES))
+    """Solve the poses from `start` to `stop`: all quickly, then the failed ones again.
+
+    A negative `inverse_weight` asks for the largest instead.
+    """
+    n, rows = figures.kappa.size, situation.rows
+    sizing = inverse_weight < 0.0
+    cables = np.empty((n, LANE_ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
     pending = np.arange(start, stop)
     for iterations, step, lightness in _ATTEMPTS:
         failed = 0
         for first in range(0, pending.size, LANES):
-            lane = pending[np.minimum(np.arange(first, first + LANES), pending.size - 1)]
-            place(
-                cables,
-                poses,
-                exit_points,
-                attachments,
-                load,
-                load_point,
-                weight,
-                positions,
-                rotations,
-                lane,
-            )
-            _solve_block(
-                cables, A, poses, kappa, weights, strength, rows, inverse_weight,
-                iterations, step, lightness,
-            )  # fmt: skip
-            evaluate(cables, kappa, n)
-            check(poses, cables, weights, strength, rows)
-            store(out_cables, out_poses, out_verdict, cables, poses, lane, inverse_weight < 0.0)
+            lane = lanes_of(pending, first)
+            place(cables, poses, situation, lane)
+            poses[GOAL] = inverse_weight
+            _solve_block(cables, A, poses, figures, rows, sizing, iterations, step, lightness)
+            evaluate(cables, figures.kappa)
+            check(poses, cables, figures.weights, figures.strength, rows)
+            _store(out, cables, poses, lane, sizing)
             for j in range(min(LANES, pending.size - first)):
                 # Negated, so that NaN counts as failed.
                 if not poses[RESIDUAL, j] <= TOLERANCE:
@@ -139,3 +117,129 @@ def solve_range(
         pending = pending[:failed]
         if failed == 0:
             break
+
+
+@kernel
+def _solve_block(
+    cables: FloatArray,
+    A: FloatArray,
+    poses: FloatArray,
+    figures: Figures,
+    rows: IntArray,
+    sizing: bool,
+    iterations: int,
+    smallest_step: float,
+    lightness: float,
+) -> None:
+    """Newton on one placed block.
+
+    With `lightness` above zero it starts from cables lighter by that factor, which are nearly
+    straight, and lets them grow heavier step by step.
+    """
+    n = figures.kappa.size
+    for iteration in range(iterations):
+        if iteration > 0:
+            linearise(cables, figures.kappa)
+        assemble(A, cables, poses, figures.weights, rows)
+        solve_lanes(A, n, n + 2)
+        if sizing:
+            aim_at_strength(poses, A, cables, figures.strength)
+        if iteration == 0:
+            for j in range(LANES):
+                poses[C, j] = poses[GOAL, j] + lightness * abs(poses[GOAL, j])
+            first_guess(cables, A, poses, figures.weights)
+            poses[STEP] = 0.0
+        else:
+            approach(poses, lightness > 0.0)
+            advance(cables, A, poses)
+            if np.max(poses[STEP]) < smallest_step:
+                break
+
+
+@kernel
+def evaluate(cables: FloatArray, kappa: FloatArray) -> None:
+    """Put the true pull, top tension and closure error of the state into the cable rows."""
+    for i in range(cables.shape[0]):
+        row, k = cables[i], kappa[i]
+        for j in range(LANES):
+            F, _, F_l, v, _, _, t, _, _ = unit_cable(row[P, j], row[L, j], row[X2, j], row[D, j], k)
+            row[V, j] = v
+            row[T, j] = t
+            # A cable stretched through zero length closes too, with a negative tension.
+            row[L_0, j] = abs(F / F_l) if t > 0.0 else np.inf
+
+
+@kernel
+def check(
+    poses: FloatArray,
+    cables: FloatArray,
+    weights: FloatArray,
+    strength: FloatArray,
+    rows: IntArray,
+) -> None:
+    """Compute the residuals of closure and of the platform's balance, and the worst overload.
+
+    The balance in the components `rows`, moments over the reach of the attachments, ends in row
+    `REST`.
+    """
+    for j in range(LANES):
+        poses[SCALE, j] = abs(poses[C, j]) * _size_of_force(poses, j)
+        poses[REACH, j] = 1e-300
+        poses[CLOSURE, j] = poses[RESIDUAL, j] = poses[OVERLOAD, j] = poses[HIGHEST, j] = 0.0
+        poses[LOWEST, j] = np.inf
+    for m in rows:
+        for j in range(LANES):
+            poses[REST + m, j] = -poses[C, j] * poses[LOAD + m, j]
+        for i in range(cables.shape[0]):
+            row, w = cables[i], weights[i]
+            for j in range(LANES):
+                poses[REST + m, j] += w * (
+                    row[LEVEL + m, j] * row[P, j] + row[LIFT + m, j] * row[V, j]
+                )
+    for i in range(cables.shape[0]):
+        row, w = cables[i], weights[i]
+        for j in range(LANES):
+            poses[SCALE, j] = max(poses[SCALE, j], w * row[T, j])
+            poses[REACH, j] = max(poses[REACH, j], row[LEVER, j])
+            poses[CLOSURE, j] = max(poses[CLOSURE, j], row[L_0, j])
+            poses[RESIDUAL, j] = max(poses[RESIDUAL, j], row[L_0, j] / row[L, j])
+            burst = row[T, j] / strength[i] if row[P, j] >= PULL_FLOOR else np.inf
+            poses[OVERLOAD, j] = max(poses[OVERLOAD, j], burst)
+            # A singular matrix leaves infinity or NaN in some cables; the sum lets them through.
+            straight = row[STRAIGHT, j]
+            poses[LOWEST, j] = min(poses[LOWEST, j], straight) + 0.0 * straight
+            poses[HIGHEST, j] = max(poses[HIGHEST, j], abs(straight)) + 0.0 * straight
+    for j in range(LANES):
+        force = 0.0
+        for m in rows:
+            part = abs(poses[REST + m, j])
+            force += part if m < 3 else part / poses[REACH, j]
+        poses[REST, j] = force
+        poses[PULL, j] = _size_of_force(poses, j)
+        for axis in range(3, 6):
+            poses[PULL, j] += abs(poses[LOAD + axis, j]) / poses[REACH, j]
+        # Addition instead of a maximum, because it lets NaN through.
+        poses[RESIDUAL, j] += force / poses[SCALE, j]
+
+
+@element
+def _size_of_force(poses: FloatArray, j: int) -> float:
+    return float(abs(poses[LOAD, j]) + abs(poses[LOAD + 1, j]) + abs(poses[LOAD + 2, j]))
+
+
+@kernel
+def _store(
+    out: Answers, cables: FloatArray, poses: FloatArray, lane: IntArray, sizing: bool
+) -> None:
+    """Write lengths [m] and forces [N] of solved poses; NaN for all others."""
+    for j in range(LANES):
+        at, c, overload = lane[j], poses[C, j], poses[OVERLOAD, j]
+        verdict = judge(poses[RESIDUAL, j], c, overload, sizing)
+        w = write_pose(out, at, verdict, c, poses[CLOSURE, j], poses[REST, j])
+        for i in range(cables.shape[0]):
+            write_cable(out, at, i, cables[i], j, w)
+        closed = poses[RESIDUAL, j] <= TOLERANCE
+        held = poses[LOWEST, j] >= -_ON_BOUNDARY * poses[HIGHEST, j]
+        held = held and poses[HIGHEST, j] <= _SINGULAR * poses[PULL, j]
+        out.poses[at, LOAD_FACTOR] = overload if closed else np.nan
+        out.poses[at, MASSLESS_TENSION] = poses[HIGHEST, j] if held else np.nan

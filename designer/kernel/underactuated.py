@@ -19,37 +19,35 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
+from designer.kernel.answer import LENGTH
+from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
-from designer.kernel.layout import (
-    CABLE_ROWS,
-    FORCE_X,
-    FORCE_Z,
+from designer.kernel.lanes import (
     GOAL,
-    L_0,
-    LANES,
-    LENGTH,
     LOAD,
     POSE_ROWS,
     STEP,
-    X2,
     C,
-    L,
-    P,
-    V,
-)  # fmt: skip
+    advance,
+    assemble,
+    lanes_of,
+    linearise,
+    normal_equations,
+    place,
+    write_lane,
+)
 from designer.kernel.linear import solve_lanes
-from designer.kernel.step import advance, assemble, linearise, linearise_taut, place
+from designer.kernel.table import CHORD, L_0, LANE_ROWS, LANES, L, P
 
-LEAST_PULL = 1.0 / 16.0
+_LEAST_PULL = 1.0 / 16.0
 """Smallest pull: the cable is then nearly two hundred times as long as its horizontal distance."""
 
 STEP_LEFT, WRENCH_LEFT, LONGEST = range(3)
 """Last axis of what is told of a pose: the last step, relative; |S (f - W)| [N]; and the largest
 ratio of length to chord."""
 
-# Rows of a cable beside those of the layout: chord, pull to start from, least pull.
-_CHORD, _START, _LEAST = CABLE_ROWS, CABLE_ROWS + 1, CABLE_ROWS + 2
-_ROWS = CABLE_ROWS + 3
+# Rows of a cable beside those of the table: pull to start from, least pull.
+_START, _LEAST = LANE_ROWS, LANE_ROWS + 1
 
 _MOST_TURNS = 80
 _PATIENCE = 15
@@ -57,20 +55,14 @@ _PATIENCE = 15
 _SMALL_STEP = 1e-8
 """Relative step at which pulls rest; lengths, which move less by far, are then at rounding."""
 _REGULAR_START, _LEAST_REGULAR = 1e-4, 1e-12
+"""ε at the start, and where the pose is in balance: enough for parallel cables."""
 
 
 @kernel
 def solve_underactuated_poses(
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    positions: FloatArray,
-    rotations: FloatArray,
-    cable_weight: FloatArray,
-    kappa: FloatArray,
-    rows: IntArray,
+    situation: Situation,
+    figures: Figures,
     scale: FloatArray,
-    least_tension: float,
     out: FloatArray,
     out_pose: FloatArray,
 ) -> None:
@@ -78,57 +70,60 @@ def solve_underactuated_poses(
 
     Parameters
     ----------
-    exit_points, load, positions, rotations
-        See `designer.kernel.step.place`; SI units. Positions are those of the centre of mass, about
-        which the load's moment is.
-    attachments : array (n_cables, 3)
-        From the centre of mass, body frame [m].
-    cable_weight, kappa : array (n_cables,)
-        Weight per length [N/m], and that over EA [1/m], of each cable.
-    rows : array (degrees of freedom,)
-        Components of the wrench that count, of 0 … 5.
+    situation : Situation
+        About the centre of mass, which is the origin of the body frame.
+    figures : Figures
+        With weights per length [N/m]; the least tension is that along the chord.
     scale : array (degrees of freedom,)
         S, 1 or 1/m.
-    least_tension : float
-        Least tension along the chord [N].
     out : array (n_poses, n_cables, 3)
         Filled with unstrained length [m] and forces on the cable at the platform [N].
     out_pose : array (n_poses, 3)
         Filled with `STEP_LEFT`, `WRENCH_LEFT` and `LONGEST`.
     """
-    count, n, m = positions.shape[0], attachments.shape[0], rows.size
-    cables = np.empty((n, _ROWS, LANES))
-    slopes = np.empty((max(n, m) + 1, n + 2, LANES))
+    weights, rows = figures.weights, situation.rows
+    count, n, m = situation.positions.shape[0], weights.size, rows.size
+    cables = np.empty((n, LANE_ROWS + 2, LANES))
+    slopes = np.zeros((max(n, m) + 1, n + 2, LANES))
     normal = np.empty((n + 1, n + 1, LANES))
     poses = np.empty((POSE_ROWS, LANES))
+    every = np.arange(count)
     for first in range(0, count, LANES):
-        lane = np.minimum(np.arange(first, first + LANES), count - 1)
-        place(
-            cables, poses, exit_points, attachments, load, np.zeros(3), 0.0, positions, rotations,
-            lane,
-        )  # fmt: skip
+        lane = lanes_of(every, first)
+        place(cables, poses, situation, lane)
         poses[C] = 0.0
-        _start(cables, slopes, normal, poses, cable_weight, kappa, rows, scale, least_tension)
+        _start(cables, slopes, normal, poses, figures, rows, scale)
         for turn in range(_MOST_TURNS):
-            linearise(cables, kappa, n)
-            _set_left(slopes, cables, poses, cable_weight, rows, scale)
-            _set_regular(poses, slopes, n, m)
+            linearise(cables, figures.kappa)
+            _set_left(slopes, cables, poses, weights, rows, scale)
+            for j in range(LANES):  # ε stands where a goal would, of which there is none
+                load = poses[LOAD, j] ** 2 + poses[LOAD + 1, j] ** 2 + poses[LOAD + 2, j] ** 2
+                poses[GOAL, j] = max(_left2(slopes, n, m, j) / load, _LEAST_REGULAR)
             _set_normal(normal, slopes, cables, poses, m)
-            _keep_least(normal, cables, n, 1.0 + turn // _PATIENCE)
+            _keep_least(normal, cables, 1.0 + turn // _PATIENCE)
             solve_lanes(normal, n, n + 1)
             for i in range(n):
                 slopes[i, n] = normal[i, n]
-                slopes[i, n + 1] = 0.0
             poses[STEP] = 0.0
-            advance(cables, slopes, poses, n)
+            advance(cables, slopes, poses)
             for i in range(n):
-                cables[i, P] = np.maximum(cables[i, P], cables[i, _LEAST])
+                for j in range(LANES):
+                    cables[i, P, j] = max(cables[i, P, j], cables[i, _LEAST, j])
             if np.max(poses[STEP]) < _SMALL_STEP:
                 break
-        linearise(cables, kappa, n)
-        _set_left(slopes, cables, poses, cable_weight, rows, scale)
+        linearise(cables, figures.kappa)
+        _set_left(slopes, cables, poses, weights, rows, scale)
         for j in range(min(LANES, count - first)):
-            _report(cables, slopes, poses, cable_weight, m, j, out[lane[j]], out_pose[lane[j]])
+            write_lane(out[lane[j]], cables, weights, j)
+            told = out_pose[lane[j]]
+            told[STEP_LEFT], told[LONGEST] = poses[STEP, j], 0.0
+            told[WRENCH_LEFT] = np.sqrt(_left2(slopes, n, m, j))
+            for i in range(n):
+                row, length = cables[i], out[lane[j], i, LENGTH]
+                told[LONGEST] = max(told[LONGEST], length / row[CHORD, j])
+                # A cable that does not close; negated, so that NaN shows.
+                if not abs(row[L_0, j]) <= told[STEP_LEFT] * row[L, j]:
+                    told[STEP_LEFT] = abs(row[L_0, j]) / row[L, j]
 
 
 @kernel
@@ -137,30 +132,27 @@ def _start(
     slopes: FloatArray,
     normal: FloatArray,
     poses: FloatArray,
-    cable_weight: FloatArray,
-    kappa: FloatArray,
+    figures: Figures,
     rows: IntArray,
     scale: FloatArray,
-    least_tension: float,
 ) -> None:
     """Set the pulls of straight cables with half of their weight at the platform."""
     n = cables.shape[0]
-    linearise_taut(cables, n)
     for i in range(n):
-        cables[i, _CHORD] = cables[i, L]
-        cables[i, _START] = 0.0
-        cables[i, _LEAST] = np.maximum(
-            least_tension / (cable_weight[i] * cables[i, _CHORD]), LEAST_PULL
-        )
-    _set_left(slopes, cables, poses, cable_weight, rows, scale)
+        row, weight = cables[i], figures.weights[i]
+        row[_START] = 0.0
+        for j in range(LANES):
+            row[_LEAST, j] = max(figures.least_tension / (weight * row[CHORD, j]), _LEAST_PULL)
+    _set_left(slopes, cables, poses, figures.weights, rows, scale)
     poses[GOAL] = _REGULAR_START
     _set_normal(normal, slopes, cables, poses, rows.size)
     solve_lanes(normal, n, n + 1)
     for i in range(n):
-        row = cables[i]
-        row[_START] = np.maximum(normal[i, n], row[_LEAST])
-        row[P] = row[_START]
-        row[L] = row[_CHORD] / (1.0 + kappa[i] * row[P] * row[_CHORD])
+        row, kappa = cables[i], figures.kappa[i]
+        for j in range(LANES):
+            p = max(normal[i, n, j], row[_LEAST, j])
+            row[_START, j] = row[P, j] = p
+            row[L, j] = row[CHORD, j] / (1.0 + kappa * p * row[CHORD, j])
 
 
 @kernel
@@ -168,27 +160,26 @@ def _set_left(
     slopes: FloatArray,
     cables: FloatArray,
     poses: FloatArray,
-    cable_weight: FloatArray,
+    weights: FloatArray,
     rows: IntArray,
     scale: FloatArray,
 ) -> None:
     """Set G in the first n columns, and S (f - W) in the next."""
     n = cables.shape[0]
-    assemble(slopes, cables, poses, cable_weight, rows, n)
+    assemble(slopes, cables, poses, weights, rows)
     for r in range(rows.size):
-        slopes[r, n] += slopes[r, n + 1]
+        for j in range(LANES):
+            slopes[r, n, j] += slopes[r, n + 1, j]
         slopes[r] *= scale[r]
 
 
 @kernel
-def _set_regular(poses: FloatArray, slopes: FloatArray, n: int, m: int) -> None:
-    """Set ε where the layout has a goal, of which there is none."""
-    for j in range(LANES):
-        left = 0.0
-        for r in range(m):
-            left += slopes[r, n, j] ** 2
-        load = poses[LOAD, j] ** 2 + poses[LOAD + 1, j] ** 2 + poses[LOAD + 2, j] ** 2
-        poses[GOAL, j] = max(left / load, _LEAST_REGULAR)
+def _left2(slopes: FloatArray, n: int, m: int, j: int) -> float:
+    """Return the square of what is left."""
+    left = 0.0
+    for r in range(m):
+        left += slopes[r, n, j] ** 2
+    return left
 
 
 @kernel
@@ -197,29 +188,23 @@ def _set_normal(
 ) -> None:
     """Set GᵀG with the hold near the start, and beside it the way down."""
     n = cables.shape[0]
-    trace, chord2 = np.zeros(LANES), np.zeros(LANES)
-    for i in range(n):
-        normal[i] = 0.0
-        for r in range(m):
-            own = slopes[r, i]
-            for k in range(n + 1):
-                other, entry = slopes[r, k], normal[i, k]
-                for j in range(LANES):
-                    entry[j] += own[j] * other[j]
-        for j in range(LANES):
-            trace[j] += normal[i, i, j]
-            chord2[j] += cables[i, _CHORD, j] ** 2
-    for i in range(n):
-        row = cables[i]
-        for j in range(LANES):
-            hold = poses[GOAL, j] * trace[j] / n * row[_CHORD, j] ** 2 / (chord2[j] / n)
+    normal_equations(normal, slopes, m, n)
+    for j in range(LANES):
+        trace, chord2 = 0.0, 0.0
+        for i in range(n):
+            trace += normal[i, i, j]
+            chord2 += cables[i, CHORD, j] ** 2
+        for i in range(n):
+            row = cables[i]
+            hold = poses[GOAL, j] * trace / n * row[CHORD, j] ** 2 / (chord2 / n)
             normal[i, i, j] += hold
             normal[i, n, j] -= hold * (row[P, j] - row[_START, j])
 
 
 @kernel
-def _keep_least(normal: FloatArray, cables: FloatArray, n: int, caution: float) -> None:
+def _keep_least(normal: FloatArray, cables: FloatArray, caution: float) -> None:
     """Leave pulls where they are that are the least and would fall; make steps shorter."""
+    n = cables.shape[0]
     for i in range(n):
         row = cables[i]
         for j in range(LANES):
@@ -230,33 +215,3 @@ def _keep_least(normal: FloatArray, cables: FloatArray, n: int, caution: float) 
                 for k in range(n):
                     normal[k, i, j] = 0.0
                 normal[i, i, j] = 1.0
-
-
-@kernel
-def _report(
-    cables: FloatArray,
-    slopes: FloatArray,
-    poses: FloatArray,
-    cable_weight: FloatArray,
-    m: int,
-    j: int,
-    out: FloatArray,
-    out_pose: FloatArray,
-) -> None:
-    """Report one lane; closure is to rounding after `linearise`, else its correction tells."""
-    n = cables.shape[0]
-    step, left, longest = poses[STEP, j], 0.0, 0.0
-    for i in range(n):
-        row, w = cables[i], cable_weight[i]
-        out[i, LENGTH] = row[L, j] + row[L_0, j]
-        out[i, FORCE_X] = w * row[P, j] * np.sqrt(row[X2, j])
-        out[i, FORCE_Z] = -w * row[V, j]
-        longest = max(longest, out[i, LENGTH] / row[_CHORD, j])
-        # Negated, so that NaN shows.
-        if not abs(row[L_0, j]) <= step * row[L, j]:
-            step = abs(row[L_0, j]) / row[L, j]
-    for r in range(m):
-        left += slopes[r, n, j] ** 2
-    out_pose[STEP_LEFT] = step
-    out_pose[WRENCH_LEFT] = np.sqrt(left)
-    out_pose[LONGEST] = longest

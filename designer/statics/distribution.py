@@ -9,34 +9,29 @@ What is left to choose is settled by a convex programme. Each answer carries its
 residual of the optimality conditions with the solver's multipliers, or, where there are no such
 tensions, a wrench that does more work on the load than any of them can (Farkas' lemma).
 
-`distribute` states the programmes in CVXPY, many poses as one block-diagonal problem, and is the
-readable reference; `distribute_evenly` is compiled, for maps. After Gouttefarde, Daney and Merlet,
-IEEE Transactions on Robotics 27(1), 2011, for the set of wrenches, and Pott, Cable-Driven Parallel
-Robots (2018), section 3.7, for the objectives.
+After Gouttefarde, Daney and Merlet, IEEE Transactions on Robotics 27(1), 2011, for the set of
+wrenches, and Pott, Cable-Driven Parallel Robots (2018), section 3.7, for the objective.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
 
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix, upright_poses
+from designer.statics.geometry import (
+    cable_geometry,
+    density_matrix,
+    load_wrench_N,
+    upright_situation,
+)
 from designer.statics.task import flat_poses, straight_run
 
-Objective = Literal["smallest_largest", "least_squares", "centred"]
-"""Smallest largest tension, smallest sum of squares, or nearest to the middle of the range."""
-
-BLOCK = 200
-"""Poses in one problem for CVXPY; building it costs more than solving it."""
 _PROVEN = 1e-6
 _RANK = 1e-9
-# Of the sum over all poses of a block, so that each of them is good.
-_CLARABEL = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-11}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,71 +95,25 @@ class _Shares:
     scale_N: float
     rows: FloatArray
 
-    def part(self, chosen: Any) -> _Shares:
-        """Return the problem of some poses."""
-        return _Shares(
-            self.matrix[chosen], self.wrench[chosen], self.low, self.high, self.scale_N, self.rows
-        )
-
-
-def distribute(
-    robot: Robot,
-    poses: Poses,
-    tension_max_N: float,
-    objective: Objective = "smallest_largest",
-    *,
-    force_N: FloatArray | None = None,
-) -> Distribution:
-    """Return the best tensions between `Robot.tension_min_N` and an allowable tension.
-
-    Parameters
-    ----------
-    robot, poses
-        The robot, with at least as many cables as degrees of freedom, and its poses (...).
-    tension_max_N : float
-        Allowable tension; may be infinite unless the objective is the middle of the range [N].
-    objective : str
-        What to prefer; see `Objective`.
-    force_N : array (..., 3), optional
-        Force on the platform beside its weight, base frame [N].
-
-    Raises
-    ------
-    ValueError
-        If the range is empty, or has no middle although that is the objective.
-    """
-    if not robot.tension_min_N <= tension_max_N:
-        raise ValueError("the smallest tension is above the allowable one")
-    if objective == "centred" and not np.isfinite(tension_max_N):
-        raise ValueError("a range without an upper end has no middle")
-    shares = _shares(robot, poses, tension_max_N, force_N)
-    answers = [
-        _solve_block(shares.part(slice(at, at + BLOCK)), objective)
-        for at in range(0, len(shares.wrench), BLOCK)
-    ]
-    parts = (np.concatenate(values) for values in zip(*answers, strict=True))
-    return _shaped(poses.shape, shares, *parts)
-
 
 def distribute_evenly(
     robot: Robot, poses: Poses, tension_max_N: float = np.inf, *, force_N: FloatArray | None = None
 ) -> Distribution:
-    """Return the tensions with the smallest largest one, compiled; see `distribute`.
+    """Return the tensions of poses (...) with the smallest largest one.
 
-    A pose that needs more than the allowable tension is outside the hull; without a separating
-    wrench, for the largest tension itself is the proof.
+    None is below `Robot.tension_min_N`. A pose that needs more than the allowable tension is
+    outside the hull; without a separating wrench, for the largest tension itself is the proof. A
+    force (..., 3) acts on the platform beside its weight, base frame [N].
     """
     from designer.kernel.batch import solve_massless_batch
 
     shares = _shares(robot, poses, tension_max_N, force_N)
     flat = flat_poses(poses)
-    run = straight_run(robot, flat)
-    other = None if force_N is None else np.broadcast_to(force_N, poses.position_m.shape)
+    if force_N is not None:
+        force_N = np.broadcast_to(force_N, poses.position_m.shape).reshape(-1, 3)
+    points = straight_run(robot, flat).exit_points_m
     tension, dual, verdict = solve_massless_batch(
-        robot,
-        upright_poses(robot, flat),
-        run.exit_points_m,
-        None if other is None else other.reshape(-1, 3) @ robot.upright.T,
+        robot, upright_situation(robot, flat, points, force_N)
     )
     scaled, multiplier = tension / shares.scale_N, dual * shares.rows
     residual = _even_residual(shares, scaled, multiplier)
@@ -180,10 +129,7 @@ def _shares(
 ) -> _Shares:
     run = straight_run(robot, poses)
     geometry = cable_geometry(robot, poses, run.exit_points_m)
-    forces = structure_matrix(robot, geometry)
-    along = geometry.horizontal_distance_m[..., None, :], geometry.drop_m[..., None, :]
-    chord = geometry.chord_m[..., None, :]
-    matrix = (forces[..., 0::2] * along[0] - forces[..., 1::2] * along[1]) / chord
+    matrix = density_matrix(robot, geometry) / geometry.chord_m[..., None, :]
     wrench = load_wrench_N(robot, poses, force_N)
     reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
     rows = np.where(robot.balance_rows < 3, 1.0, reach)
@@ -221,84 +167,6 @@ def _shaped(
     )
 
 
-def _solve_block(shares: _Shares, objective: Objective) -> tuple[Any, ...]:
-    """Return verdict, scaled tensions, residual, separating wrench and separation of a block."""
-    count, dof, n = shares.matrix.shape
-    verdict = np.full(count, Verdict.RANK_DEFICIENT, dtype=np.int8)
-    tension = np.full((count, n), np.nan)
-    residual = np.full(count, np.nan)
-    spans = np.linalg.matrix_rank(shares.matrix, tol=_RANK) == dof
-    distance, separating = np.zeros(count), np.full((count, dof), np.nan)
-    if spans.any():
-        distance[spans], separating[spans] = _distance(shares.part(spans))
-    separation = _separation(shares, separating, upper=shares.high)
-    near = spans & (distance <= _PROVEN)
-    verdict[spans & ~near] = np.where(
-        separation[spans & ~near] > 0.0, Verdict.OUTSIDE_HULL, Verdict.NOT_CONVERGED
-    )
-    if near.any():
-        tension[near], residual[near] = _best(shares.part(near), objective)
-        proven = residual[near] < _PROVEN
-        verdict[near] = np.where(proven, Verdict.SOLVED, Verdict.NOT_CONVERGED)
-    return verdict, tension, residual, separating, separation
-
-
-def _distance(shares: _Shares) -> tuple[FloatArray, FloatArray]:
-    """Return how far each load is from what the tensions can give, and the direction of it.
-
-    Linear programme: the largest component of A t - w, summed over the poses, which do not touch
-    each other. Its multipliers make the separating wrench.
-    """
-    import cvxpy as cp
-
-    count, dof, n = shares.matrix.shape
-    t, gap = cp.Variable(count * n), cp.Variable(count)
-    rest = _blocks(shares.matrix) @ t - shares.wrench.ravel()
-    each = _blocks(np.ones((count, dof, 1))) @ gap
-    above, below = rest - each <= 0.0, -rest - each <= 0.0
-    problem = cp.Problem(cp.Minimize(cp.sum(gap)), [above, below, *_range(t, shares)])
-    problem.solve(solver=cp.HIGHS)
-    push = np.asarray(below.dual_value - above.dual_value)
-    return np.asarray(gap.value), push.reshape(count, dof)
-
-
-def _best(shares: _Shares, objective: Objective) -> tuple[FloatArray, FloatArray]:
-    """Return the best tensions of poses that have some, and the residual of optimality."""
-    import cvxpy as cp
-
-    count, _, n = shares.matrix.shape
-    t, largest = cp.Variable(count * n), cp.Variable(count)
-    balance = _blocks(shares.matrix) @ t - shares.wrench.ravel() == 0.0
-    bounds = _range(t, shares)
-    if objective == "smallest_largest":
-        under = t - _blocks(np.ones((count, n, 1))) @ largest <= 0.0
-        problem = cp.Problem(cp.Minimize(cp.sum(largest)), [balance, under, *bounds])
-        problem.solve(solver=cp.HIGHS)
-    else:
-        middle = 0.5 * (shares.low + shares.high) if objective == "centred" else 0.0
-        problem = cp.Problem(cp.Minimize(0.5 * cp.sum_squares(t - middle)), [balance, *bounds])
-        problem.solve(solver=cp.CLARABEL, **_CLARABEL)
-    tension = np.asarray(t.value).reshape(count, n)
-    multiplier = np.asarray(balance.dual_value).reshape(count, -1)
-    if objective == "smallest_largest":
-        return tension, _even_residual(shares, tension, multiplier)
-    return tension, _square_residual(shares, tension, multiplier, middle)
-
-
-def _range(t: Any, shares: _Shares) -> list[Any]:
-    bounds = [shares.low - t <= 0.0]
-    return [*bounds, t - shares.high <= 0.0] if np.isfinite(shares.high) else bounds
-
-
-def _blocks(matrices: FloatArray) -> Any:
-    """Return matrices (n, rows, columns) as one sparse block-diagonal matrix."""
-    from scipy.sparse import bsr_array
-
-    count, rows, columns = matrices.shape
-    places = np.arange(count), np.arange(count + 1)
-    return bsr_array((matrices, *places), shape=(count * rows, count * columns)).tocsc()
-
-
 def _separation(shares: _Shares, wrench: FloatArray, *, upper: float) -> FloatArray:
     """Return by how much a wrench's product with the load exceeds that with any tensions.
 
@@ -326,20 +194,6 @@ def _even_residual(shares: _Shares, tension: FloatArray, multiplier: FloatArray)
     room = tension.max(axis=1, keepdims=True) - tension
     height = tension - shares.low
     slackness = np.where(pull > 0.0, pull * room, -pull * height)
-    return _worst(shares, tension, slackness)
-
-
-def _square_residual(
-    shares: _Shares, tension: FloatArray, multiplier: FloatArray, middle: float
-) -> FloatArray:
-    """Return the residual of optimality for the least squares about a tension, pose by pose."""
-    pull = -(tension - middle) - np.einsum("pi,pij->pj", multiplier, shares.matrix)
-    # What remains has to be the multiplier of a bound, and vanish off that bound.
-    slackness = np.where(
-        pull > 0.0,
-        np.minimum(pull, np.abs(shares.high - tension)),
-        np.minimum(-pull, np.abs(tension - shares.low)),
-    )
     return _worst(shares, tension, slackness)
 
 

@@ -10,7 +10,7 @@ from designer.model.verdict import Verdict
 from designer.physics import catenary
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics
-from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
+from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 
 def cables_of_length(
@@ -44,13 +44,23 @@ def cables_of_length(
         and too short.
     """
 
+    cable = axial_stiffness_N, weight_N_per_m
+
     def solve(run: PulleyRun) -> tuple[tuple[FloatArray, FloatArray], FloatArray, FloatArray]:
-        free, force_x, force_z = _between(
-            robot, poses, run, length_m, axial_stiffness_N, weight_N_per_m
+        geometry = cable_geometry(robot, poses, run.exit_points_m)
+        free = length_m - run.wrap_m
+        force_x, force_z = np.where(
+            free > 0.0,
+            catenary.forces_from_length(
+                np.where(free > 0.0, free, 1.0),
+                geometry.horizontal_distance_m,
+                geometry.drop_m,
+                *cable,
+            ),
+            np.nan,
         )
-        downward = weight_N_per_m * free - force_z
-        strain = np.hypot(force_x, downward) / axial_stiffness_N
-        return (force_x, force_z), np.arctan2(downward, force_x), strain
+        free = np.where(free > 0.0, free, np.nan)
+        return (force_x, force_z), *leaving(*cable, free, force_x, force_z)
 
     (force_x, force_z), run, gap_rad = over_pulleys(robot, poses, solve)
     held = np.isfinite(force_x).all(axis=-1) & (gap_rad <= SETTLED_RAD)
@@ -66,26 +76,3 @@ def cables_of_length(
         run=run,
         force_N=force_N,
     )
-
-
-def _between(
-    robot: Robot,
-    poses: Poses,
-    run: PulleyRun,
-    length_m: FloatArray,
-    axial_stiffness_N: FloatArray,
-    weight_N_per_m: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return free lengths [m] and forces on the cables at the platform [N]."""
-    geometry = cable_geometry(robot, poses, run.exit_points_m)
-    free = length_m - run.wrap_m
-    usable = np.where(free > 0.0, free, np.nan)
-    force_x, force_z = catenary.forces_from_length(
-        np.where(free > 0.0, free, 1.0),
-        geometry.horizontal_distance_m,
-        geometry.drop_m,
-        axial_stiffness_N,
-        weight_N_per_m,
-    )
-    unreachable = np.isnan(usable)
-    return usable, np.where(unreachable, np.nan, force_x), np.where(unreachable, np.nan, force_z)

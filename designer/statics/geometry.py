@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.kernel.calling import Figures, Situation, plain, situation_of
+from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 
 
@@ -48,6 +50,24 @@ def upright_exit_points_m(robot: Robot) -> FloatArray:
     if robot.is_upright:
         return robot.exit_points_m
     return np.asarray(robot.exit_points_m @ robot.upright.T)
+
+
+def upright_situation(
+    robot: Robot, poses: Poses, exit_points_m: FloatArray, force_N: FloatArray | None = None
+) -> Situation:
+    """Return what kernels are told of poses (n_poses,) and a force (n_poses, 3), base frame.
+
+    Exit points, where the cables leave their pulleys, are in the upright frame.
+    """
+    force = None if force_N is None else force_N @ robot.upright.T
+    return situation_of(robot, upright_poses(robot, poses), exit_points_m, force)
+
+
+def one_cable(robot: Robot, cable: Cable, least_tension_N: float = 0.0) -> Figures:
+    """Return what kernels are told of one cable for all exit points, weights per length [N/m]."""
+    each, weight = np.ones(robot.n_cables), cable.weight_N_per_m
+    kappa = plain(weight / cable.axial_stiffness_N * each)
+    return Figures(kappa, plain(weight * each), plain(np.inf * each), least_tension_N)
 
 
 def cable_geometry(
@@ -92,6 +112,16 @@ def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
     pairs = np.stack(columns, axis=-2)  # (..., n_cables, 2, dof)
     flat = pairs.reshape(*pairs.shape[:-3], -1, pairs.shape[-1])
     return np.asarray(np.swapaxes(flat, -1, -2)[..., robot.balance_rows, :])
+
+
+def density_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
+    """Return the wrench that straight cables of unit force density hold, (..., dof, n_cables).
+
+    Force density is tension over length: with it a vertical cable needs no special case.
+    """
+    matrix = structure_matrix(robot, geometry)
+    across = geometry.horizontal_distance_m[..., None, :]
+    return matrix[..., 0::2] * across - matrix[..., 1::2] * geometry.drop_m[..., None, :]
 
 
 def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None) -> FloatArray:

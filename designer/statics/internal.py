@@ -15,11 +15,11 @@ from designer.kernel.calling import plain
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.geometry import cable_geometry, upright_poses
+from designer.statics.geometry import cable_geometry, one_cable, upright_situation
 from designer.statics.inverse import Statics, statics_with
-from designer.statics.nearest import solve_nearest
 from designer.statics.stiffness import per_reach
-from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
+from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
+from designer.statics.taut import solve_taut
 
 _LEAST_PULL = 1.0 / 16.0
 _LEAST_SHARE = 0.05
@@ -60,65 +60,31 @@ def solve_internal(
     Statics
         ``not converged`` where the balance does not close to 1e-9 of the largest tension.
     """
+    from designer.kernel.internal import solve_internal_poses
+
     require_shape("length_m", length_m, len(poses.position_m), robot.n_cables)
     require_shape("tension_N", tension_N, len(poses.position_m), robot.n_cables)
-    weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
-    load_N = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
-    _, start_N, _ = solve_nearest(robot, poses, cable, force_N)
+    _, start_N, _ = solve_taut(robot, poses, cable, force_N)
     start_N = np.fmax(start_N, max(_LEAST_SHARE * robot.weight_N, robot.tension_min_N))
-    rest = np.empty(len(poses.position_m))
+    out, rest = np.empty((*start_N.shape, 3)), np.empty(len(start_N))
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
-        read = np.stack([length_m - run.wrap_m, tension_N], axis=-1)
-        free, force_x, force_z = _nearest_balance(
-            robot, poses, run, cable, load_N, read, noise, start_N, rest
+        chord_m = cable_geometry(robot, poses, run.exit_points_m).chord_m
+        solve_internal_poses(
+            upright_situation(robot, poses, run.exit_points_m, force_N),
+            one_cable(robot, cable),
+            plain(np.stack([length_m - run.wrap_m, tension_N], axis=-1)),
+            plain(noise),
+            plain(np.fmax(start_N / (cable.weight_N_per_m * chord_m), _LEAST_PULL)),
+            _SPREAD,
+            plain(per_reach(robot)),
+            out,
+            rest,
         )
-        downward = weight * free - force_z
-        strain = np.hypot(force_x, downward) / stiffness
-        return np.stack([free, force_x, force_z]), np.arctan2(downward, force_x), strain
+        found = np.moveaxis(out, -1, 0)
+        return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
     closes = (rest <= _CLOSES) & (gap_rad <= SETTLED_RAD)
     verdict = np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
     return statics_with(robot, poses, cable, run, verdict, found, force_N)
-
-
-def _nearest_balance(
-    robot: Robot,
-    poses: Poses,
-    run: PulleyRun,
-    cable: Cable,
-    load_N: FloatArray,
-    read: FloatArray,
-    noise: tuple[float, float],
-    start_N: FloatArray,
-    rest: FloatArray,
-) -> FloatArray:
-    """Return free lengths and forces x and z (3, n_poses, n_cables), and fill what is left."""
-    from designer.kernel.internal import solve_internal_poses
-
-    weight = cable.weight_N_per_m
-    chord_m = cable_geometry(robot, poses, run.exit_points_m).chord_m
-    upright = upright_poses(robot, poses)
-    each = np.ones(robot.n_cables)
-    out = np.empty((*start_N.shape, 3))
-    solve_internal_poses(
-        plain(run.exit_points_m).reshape(-1, robot.n_cables, 3),
-        plain(robot.attachments_m),
-        plain(load_N),
-        plain(robot.platform.centre_of_mass_m),
-        robot.weight_N,
-        plain(upright.position_m),
-        plain(upright.rotation).reshape(-1, 3, 3),
-        plain(weight * each),
-        plain(weight / cable.axial_stiffness_N * each),
-        robot.balance_rows,
-        plain(read),
-        plain(noise),
-        plain(np.fmax(start_N / (weight * chord_m), _LEAST_PULL)),
-        _SPREAD,
-        plain(per_reach(robot)),
-        out,
-        rest,
-    )
-    return np.moveaxis(out, -1, 0)

@@ -16,6 +16,7 @@ from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
+    density_matrix,
     load_wrench_N,
     structure_matrix,
 )
@@ -109,16 +110,34 @@ class Statics:
         """Largest tension anywhere in any cable (...) [N]."""
         return np.asarray(self.cable_tension_N.max(axis=-1))
 
-    def closure_residual_m(self) -> FloatArray:
-        """Distance between the end of each cable by eqs. (7)-(8) and its attachment point [m]."""
-        geometry = self.geometry()
-        x, z = catenary.end_position_m(
+    @property
+    def length_over_chord(self) -> FloatArray:
+        """Unstrained length of each cable off its pulley over its chord (..., n_cables)."""
+        return self.free_length_m / self.geometry().chord_m
+
+    @property
+    def lowest_m(self) -> FloatArray:
+        """Height of the lowest point of each cable's true shape (..., n_cables), upright [m]."""
+        return self.run.exit_points_m[..., 2] + catenary.lowest_z_m(*self.catenaries)
+
+    @property
+    def catenaries(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """What `designer.physics` asks of a cable: length, forces x and z, EA, weight per length.
+
+        Between pulley and platform (..., n_cables), in the order of its arguments.
+        """
+        return (
             self.free_length_m,
             self.force_x_N,
             self.force_z_N,
             self.axial_stiffness_N,
             self.weight_N_per_m,
         )
+
+    def closure_residual_m(self) -> FloatArray:
+        """Distance between the end of each cable by eqs. (7)-(8) and its attachment point [m]."""
+        geometry = self.geometry()
+        x, z = catenary.end_position_m(*self.catenaries)
         return np.asarray(np.hypot(x - geometry.horizontal_distance_m, z + geometry.drop_m))
 
     def equilibrium_residual_N(self) -> FloatArray:
@@ -170,13 +189,8 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
     if robot.is_redundant:
         tension = distribute_evenly(robot, poses).tension_N
         return MasslessStatics(geometry.chord_m + run.wrap_m, tension)
-    matrix = structure_matrix(robot, geometry)
-    per_density = (
-        matrix[..., 0::2] * geometry.horizontal_distance_m[..., None, :]
-        - matrix[..., 1::2] * geometry.drop_m[..., None, :]
-    )
     with np.errstate(invalid="ignore", divide="ignore"):
-        density = _solve_or_nan(per_density, load_wrench_N(robot, poses))
+        density = _solve_or_nan(density_matrix(robot, geometry), load_wrench_N(robot, poses))
     return MasslessStatics(geometry.chord_m + run.wrap_m, density * geometry.chord_m)
 
 

@@ -3,47 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
-from designer.kernel.calling import plain, pool
+from designer.arrays import IntArray, require_shape
+from designer.kernel.calling import Meets, plain, share_out
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
-from designer.statics.geometry import upright_exit_points_m, upright_poses
+from designer.statics.geometry import upright_exit_points_m, upright_situation
 from designer.statics.inverse import solve_sagging
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Meets:
-    """What cables meet in some poses.
-
-    Parameters
-    ----------
-    utilisation : array (n_cables_tried, n_cells)
-        Largest over allowable tension in each part of the region; -inf where no pose counts.
-    pose : array (n_cables_tried, n_cells)
-        Index of the pose that it was met in.
-    longest_m : array (n_cables_tried, n_cables)
-        Longest unstrained length of each cable of the robot [m].
-    counted, overloaded, left_out : array (n_cables_tried,)
-        Poses that count, those of them above the allowable tension, and those left out.
-    failed : array (n_cables_tried, n_poses)
-        Where no solution was found; such a pose is in none of the other results.
-    """
-
-    utilisation: FloatArray
-    pose: IntArray
-    longest_m: FloatArray
-    counted: IntArray
-    overloaded: IntArray
-    left_out: IntArray
-    failed: BoolArray
 
 
 def is_quick(robot: Robot) -> bool:
@@ -80,14 +51,37 @@ def meet(
     require_shape("cells", cells, len(poses.position_m))
     if cells.size and not (cells.min() >= 0 and cells.max() < n_cells):
         raise ValueError(f"cells must be numbered from 0 to {n_cells - 1}")
-    found = _nothing(len(cables), robot.n_cables, n_cells, len(poses.position_m))
-    if not cables:
-        return found
+    from designer.kernel.sizes import sweep_sizes
+
+    counts = np.zeros((3, len(cables)), dtype=np.int64)
+    found = Meets(
+        utilisation=np.full((len(cables), n_cells), -np.inf),
+        pose=np.zeros((len(cables), n_cells), dtype=np.int64),
+        longest_m=np.zeros((len(cables), robot.n_cables)),
+        counted=counts[0],
+        overloaded=counts[1],
+        left_out=counts[2],
+        failed=np.zeros((len(cables), len(poses.position_m)), dtype=np.bool_),
+    )
     if not is_quick(robot):
         for row, cable in enumerate(cables):
             add_slowly(found, row, robot, poses, cable, cells, leaves_out_hanging)
         return found
-    _meet_quickly(found, robot, poses, cables, cells, leaves_out_hanging)
+    weight = np.array([cable.weight_N_per_m for cable in cables])
+    stiffness = np.array([cable.axial_stiffness_N for cable in cables])
+    allowable = np.array([cable.allowable_tension_N for cable in cables])
+    share_out(
+        sweep_sizes,
+        len(cables),
+        _SHARE,
+        upright_situation(robot, poses, upright_exit_points_m(robot)),
+        plain(weight / stiffness),
+        plain(1.0 / weight),
+        plain(allowable / weight),
+        np.ascontiguousarray(cells, dtype=np.int64),
+        leaves_out_hanging,
+        found,
+    )
     return found
 
 
@@ -132,57 +126,3 @@ def add_slowly(
     higher = best > found.utilisation[row]
     found.utilisation[row, higher] = best[higher]
     found.pose[row, higher] = where[higher]
-
-
-def _nothing(n_tried: int, n_cables: int, n_cells: int, n_poses: int) -> Meets:
-    counts = np.zeros((3, n_tried), dtype=np.int64)
-    return Meets(
-        utilisation=np.full((n_tried, n_cells), -np.inf),
-        pose=np.zeros((n_tried, n_cells), dtype=np.int64),
-        longest_m=np.zeros((n_tried, n_cables)),
-        counted=counts[0],
-        overloaded=counts[1],
-        left_out=counts[2],
-        failed=np.zeros((n_tried, n_poses), dtype=np.bool_),
-    )
-
-
-def _meet_quickly(
-    found: Meets,
-    robot: Robot,
-    poses: Poses,
-    cables: Sequence[Cable],
-    cells: IntArray,
-    leaves_out_hanging: bool,
-) -> None:
-    from designer.kernel.sizes import sweep_sizes
-
-    upright = upright_poses(robot, poses)
-    weight = np.array([cable.weight_N_per_m for cable in cables])
-    stiffness = np.array([cable.axial_stiffness_N for cable in cables])
-    allowable = np.array([cable.allowable_tension_N for cable in cables])
-    arguments: tuple[Any, ...] = (
-        plain(upright_exit_points_m(robot)),
-        plain(robot.attachments_m),
-        plain(robot.pull_N),
-        plain(robot.platform.centre_of_mass_m),
-        robot.weight_N,
-        plain(upright.position_m),
-        plain(upright.rotation.reshape(-1, 3, 3)),
-        np.ascontiguousarray(cells, dtype=np.int64),
-        plain(weight / stiffness),
-        plain(1.0 / weight),
-        plain(allowable / weight),
-        robot.balance_rows,
-        leaves_out_hanging,
-        found.utilisation,
-        found.pose,
-        found.longest_m,
-        found.counted,
-        found.overloaded,
-        found.left_out,
-        found.failed,
-    )
-    shares = [(at, min(at + _SHARE, len(cables))) for at in range(0, len(cables), _SHARE)]
-    for future in [pool().submit(sweep_sizes, *share, *arguments) for share in shares]:
-        future.result()

@@ -36,17 +36,10 @@ def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
     point with the stiffness F_x / X.
     """
     robot = statics.robot
-    arguments = (
-        statics.free_length_m,
-        statics.force_x_N,
-        statics.force_z_N,
-        statics.axial_stiffness_N,
-        statics.weight_N_per_m,
-    )
     if robot.pulley_radius_m == 0.0:
-        plane = tangent.stiffness_N_per_m(*arguments)
+        plane = tangent.stiffness_N_per_m(*statics.catenaries)
     else:
-        plane = tangent.stiffness_over_pulley_N_per_m(*arguments, robot.pulley_radius_m)
+        plane = tangent.stiffness_over_pulley_N_per_m(*statics.catenaries, robot.pulley_radius_m)
     chord = cable_geometry(robot, statics.poses)
     X = chord.horizontal_distance_m
     is_vertical = chord.chord_m * _SOFT >= X

@@ -12,7 +12,7 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import pulley
-from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_poses
+from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_situation
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
@@ -82,6 +82,10 @@ class Task:
     force_N: FloatArray | None = None
     relative_weights: float | FloatArray = 1.0
 
+    def part(self, at: IntArray) -> Task:
+        """Return the task for some of poses (n_poses,)."""
+        return self if self.force_N is None else replace(self, force_N=self.force_N[at])
+
 
 def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
     """Return how straight cables run over the pulleys in poses (...)."""
@@ -130,32 +134,40 @@ def _solve_over_pulleys(
     robot: Robot, flat: Poses, task: Task, *, is_thorough: bool, turns: int = _FIRST_TURNS
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
+    from designer.kernel.batch import solve_batch
+
+    each = np.ones(robot.n_cables)
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
-        solution = _solve(robot, flat, task, run, is_thorough=is_thorough)
+        solution = solve_batch(
+            robot,
+            upright_situation(robot, flat, run.exit_points_m, task.force_N),
+            task.kappa_per_m * each,
+            task.relative_weights * each,
+            task.strength_m * each,
+            task.inverse_weight_m_per_N,
+            is_thorough=is_thorough,
+        )
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
         return solution, np.arctan2(downward, solution.force_x_N), 0.0
 
     solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)
-    if turns >= _MOST_TURNS:
-        return _keep(solution, gap_rad <= SETTLED_RAD), run
+    if turns >= _MOST_TURNS:  # what is said of poses that did not settle is taken back
+        lost = ~(gap_rad <= SETTLED_RAD) & (solution.verdict == Verdict.SOLVED)
+        solution.verdict[lost] = Verdict.NOT_CONVERGED
+        for values in (getattr(solution, field.name) for field in fields(solution)):
+            if values.dtype == np.float64:
+                values[lost] = np.nan
+        return solution, run
     at = np.flatnonzero(gap_rad > _STILL_RAD)
     if len(at) > 0:
         again = _solve_over_pulleys(
-            robot,
-            part_of(flat, at),
-            _part_of_task(task, at),
-            is_thorough=is_thorough,
-            turns=2 * turns,
+            robot, part_of(flat, at), task.part(at), is_thorough=is_thorough, turns=2 * turns
         )
-        _replace(solution, run, at, *again, np.ones(len(at), dtype=np.bool_))
+        _replace(solution, run, at, *again)
     return solution, run
-
-
-def _part_of_task(task: Task, at: IntArray) -> Task:
-    return task if task.force_N is None else replace(task, force_N=task.force_N[at])
 
 
 def _replace(
@@ -164,7 +176,7 @@ def _replace(
     at: IntArray,
     by: Solution,
     its_run: PulleyRun,
-    chosen: BoolArray,
+    chosen: BoolArray | slice = slice(None),
 ) -> None:
     """Write what is chosen of the answers for the poses `at`, and their run, over the former."""
     for field in fields(solution):
@@ -194,15 +206,14 @@ def _try_other_branches(
     at = np.flatnonzero(hard | (seeks_better & (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
-    again, its_run = _solve_over_pulleys(
-        robot, part_of(flat, at), _part_of_task(task, at), is_thorough=True
-    )
+    some = part_of(flat, at)
+    again, its_run = _solve_over_pulleys(robot, some, task.part(at), is_thorough=True)
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
         burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
     else:
         burden, before = again.load_factor, solution.load_factor[at]
-    chord = cable_geometry(robot, part_of(flat, at)).chord_m
+    chord = cable_geometry(robot, some).chord_m
     was_long, is_long = (
         (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
     )
@@ -223,8 +234,8 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
         return
     some = part_of(flat, left)
     points = straight_run(robot, some).exit_points_m
-    force = None if task.force_N is None else task.force_N[left] @ robot.upright.T
-    verdict, _, _ = refuse_batch(robot, upright_poses(robot, some), points, force)
+    force_N = task.part(left).force_N
+    verdict, _, _ = refuse_batch(robot, upright_situation(robot, some, points, force_N))
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         near = cable_geometry(robot, some).horizontal_distance_m < 2.0 * robot.pulley_radius_m
         verdict[near.any(axis=1)] = Verdict.NOT_CONVERGED
@@ -235,6 +246,19 @@ def part_of(poses: Poses, chosen: IntArray) -> Poses:
     """Return some of poses (n_poses,)."""
     rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[chosen]
     return Poses(poses.position_m[chosen], rotation)
+
+
+def leaving(
+    axial_stiffness_N: float | FloatArray,
+    weight_N_per_m: float | FloatArray,
+    length_m: FloatArray,
+    force_x_N: FloatArray,
+    force_z_N: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return angle below the horizontal [rad] and strain of cables at their pulleys (...)."""
+    downward = weight_N_per_m * length_m - force_z_N
+    strain = np.hypot(force_x_N, downward) / axial_stiffness_N
+    return np.arctan2(downward, force_x_N), strain
 
 
 def over_pulleys(
@@ -287,42 +311,10 @@ def over_pulleys(
     return answer, run, gap
 
 
-def _keep(solution: Solution, settled: BoolArray) -> Solution:
-    """Take back what is said of the poses (n_poses,) whose tangent points did not settle."""
-    lost = ~settled & (solution.verdict == Verdict.SOLVED)
-    if not lost.any():
-        return solution
-    blank = {
-        field.name: np.where(lost.reshape(-1, *[1] * (value.ndim - 1)), np.nan, value)
-        for field in fields(solution)
-        if (value := getattr(solution, field.name)).dtype == np.float64
-    }
-    verdict = np.where(lost, np.int8(Verdict.NOT_CONVERGED), solution.verdict)
-    return replace(solution, verdict=verdict, **blank)
-
-
 def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:
     radius = robot.pulley_radius_m
     exits = upright_exit_points_m(robot)
     return PulleyRun(
         pulley.tangent_point_m(exits, outward, slope_rad, radius),
         pulley.wrap_length_m(slope_rad, radius),
-    )
-
-
-def _solve(robot: Robot, flat: Poses, task: Task, run: PulleyRun, *, is_thorough: bool) -> Solution:
-    from designer.kernel.batch import solve_batch
-
-    each = np.ones(robot.n_cables)
-    force = None if task.force_N is None else task.force_N @ robot.upright.T
-    return solve_batch(
-        robot,
-        upright_poses(robot, flat),
-        run.exit_points_m,
-        task.kappa_per_m * each,
-        task.relative_weights * each,
-        task.strength_m * each,
-        task.inverse_weight_m_per_N,
-        force,
-        is_thorough=is_thorough,
     )

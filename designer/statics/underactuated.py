@@ -25,9 +25,9 @@ from designer.kernel.calling import plain
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.geometry import upright_poses
+from designer.statics.geometry import one_cable, upright_poses, upright_situation
 from designer.statics.inverse import Statics, statics_with
-from designer.statics.task import SETTLED_RAD, PulleyRun, over_pulleys
+from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7
@@ -54,18 +54,36 @@ def solve_underactuated(
         left, or a cable would hang eight times as long as its chord. No tension along a chord falls
         below a thousandth of the platform's weight. `imbalance` tells what is left.
     """
-    from designer.kernel.underactuated import LONGEST, STEP_LEFT, WRENCH_LEFT
+    from designer.kernel.underactuated import (
+        LONGEST,
+        STEP_LEFT,
+        WRENCH_LEFT,
+        solve_underactuated_poses,
+    )
 
-    weight, stiffness = cable.weight_N_per_m, cable.axial_stiffness_N
     n_poses = len(poses.position_m)
-    told = np.empty((n_poses, 3))
+    out, told = np.empty((n_poses, robot.n_cables, 3)), np.empty((n_poses, 3))
     load_N = _load_about_centre_N(robot, poses, force_N)
+    about_origin = upright_situation(robot, poses, robot.exit_points_m)
+    about_centre = about_origin._replace(
+        attachments=plain(robot.attachments_m - robot.platform.centre_of_mass_m),
+        load=plain(load_N),
+        positions=plain(about_origin.positions + _arm_m(robot, poses)),
+        load_point=plain(np.zeros(3)),
+    )
 
     def solve(run: PulleyRun) -> tuple[FloatArray, FloatArray, FloatArray]:
-        found = _least_left(robot, poses, run, cable, load_N, told)
-        free, force_x, force_z = found
-        downward = weight * free - force_z
-        return found, np.arctan2(downward, force_x), np.hypot(force_x, downward) / stiffness
+        solve_underactuated_poses(
+            about_centre._replace(
+                exit_points=plain(run.exit_points_m.reshape(-1, robot.n_cables, 3))
+            ),
+            one_cable(robot, cable, _SMALLEST_SHARE * robot.weight_N),
+            plain(_scale(robot)),
+            out,
+            told,
+        )
+        found = np.moveaxis(out, -1, 0)
+        return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
     load = np.linalg.norm(load_N[:, :3], axis=1)
@@ -89,36 +107,6 @@ def imbalance(statics: Statics) -> FloatArray:
     wrench[..., 3:] = moment
     left = np.linalg.norm(wrench[..., robot.balance_rows] * _scale(robot), axis=-1)
     return np.asarray(left / robot.weight_N)
-
-
-def _least_left(
-    robot: Robot,
-    poses: Poses,
-    run: PulleyRun,
-    cable: Cable,
-    load_N: FloatArray,
-    told: FloatArray,
-) -> FloatArray:
-    """Return free lengths and forces x and z (3, n_poses, n_cables), and fill what is told."""
-    from designer.kernel.underactuated import solve_underactuated_poses
-
-    upright, each = upright_poses(robot, poses), np.ones(robot.n_cables)
-    out = np.empty((len(told), robot.n_cables, 3))
-    solve_underactuated_poses(
-        plain(run.exit_points_m).reshape(-1, robot.n_cables, 3),
-        plain(robot.attachments_m - robot.platform.centre_of_mass_m),
-        plain(load_N),
-        plain(upright.position_m + _arm_m(robot, poses)),
-        plain(upright.rotation).reshape(-1, 3, 3),
-        plain(cable.weight_N_per_m * each),
-        plain(cable.weight_N_per_m / cable.axial_stiffness_N * each),
-        robot.balance_rows,
-        plain(_scale(robot)),
-        _SMALLEST_SHARE * robot.weight_N,
-        out,
-        told,
-    )
-    return np.moveaxis(out, -1, 0)
 
 
 def _load_about_centre_N(robot: Robot, poses: Poses, force_N: FloatArray | None) -> FloatArray:

@@ -10,7 +10,6 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
-from designer.statics.hanging import length_over_chord, lowest_m
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
 from designer.study import Workspace
@@ -71,10 +70,10 @@ def look_at(
     floor_m : float or None
         Height that no cable may hang below, upright frame [m].
     """
-    long = _add(found.long, some, length_over_chord(statics), counts, LONG, sign=1.0)
+    long = _add(found.long, some, statics.length_over_chord, counts, LONG, sign=1.0)
     below = found.below_floor
     if floor_m is not None:
-        below = _add(below, some, lowest_m(statics), counts, floor_m, sign=-1.0)
+        below = _add(below, some, statics.lowest_m, counts, floor_m, sign=-1.0)
     return HangingCables(found.samples + int(counts.sum()), long, below)
 
 

@@ -23,6 +23,7 @@ from scipy.optimize import minimize
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from convex_tensions import BLOCK, distribute
 from redundant_robots import anywhere, cogiro_poses, one
 from sample_robots import COGIRO
 from sizing import STEEL, Paper, in_chunks, seconds_per_pose
@@ -33,7 +34,7 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
-from designer.statics.distribution import BLOCK, distribute, distribute_evenly
+from designer.statics.distribution import distribute_evenly
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.sweep import map_workspace

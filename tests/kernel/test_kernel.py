@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from designer.kernel.compiling import kernel
-from designer.kernel.layout import LANES
 from designer.kernel.linear import solve_lanes
 from designer.kernel.square import solve_range
+from designer.kernel.table import LANES
 from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 from designer.physics import catenary
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from designer.physics import catenary, massless
+from designer.physics import catenary
 
 # Span X, rise Z, unstrained length L [m], EA [N], weight w [N/m] -> H, V at the upper end [N].
 # From the closed form in 40 digits; V counts the whole weight of the cable.
@@ -164,5 +164,3 @@ def test_massless_is_the_limit_of_no_weight() -> None:
     _, force_z = catenary.length_and_force_z(density, X, D, EA, weights)
     difference = force_z + density * D
     assert difference[:-1] / difference[1:] == pytest.approx(2.0, rel=2e-3)
-    tension = massless.tension_N(density * X, X, D)
-    assert tension == pytest.approx(density * massless.length_m(X, D))

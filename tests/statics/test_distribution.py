@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from convex_tensions import distribute
 from redundant_robots import FOUR, SEVEN, anywhere, cogiro_poses, four_poses, seven_poses
 from sample_robots import COGIRO
 from scipy.linalg import null_space
@@ -14,7 +15,7 @@ from scipy.optimize import LinearConstraint, linprog, minimize
 from designer.arrays import frozen_array
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.distribution import distribute, distribute_evenly
+from designer.statics.distribution import distribute_evenly
 from designer.statics.geometry import cable_geometry, load_wrench_N
 from designer.statics.inverse import solve_massless
 

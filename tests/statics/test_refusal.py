@@ -20,7 +20,7 @@ from designer.statics.geometry import (
     cable_geometry,
     load_wrench_N,
     structure_matrix,
-    upright_poses,
+    upright_situation,
 )
 from designer.statics.inverse import solve_sagging
 from designer.statics.task import over_pulleys, straight_run
@@ -29,9 +29,8 @@ OUTSIDE, NOT_FOUND = Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND
 
 
 def refuse(robot: Robot, poses: Poses) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return refuse_batch(
-        robot, upright_poses(robot, poses), straight_run(robot, poses).exit_points_m
-    )
+    points = straight_run(robot, poses).exit_points_m
+    return refuse_batch(robot, upright_situation(robot, poses, points))
 
 
 def random_robot(rng: np.random.Generator, kind: str) -> Robot:

@@ -11,9 +11,8 @@ from sample_robots import COGIRO, COGIRO_CABLE
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
-from designer.statics.equilibria import spread_poses
 from designer.statics.inverse import solve_sagging
-from designer.statics.rest import RestingPlaces, resting_places
+from designer.statics.rest import RestingPlaces, resting_places, spread_poses
 
 ROPE = Cable(float("nan"), 0.1, 3e6, float("inf"))
 

@@ -12,7 +12,6 @@ from designer.model.cable import Material
 from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
-from designer.statics.hanging import length_over_chord, lowest_m
 from designer.statics.inverse import solve_sagging
 from designer.statics.task import LONG
 from designer.study import Workspace
@@ -48,14 +47,14 @@ def test_the_lowest_point_is_that_of_the_drawn_cable() -> None:
     assert statics.is_solved.all()
     assert statics.hangs_below.any() and not statics.hanging_cables.all()
     drawn = np.minimum(drawn_z_m(statics, ROBOT).min(axis=-1), 0.0)
-    assert np.abs(lowest_m(statics) - drawn).max() < 0.05
-    assert np.all(lowest_m(statics) <= statics.poses.position_m[:, None, 2] + 1e-9)
+    assert np.abs(statics.lowest_m - drawn).max() < 0.05
+    assert np.all(statics.lowest_m <= statics.poses.position_m[:, None, 2] + 1e-9)
 
 
 def test_samples_are_counted_and_the_worst_is_told() -> None:
     statics = some_statics(STEEL.cable(0.03))
     places = statics.poses.position_m
-    ratio, lowest = length_over_chord(statics), lowest_m(statics)
+    ratio, lowest = statics.length_over_chord, statics.lowest_m
     floor_m = float(np.median(lowest.min(axis=1)))
     counts = np.arange(200) % 3 > 0
     whole = look_at(HangingCables(), places, statics, counts, floor_m)
@@ -94,5 +93,5 @@ def test_a_cable_is_not_left_to_hang_far_down_where_that_saves_nothing() -> None
     sizing = size_poses(robot, Poses.at(places), rope)
     held = size_poses(replace(robot, tension_min_N=0.5), Poses.at(places), rope)
     assert sizing.statics.is_solved.all()
-    assert length_over_chord(sizing.statics).max() < LONG
+    assert sizing.statics.length_over_chord.max() < LONG
     assert sizing.diameter_m == pytest.approx(held.diameter_m, rel=5e-4)

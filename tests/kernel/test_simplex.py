@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog
 
 from designer.kernel.compiling import kernel
-from designer.kernel.redundant_lp import (
+from designer.kernel.simplex import (
     INFEASIBLE,
     OPTIMAL,
     choose_basis,

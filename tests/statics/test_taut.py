@@ -13,8 +13,8 @@ from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.statics.nearest import solve_nearest
 from designer.statics.task import straight_run
+from designer.statics.taut import solve_taut
 
 REGULAR = 1e-4
 LEAST = 1e-3
@@ -74,7 +74,7 @@ def assert_as_plain(
     robot: Robot, poses: Poses, cable: Cable, force: FloatArray | None = None, *, rtol: float
 ) -> None:
     for ours, plain in zip(
-        solve_nearest(robot, poses, cable, force), plainly(robot, poses, cable, force), strict=True
+        solve_taut(robot, poses, cable, force), plainly(robot, poses, cable, force), strict=True
     ):
         assert ours.shape == (*poses.shape, robot.n_cables)
         np.testing.assert_allclose(ours, plain, rtol=rtol, atol=0.0)
@@ -98,7 +98,7 @@ def test_more_cables_than_degrees_of_freedom() -> None:
     robot = Robot(frozen_array(HALL), Platform(4.4))
     poses = Poses.at(np.random.default_rng(3).uniform([-1, -4, 1], [1.5, 2, 4], (200, 3)))
     light_as_air = Cable(float("nan"), 1e-9, 1e5, float("inf"))  # its tension is that of a chord
-    _, tension, _ = solve_nearest(robot, poses, light_as_air)
+    _, tension, _ = solve_taut(robot, poses, light_as_air)
     normal, right, _ = balance(robot, poses, None)
     pulling = (tension > 1.01 * LEAST * robot.weight_N).all(axis=1)
     assert pulling.sum() > 100
@@ -109,7 +109,7 @@ def test_more_cables_than_degrees_of_freedom() -> None:
 
 def test_cable_straight_above() -> None:
     poses = Poses.at([[0.0, 0.0, 1.0], [0.1, 0.0, 1.0]])
-    length, _, distance = solve_nearest(FOUR_ON_A_POINT, poses, LIGHT)
+    length, _, distance = solve_taut(FOUR_ON_A_POINT, poses, LIGHT)
     assert distance[0, 3] == 0.0
     assert 1.3995 < length[0, 3] < 1.4
     assert_as_plain(FOUR_ON_A_POINT, poses, LIGHT, rtol=1e-11)
@@ -117,10 +117,10 @@ def test_cable_straight_above() -> None:
 
 def test_batch_equals_loop() -> None:
     poses = hall_poses(5)
-    together = solve_nearest(FOUR_ON_A_BODY, poses, SOFT)
+    together = solve_taut(FOUR_ON_A_BODY, poses, SOFT)
     for k in range(5):
         alone = Poses(poses.position_m[k : k + 1], poses.rotation[k : k + 1])
-        for one, all_ in zip(solve_nearest(FOUR_ON_A_BODY, alone, SOFT), together, strict=True):
+        for one, all_ in zip(solve_taut(FOUR_ON_A_BODY, alone, SOFT), together, strict=True):
             np.testing.assert_allclose(one[0], all_[k], rtol=1e-14, atol=0.0)
 
 
@@ -128,7 +128,7 @@ def test_what_is_not_taut_carries_no_number() -> None:
     """A cable so heavy that it would be many times as long as its chord; a pose that is none."""
     heavy = Cable(float("nan"), 50.0, 1e7, float("inf"))
     poses = hall_poses(40)
-    length, tension, _ = solve_nearest(FOUR_ON_A_BODY, poses, heavy)
+    length, tension, _ = solve_taut(FOUR_ON_A_BODY, poses, heavy)
     normal, right, chord = balance(FOUR_ON_A_BODY, poses, None)
     straight = np.linalg.solve(normal, right[..., None])[..., 0]
     pull = np.maximum(straight, LEAST * FOUR_ON_A_BODY.weight_N) / chord / heavy.weight_N_per_m
@@ -136,7 +136,7 @@ def test_what_is_not_taut_carries_no_number() -> None:
     assert (np.isnan(tension) == np.isnan(length)).all()
     assert np.isnan(length).any()
     nowhere = Poses.at([[np.nan, 0.0, 1.0], [0.0, 0.0, 2.0]], np.zeros((2, 3)))
-    length, tension, _ = solve_nearest(FOUR_ON_A_BODY, nowhere, LIGHT)
+    length, tension, _ = solve_taut(FOUR_ON_A_BODY, nowhere, LIGHT)
     assert np.isnan(length[0]).all()
     assert np.isnan(tension[0]).all()
     assert np.isfinite(length[1]).all()

@@ -15,14 +15,19 @@ then costs one m × m factorisation. Nocedal and Wright, Numerical Optimization 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.compiling import kernel
 from designer.kernel.linear import solve_small
-from designer.kernel.redundant_layout import (
-    CHORD,
+from designer.kernel.pose import (
     COUPLING,
+    D_HEIGHT,
+    D_MU_HEIGHT,
+    D_MU_ROOM,
+    D_ROOM,
     FORCE,
     FREEDOM,
     HEIGHT,
@@ -35,68 +40,66 @@ from designer.kernel.redundant_layout import (
     ROOM,
     SHARE,
     STEP,
-    STRAIGHT,
     STRENGTH,
-    T_P,
     T_PP,
     UNIT,
-    V_P,
     V_PP,
     WRENCH,
     Ask,
-    P,
     Pose,
-    Scratch,
-    T,
-    V,
-)  # fmt: skip
-from designer.kernel.redundant_pose import (
+    along,
     bend,
-    lift,
     make_straight,
     smallest_pull,
     write_wrenches,
 )
+from designer.kernel.table import CHORD, LIFT, STRAIGHT, T_P, V_P, P, T, V
 from designer.kernel.unit_cable import PULL_FLOOR
 
+START_OF_STRAIGHT = 0.8
+"""Of what straight cables reach, to begin with: sag takes its part."""
 _MOST_ITERATIONS = 80
-_START_OF_STRAIGHT = 0.8
 _START_PULL = 0.5
 _CARRIED = 0.5
+# Room above the smallest pull and first barrier: well inside, as far as scaled quantities go.
 _START_SHARE = 0.05
 _START_BARRIER = 0.05
 _LEAST_BARRIER = 1e-11
+# A pull grows to ten times itself at most in a step, for its cable is far from linear.
 _LARGEST_RISE = 9.0
 _TO_BOUNDARY = 0.995
 _BALANCED = 1e-12
 _OPTIMAL = 1e-8
 _FLAT = 1e-9
+"""Least curvature: a cable without any would take a step of any length."""
 
 
-@kernel
-def improve(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
-    """Start from straight cables and a guess of s; return s and how far it is from optimal."""
-    pull_straight(pose, ask, s)
-    return climb(pose, ask, s, keep, scratch)
+class Scratch(NamedTuple):
+    """Arrays for intermediate results.
 
+    Parameters
+    ----------
+    columns : array (n, m)
+        Slopes of the balance in the scaled pulls, one row a cable.
+    schur : array (m + 1, m + 2)
+        A Newton step in the multipliers and s, with its right-hand side.
+    step : array (m + 1,)
+        Its solution.
+    rest, dual : array (m,)
+        What is left of the balance, and its multipliers.
+    square : array (m, m + 1)
+        A system for `value`, with its right-hand side.
+    value : array (m,)
+        By how much s rises with each component of the scaled wrench.
+    """
 
-@kernel
-def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
-    """Start from the pulls in `pose` and a guess of s; return s and how far it is from optimal."""
-    c = pose.cables
-    _begin(pose, ask, s)
-    scratch.dual[:] = 0.0
-    gap = np.inf
-    for _ in range(_MOST_ITERATIONS):
-        bend(pose)
-        unbalanced = _balance(pose, ask, s, scratch)
-        gap = _gap(pose, ask, s, scratch)
-        if gap < _OPTIMAL and unbalanced < _BALANCED:
-            break
-        s = _newton(pose, ask, s, _barrier(c), keep, scratch)
-        if not np.isfinite(s):
-            break
-    return s, gap
+    columns: FloatArray
+    schur: FloatArray
+    step: FloatArray
+    rest: FloatArray
+    dual: FloatArray
+    square: FloatArray
+    value: FloatArray
 
 
 @kernel
@@ -114,9 +117,58 @@ def new_scratch(m: int, n: int) -> Scratch:
 
 
 @kernel
+def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
+    """Pull as much as straight cables have to, and every cable well above its smallest pull."""
+    c = pose.cables
+    make_straight(pose, _CARRIED)
+    for i in range(c.shape[1]):
+        low, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        least = low + low_c * max(ask.c_0 + s * ask.c_s, 0.0)
+        y = START_OF_STRAIGHT * c[STRAIGHT, i] / (c[SHARE, i] * c[STRENGTH, i])
+        # Negated, so that NaN of straight cables that hold nothing is left out.
+        if not y > least + _START_SHARE:
+            y = least + _START_SHARE
+        c[P, i] = max(y, _START_PULL / c[UNIT, i]) * c[UNIT, i]
+
+
+@kernel
+def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tuple[float, float]:
+    """Start from the pulls in `pose` and a guess of s; return s and how far it is from optimal.
+
+    No pull falls below `keep` times what it was in a step.
+    """
+    c, n = pose.cables, pose.cables.shape[1]
+    bend(pose)
+    for i in range(n):  # a start of all slacks and multipliers
+        c[HEIGHT, i] = max(_height(pose, ask, s, i), _START_SHARE)
+        c[ROOM, i] = max(ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i], _START_SHARE)
+        c[MU_ROOM, i] = _START_BARRIER / c[ROOM, i]
+        c[MU_HEIGHT, i] = _START_BARRIER / c[HEIGHT, i]
+    scratch.dual[:] = 0.0
+    gap = np.inf
+    for iteration in range(_MOST_ITERATIONS):
+        if iteration > 0:
+            bend(pose)
+        unbalanced = _balance(pose, ask, s, scratch)
+        gap = _gap(pose, ask, s, scratch)
+        if gap < _OPTIMAL and unbalanced < _BALANCED:
+            break
+        mean = 0.0
+        for i in range(n):
+            mean += c[ROOM, i] * c[MU_ROOM, i] + c[HEIGHT, i] * c[MU_HEIGHT, i]
+        mean /= 2 * n
+        # A fifth of the mean gap, in the end much less.
+        barrier = max(min(0.2 * mean, mean**1.5), _LEAST_BARRIER)
+        s = _newton(pose, ask, s, barrier, keep, scratch)
+        if not np.isfinite(s):
+            break
+    return s, gap
+
+
+@kernel
 def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
     """Fill what is left of the balance and its slopes; return the largest entry."""
-    c, scale = pose.cables, pose.scale
+    c = pose.cables
     rest, columns = scratch.rest, scratch.columns
     write_wrenches(pose)
     worst = 0.0
@@ -126,40 +178,10 @@ def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
         for i in range(c.shape[1]):
             columns[i, k] = c[WRENCH + row, i]
             # Linear in the pull but for the vertical force.
-            up = c[SHARE, i] * (c[V, i] - c[V_P, i] * c[P, i]) / scale[FORCE]
-            rest[k] += columns[i, k] * c[P, i] / c[UNIT, i] + up * lift(pose, row, i)
+            up = c[SHARE, i] * (c[V, i] - c[V_P, i] * c[P, i]) / pose.scale[FORCE]
+            rest[k] += columns[i, k] * c[P, i] / c[UNIT, i] + up * c[LIFT + row, i]
         worst = max(worst, abs(rest[k]))
     return worst
-
-
-@kernel
-def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
-    """Pull as much as straight cables have to, and every cable well above its smallest pull."""
-    c = pose.cables
-    scaled_c = ask.c_0 + s * ask.c_s
-    make_straight(pose, _CARRIED)
-    for i in range(c.shape[1]):
-        low, low_c = smallest_pull(pose, i, PULL_FLOOR)
-        least = low + low_c * max(scaled_c, 0.0)
-        y = _START_OF_STRAIGHT * c[STRAIGHT, i] / (c[SHARE, i] * c[STRENGTH, i])
-        # Negated, so that NaN of straight cables that hold nothing is left out.
-        if not y > least + _START_SHARE:
-            y = least + _START_SHARE
-        y = max(y, _START_PULL / c[UNIT, i])
-        c[P, i] = y * c[UNIT, i]
-
-
-@kernel
-def _begin(pose: Pose, ask: Ask, s: float) -> None:
-    """Give all slacks and multipliers a start."""
-    c = pose.cables
-    bend(pose)
-    for i in range(c.shape[1]):
-        c[HEIGHT, i] = max(_height(pose, ask, s, i), _START_SHARE)
-        limit = ask.f_0 + s * ask.f_s
-        c[ROOM, i] = max(limit - c[T, i] / c[STRENGTH, i], _START_SHARE)
-        c[MU_ROOM, i] = _START_BARRIER / c[ROOM, i]
-        c[MU_HEIGHT, i] = _START_BARRIER / c[HEIGHT, i]
 
 
 @kernel
@@ -168,17 +190,6 @@ def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
     c = pose.cables
     low, low_c = smallest_pull(pose, i, PULL_FLOOR)
     return float(c[P, i] / c[UNIT, i] - low - low_c * (ask.c_0 + s * ask.c_s))
-
-
-@kernel
-def _barrier(c: FloatArray) -> float:
-    """Return the next barrier parameter: a fifth of the mean gap, in the end much less."""
-    mean = 0.0
-    n = c.shape[1]
-    for i in range(n):
-        mean += c[ROOM, i] * c[MU_ROOM, i] + c[HEIGHT, i] * c[MU_HEIGHT, i]
-    mean /= 2 * n
-    return float(max(min(0.2 * mean, mean**1.5), _LEAST_BARRIER))
 
 
 @kernel
@@ -214,8 +225,7 @@ def _newton(pose: Pose, ask: Ask, s: float, barrier: float, keep: float, scratch
     """Take one Newton step in everything; return the new s."""
     c, columns, dual, step = pose.cables, scratch.columns, scratch.dual, scratch.step
     n, m = columns.shape
-    weight_of_s, rest_of_s = _condense(pose, ask, s, barrier, dual)
-    _assemble(pose, ask, weight_of_s, rest_of_s, scratch)
+    _condense(pose, ask, s, barrier, scratch)
     if not solve_small(scratch.schur, step):
         return np.nan
     ds = float(step[m])
@@ -227,25 +237,28 @@ def _newton(pose: Pose, ask: Ask, s: float, barrier: float, keep: float, scratch
     forward, back = _step_sizes(pose, ask, s, ds, barrier, keep)
     for k in range(m):
         dual[k] += back * step[k]
-    _take(pose, ask, s, ds, barrier, forward, back)
+    for i in range(n):
+        c[P, i] += forward * c[STEP, i] * c[UNIT, i]
+        c[ROOM, i] += forward * c[D_ROOM, i]
+        c[HEIGHT, i] += forward * c[D_HEIGHT, i]
+        c[MU_ROOM, i] += back * c[D_MU_ROOM, i]
+        c[MU_HEIGHT, i] += back * c[D_MU_HEIGHT, i]
     return s + forward * ds
 
 
 @kernel
-def _condense(
-    pose: Pose, ask: Ask, s: float, barrier: float, dual: FloatArray
-) -> tuple[float, float]:
-    """Eliminate slacks and multipliers of the bounds; return what is left in the row of s.
+def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) -> None:
+    """Write the system for the multipliers of the balance and s, all else eliminated.
 
-    Each cable's row becomes: step / `FREEDOM` + columns · d(dual) + `COUPLING` ds = `RHS`; the row
-    of s, with the cables eliminated as well: weight · ds - (load + …) · d(dual) = rest.
+    First the slacks and multipliers of the bounds; each cable's row becomes: step / `FREEDOM` +
+    columns · d(dual) + `COUPLING` ds = `RHS`. Then the cables. Solved as a whole: at an optimum
+    between the limits the part of the multipliers is singular.
     """
-    c, rows, load = pose.cables, pose.rows, pose.load
+    c, columns, S = pose.cables, scratch.columns, scratch.schur
+    n, m = columns.shape
     weight, rest = 0.0, 1.0
-    for k in range(dual.size):
-        rest += ask.c_s * load[rows[k]] * dual[k]
-    for i in range(c.shape[1]):
-        H = _curvature(pose, i, dual)
+    for i in range(n):
+        H = _curvature(pose, i, scratch.dual)
         slope = c[T_P, i] / c[CHORD, i]
         _, low_c = smallest_pull(pose, i, PULL_FLOOR)
         low_s = low_c * ask.c_s
@@ -263,17 +276,29 @@ def _condense(
         weight += low_s**2 * d_height * (H + d_room * slope * slope) * c[FREEDOM, i]
         rest += ask.f_s * (c[MU_ROOM, i] + push_room) - low_s * (c[MU_HEIGHT, i] + push_height)
         rest -= c[COUPLING, i] * c[RHS, i] * c[FREEDOM, i]
-    return weight, rest
+    for k in range(m):
+        load = ask.c_s * pose.load[pose.rows[k]]
+        rest += load * scratch.dual[k]
+        S[k, m + 1] = scratch.rest[k]
+        S[k, m] = load
+        for i in range(n):
+            S[k, m + 1] += columns[i, k] * c[FREEDOM, i] * c[RHS, i]
+            S[k, m] += columns[i, k] * c[FREEDOM, i] * c[COUPLING, i]
+        for j in range(k + 1):
+            total = 0.0
+            for i in range(n):
+                total += columns[i, k] * c[FREEDOM, i] * columns[i, j]
+            S[k, j] = S[j, k] = total
+        S[m, k] = -S[k, m]
+    S[m, m] = weight
+    S[m, m + 1] = rest
 
 
 @kernel
 def _curvature(pose: Pose, i: int, dual: FloatArray) -> float:
     """Return the second slope of the Lagrangian in a scaled pull, where it is convex."""
     c = pose.cables
-    arm = 0.0
-    for k in range(dual.size):
-        arm += dual[k] * lift(pose, pose.rows[k], i)
-    of_lift = c[SHARE, i] / pose.scale[FORCE] * c[V_PP, i] * arm
+    of_lift = c[SHARE, i] / pose.scale[FORCE] * c[V_PP, i] * along(pose, dual, LIFT, i)
     of_tension = c[MU_ROOM, i] * c[T_PP, i] / c[STRENGTH, i]
     of_least = 0.0
     if c[LEAST, i] > 0.0:
@@ -282,84 +307,33 @@ def _curvature(pose: Pose, i: int, dual: FloatArray) -> float:
 
 
 @kernel
-def _assemble(pose: Pose, ask: Ask, weight_of_s: float, rest_of_s: float, scratch: Scratch) -> None:
-    """Write the system for the multipliers of the balance and s, the cables eliminated.
-
-    Solved as a whole: at an optimum between the limits the part of the multipliers is singular.
-    """
-    c, columns, S = pose.cables, scratch.columns, scratch.schur
-    n, m = columns.shape
-    for k in range(m):
-        S[k, m + 1] = scratch.rest[k]
-        S[k, m] = ask.c_s * pose.load[pose.rows[k]]
-        for i in range(n):
-            S[k, m + 1] += columns[i, k] * c[FREEDOM, i] * c[RHS, i]
-            S[k, m] += columns[i, k] * c[FREEDOM, i] * c[COUPLING, i]
-        for j in range(k + 1):
-            total = 0.0
-            for i in range(n):
-                total += columns[i, k] * c[FREEDOM, i] * columns[i, j]
-            S[k, j] = total
-            S[j, k] = total
-        S[m, k] = -S[k, m]
-    S[m, m] = weight_of_s
-    S[m, m + 1] = rest_of_s
-
-
-@kernel
-def _changes(
-    pose: Pose, ask: Ask, s: float, ds: float, barrier: float, i: int
-) -> tuple[float, float, float, float]:
-    """Return the steps of both slacks and both multipliers of a cable."""
-    c = pose.cables
-    _, low_c = smallest_pull(pose, i, PULL_FLOOR)
-    miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
-    room = miss + ask.f_s * ds - c[T_P, i] / c[CHORD, i] * c[STEP, i]
-    sunk = _height(pose, ask, s, i) - c[HEIGHT, i]
-    height = sunk + c[STEP, i] - low_c * ask.c_s * ds
-    mu_room = (barrier - c[MU_ROOM, i] * room) / c[ROOM, i] - c[MU_ROOM, i]
-    mu_height = (barrier - c[MU_HEIGHT, i] * height) / c[HEIGHT, i] - c[MU_HEIGHT, i]
-    return room, height, mu_room, mu_height
-
-
-@kernel
 def _step_sizes(
     pose: Pose, ask: Ask, s: float, ds: float, barrier: float, keep: float
 ) -> tuple[float, float]:
-    """Return how far to go so that slacks and multipliers stay above zero.
-
-    No pull falls below `keep` times what it was, for a slack cable is far from linear.
-    """
+    """Fill the steps of slacks and multipliers; return how far to go to keep all above zero."""
     c = pose.cables
-    fall = 1.0 - keep
     forward, back = 1.0, 1.0
     for i in range(c.shape[1]):
-        room, height, mu_room, mu_height = _changes(pose, ask, s, ds, barrier, i)
-        y = c[P, i] / c[UNIT, i]
+        _, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
+        room = miss + ask.f_s * ds - c[T_P, i] / c[CHORD, i] * c[STEP, i]
+        sunk = _height(pose, ask, s, i) - c[HEIGHT, i]
+        height = sunk + c[STEP, i] - low_c * ask.c_s * ds
+        mu_room = (barrier - c[MU_ROOM, i] * room) / c[ROOM, i] - c[MU_ROOM, i]
+        mu_height = (barrier - c[MU_HEIGHT, i] * height) / c[HEIGHT, i] - c[MU_HEIGHT, i]
+        c[D_ROOM, i], c[D_HEIGHT, i] = room, height
+        c[D_MU_ROOM, i], c[D_MU_HEIGHT, i] = mu_room, mu_height
+        y, step = c[P, i] / c[UNIT, i], c[STEP, i]
         if room < 0.0:
             forward = min(forward, -_TO_BOUNDARY * c[ROOM, i] / room)
         if height < 0.0:
             forward = min(forward, -_TO_BOUNDARY * c[HEIGHT, i] / height)
-        if c[STEP, i] > _LARGEST_RISE * y:
-            forward = min(forward, _LARGEST_RISE * y / c[STEP, i])
-        if c[STEP, i] < -fall * y:
-            forward = min(forward, -fall * y / c[STEP, i])
+        if step > _LARGEST_RISE * y:
+            forward = min(forward, _LARGEST_RISE * y / step)
+        if step < (keep - 1.0) * y:
+            forward = min(forward, (keep - 1.0) * y / step)
         if mu_room < 0.0:
             back = min(back, -_TO_BOUNDARY * c[MU_ROOM, i] / mu_room)
         if mu_height < 0.0:
             back = min(back, -_TO_BOUNDARY * c[MU_HEIGHT, i] / mu_height)
     return forward, back
-
-
-@kernel
-def _take(
-    pose: Pose, ask: Ask, s: float, ds: float, barrier: float, forward: float, back: float
-) -> None:
-    c = pose.cables
-    for i in range(c.shape[1]):
-        room, height, mu_room, mu_height = _changes(pose, ask, s, ds, barrier, i)
-        c[P, i] += forward * c[STEP, i] * c[UNIT, i]
-        c[ROOM, i] += forward * room
-        c[HEIGHT, i] += forward * height
-        c[MU_ROOM, i] += back * mu_room
-        c[MU_HEIGHT, i] += back * mu_height

@@ -21,49 +21,41 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
-from designer.kernel.branches import rise, upward_share
+from designer.arrays import FloatArray
+from designer.kernel.answer import LOAD_FACTOR, SOLVED, WEIGHT, Answers
+from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
-from designer.kernel.layout import LOAD_FACTOR, WEIGHT
-from designer.kernel.redundant import massless
-from designer.kernel.redundant_answer import OPTIMAL_WITHIN, store
-from designer.kernel.redundant_interior import climb, new_scratch, pull_straight
-from designer.kernel.redundant_layout import (
-    CHORD,
-    EX,
-    EY,
+from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
+from designer.kernel.pose import (
     FORCE,
     KAPPA,
-    REACH,
-    RX,
-    RY,
-    RZ,
+    OPTIMAL_WITHIN,
     SHARE,
     SIZE,
-    STRAIGHT,
     STRENGTH,
     UNIT,
-    X2,
     Ask,
-    D,
-    P,
     Pose,
-)  # fmt: skip
-from designer.kernel.redundant_lp import new_programme
-from designer.kernel.redundant_pose import (
+    along,
+    asked,
     new_pose,
     place,
     settled_length,
     smallest_pull,
+    store,
 )
+from designer.kernel.redundant import KEPT_PULLS, massless
+from designer.kernel.simplex import new_programme
+from designer.kernel.table import CHORD, LEVEL, LIFT, STRAIGHT, X2, D, P
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 from designer.model.verdict import Verdict
 
 _RANDOM_STARTS = 6
+_RANDOM_SEED = 88172645463325252  # Marsaglia's own
 _HANGS = 0.5
+"""Pull of a cable that is to hang, a sixth longer than its horizontal distance."""
 _LIGHT = 0.1
-_START_OF_STRAIGHT = 0.8
-_KEEPS = (0.5, 0.9)
+"""Scaled inverse weight to start from where straight cables hold nothing."""
 _BETTER = 1e-7
 _SURELY = 1e-9
 _NOTHING = 1e-300
@@ -73,7 +65,6 @@ _MARGIN = 1e-3
 _ABOVE_LEAST = 1.1
 _SHORTER = 0.7
 _HALVINGS = 40
-_SOLVED = int(Verdict.SOLVED)
 _NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 
 
@@ -81,77 +72,51 @@ _NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 def search_range(
     start: int,
     stop: int,
-    exit_points: FloatArray,
-    attachments: FloatArray,
-    load: FloatArray,
-    load_point: FloatArray,
-    weight: float,
-    positions: FloatArray,
-    rotations: FloatArray,
-    kappa: FloatArray,
-    weights: FloatArray,
-    strength: FloatArray,
+    situation: Situation,
+    figures: Figures,
     inverse_weight: float,
-    rows: IntArray,
-    least_tension: float,
-    out_cables: FloatArray,
-    out_poses: FloatArray,
-    out_verdict: IntArray,
+    out: Answers,
 ) -> None:
     """Better the answers of the poses from `start` to `stop`; see `solve_redundant_range`."""
-    m, n = rows.size, kappa.size
-    pose = new_pose(kappa, weights, strength, rows, least_tension)
+    m, n = situation.rows.size, figures.kappa.size
+    pose = new_pose(figures, situation.rows)
     lp = new_programme(m, n)
     scratch = new_scratch(m, n)
-    keep_cables, keep_pose = np.empty((n, 3)), np.empty(out_poses.shape[1])
+    sizing = inverse_weight < 0.0
+    keep_cables, keep_pose = np.empty((n, 3)), np.empty(out.poses.shape[1])
     for at in range(start, stop):
-        place(
-            pose,
-            exit_points[at if exit_points.shape[0] > 1 else 0],
-            attachments,
-            rotations[at if rotations.shape[0] > 1 else 0],
-            positions[at],
-            load[at if load.shape[0] > 1 else 0],
-            load_point,
-            weight,
-        )
+        place(pose, situation, at)
         straight_c, spans = massless(pose, lp)
         if not (spans and straight_c > 0.0):
             pose.cables[STRAIGHT] = np.nan
         to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
-        sizing = inverse_weight < 0.0
-        ask = Ask(0.0, 1.0, 1.0, 0.0) if sizing else Ask(inverse_weight * to_scaled, 0.0, 0.0, -1.0)
+        ask = asked(pose, inverse_weight)
         best = -np.inf
-        if out_verdict[at] == _SOLVED:
-            best = to_scaled / out_poses[at, WEIGHT] if sizing else -out_poses[at, LOAD_FACTOR]
-        state = np.uint64(88172645463325252)
+        if out.verdict[at] == SOLVED:
+            best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]
+        state = np.uint64(_RANDOM_SEED)
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
         for attempt in range(n + 3 + _RANDOM_STARTS):
             if is_proved and best == -np.inf:  # nor does this section hold within its strength
-                out_verdict[at] = _NO_FINITE_CABLE if sizing else out_verdict[at]
+                out.verdict[at] = _NO_FINITE_CABLE if sizing else out.verdict[at]
                 break
             s, state = _begin(pose, ask, straight_c, attempt, state)
-            s, gap = climb(pose, ask, s, _KEEPS[0 if attempt != 1 else 1], scratch)
-            is_solved = gap <= OPTIMAL_WITHIN and (s > 0.0 or not sizing)
-            if best == -np.inf and not is_solved:
+            s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)
+            is_optimal = gap <= OPTIMAL_WITHIN
+            if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
                 for k in range(m):
                     scratch.value[k] = -scratch.dual[k]
                 is_proved = _bounds(pose, scratch.value)
-            if not (gap <= OPTIMAL_WITHIN):
+            if not is_optimal or not (s > best + _BETTER * abs(s) or best == -np.inf):
                 continue
-            if not (s > best + _BETTER * abs(s) or best == -np.inf):
-                continue
-            keep_cables[:], keep_pose[:] = out_cables[at], out_poses[at]
-            before = out_verdict[at]
+            keep_cables[:], keep_pose[:] = out.cables[at], out.poses[at]
+            before = out.verdict[at]
             c = (ask.c_0 + s * ask.c_s) / to_scaled
-            if (
-                store(out_cables, out_poses, out_verdict, at, pose, c, gap, straight_c, sizing)
-                == _SOLVED
-            ):
+            if store(out, at, pose, c, gap, straight_c, sizing) == SOLVED:
                 best = s
             else:
-                out_cables[at], out_poses[at] = keep_cables, keep_pose
-                out_verdict[at] = before
+                out.cables[at], out.poses[at] = keep_cables, keep_pose
+                out.verdict[at] = before
 
 
 @kernel
@@ -165,7 +130,7 @@ def _begin(
     """
     c = pose.cables
     n = c.shape[1]
-    s = _START_OF_STRAIGHT * straight_c if straight_c > 0.0 else _LIGHT
+    s = START_OF_STRAIGHT * straight_c if straight_c > 0.0 else _LIGHT
     if ask.c_s == 0.0:
         s = -1.0
     pull_straight(pose, ask, s)
@@ -224,7 +189,7 @@ def _point_bounds(pose: Pose) -> bool:
     lift_of_all, size = 0.0, 0.0
     for i in range(n):
         share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
-        up = c[SHARE, i] * rise(pose, i, most * share)
+        up = c[SHARE, i] * _lift_and_top(c, i, most * share)[0]
         lift_of_all += up
         size += abs(up)
     return bool(lift_of_all < -_SURELY * size)
@@ -249,43 +214,25 @@ def _bounds(pose: Pose, value: FloatArray) -> bool:
 @kernel
 def _most(pose: Pose, value: FloatArray, i: int) -> float:
     """Return an upper bound of g over all pulls that the strength of a cable bears."""
-    beta = upward_share(pose, value, i)
-    alpha = 0.0
-    for k in range(value.size):
-        alpha += value[k] * _level(pose, pose.rows[k], i)
+    factor = pose.cables[SHARE, i] / pose.scale[FORCE]
+    alpha, beta = along(pose, value, LEVEL, i) * factor, along(pose, value, LIFT, i) * factor
     low, high = _range(pose, i)
     ratio = (high / low) ** (1.0 / _PARTS)
-    most, up = -np.inf, rise(pose, i, low)
+    most, up = -np.inf, _lift_and_top(pose.cables, i, low)[0]
     for _ in range(_PARTS):
         before, p = up, low
         low *= ratio
-        up = rise(pose, i, low)
+        up = _lift_and_top(pose.cables, i, low)[0]
         most = max(most, max(alpha * p, alpha * low) + max(beta * before, beta * up))
     return float(most)
 
 
 @kernel
-def _level(pose: Pose, row: int, i: int) -> float:
-    """Return the horizontal part of a component of the scaled wrench per pull."""
-    c, reach = pose.cables, pose.scale[REACH]
-    factor = c[SHARE, i] / pose.scale[FORCE]
-    if row < 2:
-        return float(factor * c[EX + row, i])
-    if row == 2:
-        return 0.0
-    factor /= reach
-    if row == 3:
-        return float(-factor * c[RZ, i] * c[EY, i])
-    if row == 4:
-        return float(factor * c[RZ, i] * c[EX, i])
-    return float(factor * (c[RX, i] * c[EY, i] - c[RY, i] * c[EX, i]))
-
-
-@kernel
-def _top(pose: Pose, i: int, p: float) -> float:
-    c = pose.cables
-    length = settled_length(p, c[X2, i], c[D, i], c[KAPPA, i])
-    return float(unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])[6])
+def _lift_and_top(c: FloatArray, i: int, p: float) -> tuple[float, float]:
+    """Return the upward pull and the top tension of a cable at a pull."""
+    length = settled_length(c, i, p)
+    _, _, _, v, _, _, t, _, _ = unit_cable(p, length, c[X2, i], c[D, i], c[KAPPA, i])
+    return v, t
 
 
 @kernel
@@ -299,25 +246,25 @@ def _range(pose: Pose, i: int) -> tuple[float, float]:
     strength = c[STRENGTH, i]
     high = strength / c[CHORD, i]
     low = high
-    while low > PULL_FLOOR and _top(pose, i, low) > strength:
+    while low > PULL_FLOOR and _lift_and_top(c, i, low)[1] > strength:
         low *= _SHORTER
     if low <= PULL_FLOOR:
         return PULL_FLOOR, high
     borne = low
     for _ in range(_HALVINGS):
         p = 0.5 * (borne + high)
-        if _top(pose, i, p) > strength:
+        if _lift_and_top(c, i, p)[1] > strength:
             high = p
         else:
             borne = p
     slack = borne
-    while low > PULL_FLOOR and _top(pose, i, low) <= strength:
+    while low > PULL_FLOOR and _lift_and_top(c, i, low)[1] <= strength:
         slack = low
         low *= _SHORTER
     low = max(low, PULL_FLOOR)
     for _ in range(_HALVINGS):
         p = 0.5 * (slack + low)
-        if _top(pose, i, p) > strength:
+        if _lift_and_top(c, i, p)[1] > strength:
             low = p
         else:
             slack = p

@@ -12,17 +12,16 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.calling import plain
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
-from designer.statics.geometry import upright_poses
+from designer.statics.geometry import one_cable, upright_situation
 from designer.statics.task import straight_run
 
 _SMALLEST_SHARE = 1e-3
 _REGULAR = 1e-4
 
 
-def solve_nearest(
+def solve_taut(
     robot: Robot, poses: Poses, cable: Cable, force_N: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return unstrained lengths [m], upper tensions [N] and horizontal distances [m].
@@ -41,26 +40,14 @@ def solve_nearest(
     -------
     three arrays (n_poses, n_cables)
     """
-    from designer.kernel import nearest as kernel
+    from designer.kernel import taut as kernel
 
     run = straight_run(robot, poses)
-    upright = upright_poses(robot, poses)
-    load = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
-    n = robot.n_cables
-    out = np.empty((len(upright.position_m), n, 3))
-    kernel.solve_nearest_poses(
-        plain(run.exit_points_m).reshape(-1, n, 3),
-        plain(robot.attachments_m),
-        plain(load),
-        plain(robot.platform.centre_of_mass_m),
-        robot.weight_N,
-        plain(upright.position_m),
-        plain(upright.rotation).reshape(-1, 3, 3),
-        plain(np.broadcast_to(cable.weight_N_per_m, (n,))),
-        plain(np.broadcast_to(cable.axial_stiffness_N, (n,))),
-        robot.balance_rows,
+    out = np.empty((len(poses.position_m), robot.n_cables, 3))
+    kernel.solve_taut_poses(
+        upright_situation(robot, poses, run.exit_points_m, force_N),
+        one_cable(robot, cable, _SMALLEST_SHARE * robot.weight_N),
         _REGULAR,
-        _SMALLEST_SHARE * robot.weight_N,
         out,
     )
     upper = out[..., kernel.EXIT_TENSION]

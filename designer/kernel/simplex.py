@@ -20,7 +20,9 @@ from designer.kernel.compiling import element, kernel
 OPTIMAL, INFEASIBLE, STALLED = range(3)
 
 _TOLERANCE = 1e-11
+"""Violation of a bound that is rounding; bounds are about one."""
 _RANK = 1e-9
+"""Largest element of a row below which it depends on the others."""
 _SMALLEST_PIVOT = 1e-12
 _MOST_PIVOTS = 60
 """And as many again as there are unknowns."""
@@ -113,9 +115,7 @@ def rebuild(lp: Programme) -> bool:
             return False
         if row != k:
             for j in range(width):
-                keep = table[k, j]
-                table[k, j] = table[row, j]
-                table[row, j] = keep
+                table[k, j], table[row, j] = table[row, j], table[k, j]
         _pivot(table, k, column)
     return True
 

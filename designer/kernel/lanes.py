@@ -1,0 +1,186 @@
+"""Newton's method on a block of poses at once, one a lane; see `designer.kernel.square`.
+
+`cables` is (n_cables, rows of the table, LANES), `poses` (POSE_ROWS, LANES).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.answer import FORCE_X, FORCE_Z, LENGTH
+from designer.kernel.calling import Situation
+from designer.kernel.compiling import kernel
+from designer.kernel.table import (
+    L_0,
+    L_P,
+    LANES,
+    LEVEL,
+    LIFT,
+    STRAIGHT,
+    T_P,
+    V_P,
+    X2,
+    L,
+    P,
+    T,
+    V,
+    condense,
+    load_of,
+    place_cable,
+    straighten,
+)
+
+# Rows of a pose: load (6), inverse weight and its goal, largest relative step.
+LOAD, C, GOAL, STEP = 0, 6, 7, 8
+# What is left of the balance (6), its scales of force and length, and the figures of merit.
+REST, SCALE, REACH = 9, 15, 16
+CLOSURE, RESIDUAL, OVERLOAD, LOWEST, HIGHEST, PULL = range(17, 23)
+POSE_ROWS = 23
+
+_LARGEST_FALL = 0.7
+_FOLLOWED = 0.1
+"""A c that falls faster than this a step, or before p has followed to this share, loses the way."""
+_LEAST_START = 0.01
+"""Pull that a cable starts with at least."""
+
+
+@kernel
+def lanes_of(indices: IntArray, first: int) -> IntArray:
+    """Return the poses of a block: from `first`, the last one repeated where there are no more."""
+    return indices[np.minimum(np.arange(first, first + LANES), indices.size - 1)]
+
+
+@kernel
+def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: IntArray) -> None:
+    """Fill the geometry of one block, and the load to be balanced; cables are straight."""
+    for j in range(LANES):
+        for i in range(cables.shape[0]):
+            place_cable(cables[i], j, situation, lane[j], i)
+        load = load_of(situation, lane[j])
+        for axis in range(6):
+            poses[LOAD + axis, j] = load[axis]
+    linearise_taut(cables)
+
+
+@kernel
+def linearise_taut(cables: FloatArray) -> None:
+    """Straight cables with half of their weight at the platform: the first guess."""
+    for i in range(cables.shape[0]):
+        row = cables[i]
+        for j in range(LANES):
+            straighten(row, j, 0.5)
+
+
+@kernel
+def linearise(cables: FloatArray, kappa: FloatArray) -> None:
+    """Condense each cable's length: pull and top tension as linear functions of the step in p."""
+    for i in range(cables.shape[0]):
+        row, k = cables[i], kappa[i]
+        for j in range(LANES):
+            condense(row, j, k)
+
+
+@kernel
+def assemble(
+    A: FloatArray, cables: FloatArray, poses: FloatArray, weights: FloatArray, rows: IntArray
+) -> None:
+    """Write the linearised balance: columns dp, then minus the present wrench, then the load.
+
+    `rows` are the components of the wrench that are balanced, of 0 … 5; with more cables than those
+    the matrix is wider than high.
+    """
+    n = cables.shape[0]
+    for m in range(rows.size):
+        level, lift = LEVEL + rows[m], LIFT + rows[m]
+        rest = A[m, n]
+        rest[:] = 0.0
+        A[m, n + 1] = poses[LOAD + rows[m]]
+        for i in range(n):
+            row, w, slope = cables[i], weights[i], A[m, i]
+            for j in range(LANES):
+                slope[j] = w * (row[level, j] + row[lift, j] * row[V_P, j])
+                rest[j] -= w * (row[level, j] * row[P, j] + row[lift, j] * row[V, j])
+
+
+@kernel
+def aim_at_strength(
+    poses: FloatArray, A: FloatArray, cables: FloatArray, strength: FloatArray
+) -> None:
+    """Set as goal the largest c that no linearised top tension forbids."""
+    poses[GOAL] = np.inf
+    n = cables.shape[0]
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            slope = row[T_P, j] * A[i, n + 1, j]
+            room = strength[i] - row[T, j] - row[T_P, j] * A[i, n, j]
+            bound = room / slope if slope > 0.0 else np.inf
+            poses[GOAL, j] = min(poses[GOAL, j], bound)
+
+
+@kernel
+def approach(poses: FloatArray, gently: bool) -> None:
+    """Move c to its goal; gently, down by no more than a factor, and only once p has followed."""
+    for j in range(LANES):
+        old = poses[C, j]
+        limit = _LARGEST_FALL * old if poses[STEP, j] < _FOLLOWED else old
+        c = max(poses[GOAL, j], limit) if gently else poses[GOAL, j]
+        poses[C, j] = c
+        poses[STEP, j] = abs(c - old) / (abs(c) + 1e-300)
+
+
+@kernel
+def advance(cables: FloatArray, A: FloatArray, poses: FloatArray) -> None:
+    """Apply the Newton step, each p within a factor of five, and note the largest relative step."""
+    n = cables.shape[0]
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            old = row[P, j]
+            new = min(max(old + A[i, n, j] + poses[C, j] * A[i, n + 1, j], 0.2 * old), 5.0 * old)
+            length = row[L, j]
+            move = row[L_0, j] + row[L_P, j] * (new - old)
+            row[L, j] = min(max(length + move, 0.5 * length), 2.0 * length)
+            row[P, j] = new
+            step = abs(new - old) / new + abs(row[L, j] - length) / length
+            poses[STEP, j] = max(poses[STEP, j], step)
+
+
+@kernel
+def first_guess(cables: FloatArray, A: FloatArray, poses: FloatArray, weights: FloatArray) -> None:
+    """Set p from the straight-cable balance, kept positive: a slack cable hangs, never pushes."""
+    n = cables.shape[0]
+    for i in range(n):
+        row = cables[i]
+        for j in range(LANES):
+            p = A[i, n, j] + poses[C, j] * A[i, n + 1, j]
+            row[P, j] = p if p > _LEAST_START else _LEAST_START
+            row[STRAIGHT, j] = weights[i] * A[i, n + 1, j] * row[L, j]
+
+
+@kernel
+def normal_equations(normal: FloatArray, A: FloatArray, m: int, right: int) -> None:
+    """Set AᵀA of the first m rows of A and, beside it, Aᵀ times their column `right`."""
+    n = normal.shape[0] - 1
+    for i in range(n):
+        normal[i] = 0.0
+        for r in range(m):
+            own = A[r, i]
+            for k in range(n + 1):
+                other, entry = A[r, k if k < n else right], normal[i, k]
+                for j in range(LANES):
+                    entry[j] += own[j] * other[j]
+
+
+@kernel
+def write_lane(out: FloatArray, cables: FloatArray, weights: FloatArray, j: int) -> None:
+    """Write unstrained length [m] and forces at the platform [N] of a pose, (n_cables, 3).
+
+    After `linearise`, whose change of length closes the cables to rounding.
+    """
+    for i in range(cables.shape[0]):
+        row, w = cables[i], weights[i]
+        out[i, LENGTH] = row[L, j] + row[L_0, j]
+        out[i, FORCE_X] = w * row[P, j] * np.sqrt(row[X2, j])
+        out[i, FORCE_Z] = -w * row[V, j]

@@ -1,0 +1,330 @@
+"""One pose with more cables than degrees of freedom: geometry, linearised cables, its answer.
+
+Forces are scaled: over weight per length, and over the strongest cable's strength; moments over the
+reach of the attachments.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.kernel.answer import (
+    AT_LIMIT,
+    LOAD_FACTOR,
+    MASSLESS_TENSION,
+    TOLERANCE,
+    Answers,
+    judge,
+    write_cable,
+    write_pose,
+)
+from designer.kernel.calling import Figures, Situation
+from designer.kernel.compiling import element, kernel
+from designer.kernel.table import (
+    CHORD,
+    L_0,
+    L_P,
+    LANE_ROWS,
+    LEVEL,
+    LEVER,
+    LIFT,
+    STRAIGHT,
+    T_P,
+    V_P,
+    X2,
+    D,
+    L,
+    P,
+    T,
+    V,
+    condense,
+    load_of,
+    place_cable,
+    straighten,
+)
+from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
+
+# Rows beside those of the table. The same for all poses: weight over stiffness, weight relative to
+# w, allowable tension over weight, least tension asked for over relative weight. Then the pull of a
+# straight cable at its strength, the unit in which pulls are measured.
+KAPPA, SHARE, STRENGTH, LEAST, UNIT = range(LANE_ROWS, LANE_ROWS + 5)
+# Second slopes of pull and top tension; least tension anywhere in the cable over its weight, with
+# its slopes, where one is asked for; 1 for a cable left to hang, 0 for one that is pulled.
+V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, HANGS = range(UNIT + 1, UNIT + 7)
+# Of the interior point: slack below the strength and above the smallest pull, their multipliers,
+# the inverse of the diagonal of the Hessian, right-hand side, coupling with s; then the steps of
+# the pull, of both slacks and of both multipliers.
+ROOM, HEIGHT, MU_ROOM, MU_HEIGHT, FREEDOM, RHS, COUPLING = range(HANGS + 1, HANGS + 8)
+STEP, D_ROOM, D_HEIGHT, D_MU_ROOM, D_MU_HEIGHT = range(COUPLING + 1, COUPLING + 6)
+# Of a linear programme: scaled pull at the strength, its change with s, lift at no pull.
+TOP, TOP_S, UP = range(D_MU_HEIGHT + 1, D_MU_HEIGHT + 4)
+# Scaled wrench per unit of scaled pull, six rows.
+WRENCH = UP + 1
+_ROWS = WRENCH + 6
+
+OPTIMAL_WITHIN = 1e-6
+"""Largest last step, or residual of the optimality conditions, of an answer."""
+NOTHING = 1e-9
+"""Scaled inverse weight below which straight cables hold nothing."""
+_ALONG = 1e-5
+"""Relative step of the difference that gives second slopes: the root of rounding, about."""
+
+FORCE, SIZE, REACH = range(3)
+
+
+class Pose(NamedTuple):
+    """One pose.
+
+    Parameters
+    ----------
+    cables : array (rows of the table, n)
+        Wrenches of the geometry are those of unscaled forces, their moments over the reach.
+    rows : array (m,)
+        Which components of force and moment, 0 … 5, are balanced.
+    load, rest : array (6,)
+        What the cables have to pull with, over its own size; what is left of the balance.
+    scale : array (3,)
+        Strength of the strongest cable over w [m], size of the load [N], reach of the attachments
+        [m].
+    """
+
+    cables: FloatArray
+    rows: IntArray
+    load: FloatArray
+    rest: FloatArray
+    scale: FloatArray
+
+
+class Ask(NamedTuple):
+    """What is asked: the largest s, with c = c_0 + s c_s and load factors up to f_0 + s f_s.
+
+    Sizing asks for the largest inverse weight c at load factor 1; a given cable for the smallest
+    largest load factor, so s is its negative.
+    """
+
+    c_0: float
+    c_s: float
+    f_0: float
+    f_s: float
+
+
+@kernel
+def new_pose(figures: Figures, rows: IntArray) -> Pose:
+    """Return the arrays of a pose, filled with what is the same for all poses."""
+    cables = np.zeros((_ROWS, figures.kappa.size))
+    scale = np.ones(3)
+    cables[KAPPA] = figures.kappa
+    cables[SHARE] = figures.weights
+    cables[STRENGTH] = figures.strength
+    cables[LEAST] = figures.least_tension / figures.weights
+    scale[FORCE] = np.max(figures.weights * figures.strength)
+    return Pose(cables, rows, np.zeros(6), np.zeros(6), scale)
+
+
+@kernel
+def place(pose: Pose, situation: Situation, at: int) -> None:
+    """Fill geometry and load."""
+    c, load, scale = pose.cables, pose.load, pose.scale
+    reach, size = 0.0, 1e-300
+    c[HANGS] = 0.0
+    for i in range(c.shape[1]):
+        place_cable(c, i, situation, at, i)
+        c[UNIT, i] = c[STRENGTH, i] / c[CHORD, i]
+        reach = max(reach, c[LEVER, i])
+    scale[REACH] = reach = reach if reach > 0.0 else 1.0
+    applied = load_of(situation, at)
+    for k in range(6):
+        load[k] = applied[k]
+    for k in range(3, 6):
+        load[k] /= reach
+        for i in range(c.shape[1]):
+            c[LEVEL + k, i] /= reach
+            c[LIFT + k, i] /= reach
+    for k in range(6):
+        size = max(size, abs(load[k]))
+    for k in range(6):
+        load[k] /= size
+    scale[SIZE] = size
+
+
+@element
+def asked(pose: Pose, inverse_weight: float) -> Ask:
+    """Return what is asked of a placed pose; a negative inverse weight is to be the largest."""
+    if inverse_weight < 0.0:
+        return Ask(0.0, 1.0, 1.0, 0.0)
+    return Ask(inverse_weight * pose.scale[SIZE] / pose.scale[FORCE], 0.0, 0.0, -1.0)
+
+
+@element
+def along(pose: Pose, value: FloatArray, row: int, i: int) -> float:
+    """Return the product of a wrench (m,) with that of a cable in six rows from `row`."""
+    total = 0.0
+    for k in range(value.size):
+        total += value[k] * pose.cables[row + pose.rows[k], i]
+    return total
+
+
+@element
+def make_straight(pose: Pose, carried: float) -> None:
+    """Straight cables, with this share of their weight at the platform (0 or 1/2)."""
+    c = pose.cables
+    for i in range(c.shape[1]):
+        straighten(c, i, carried)
+        c[LOWEST, i] = -carried * abs(c[D, i])
+        c[LOWEST_P, i] = c[CHORD, i]
+
+
+@kernel
+def linearise(pose: Pose) -> None:
+    """Condense each cable's length: pull and top tension as linear functions of the step in p."""
+    c = pose.cables
+    for i in range(c.shape[1]):
+        condense(c, i, c[KAPPA, i])
+        if c[LEAST, i] > 0.0:
+            c[LOWEST, i], c[LOWEST_P, i] = _lowest_tension(
+                c, i, c[P, i], c[L, i] + c[L_0, i], c[L_P, i], c[V, i], c[V_P, i]
+            )
+
+
+@element
+def _lowest_tension(
+    c: FloatArray, i: int, p: float, length: float, length_p: float, v: float, v_p: float
+) -> tuple[float, float]:
+    """Return the least tension anywhere in a cable over its weight, and its slope in the pull.
+
+    Where the cable hangs below both of its ends that is the horizontal force, else the tension at
+    its lower end. It rises with the pull, ever faster: its tangents never promise too much.
+    """
+    up, up_p = (v, v_p) if c[D, i] >= 0.0 else (-length - v, -length_p - v_p)
+    if up < 0.0:
+        up, up_p = 0.0, 0.0
+    tension = np.sqrt(p * p * c[X2, i] + up * up)
+    if not tension > 0.0:
+        return 0.0, c[CHORD, i]
+    return tension, (p * c[X2, i] + up * up_p) / tension
+
+
+@element
+def settled_length(c: FloatArray, i: int, p: float) -> float:
+    """Return the length that closes the cable at this pull.
+
+    Starts from the inextensible cable, and solves the closure by Newton.
+    """
+    theta, kappa = 0.5 / p, c[KAPPA, i]
+    straight = np.sqrt(c[D, i] ** 2 + c[X2, i] * (1.0 + theta * theta * sag_series(theta * theta)))
+    length = straight / (1.0 + kappa * p * straight)
+    for _ in range(3):
+        F, _, F_l, _, _, _, _, _, _ = unit_cable(p, length, c[X2, i], c[D, i], kappa)
+        length -= F / F_l
+    return float(length)
+
+
+@kernel
+def bend(pose: Pose) -> None:
+    """Close each cable at its present pull; first and second slopes along the closure."""
+    c = pose.cables
+    for i in range(c.shape[1]):
+        c[L, i] = settled_length(c, i, c[P, i])
+    linearise(pose)
+    for i in range(c.shape[1]):
+        step = _ALONG * c[P, i]
+        p, length = c[P, i] + step, c[L, i] + step * c[L_P, i]
+        _, F_p, F_l, v, v_p, v_l, _, t_p, t_l = unit_cable(
+            p, length, c[X2, i], c[D, i], c[KAPPA, i]
+        )
+        lp = -F_p / F_l
+        c[V_PP, i] = (v_p + v_l * lp - c[V_P, i]) / step
+        c[T_PP, i] = (t_p + t_l * lp - c[T_P, i]) / step
+        if c[LEAST, i] > 0.0:
+            _, slope = _lowest_tension(c, i, p, length, lp, v, v_p + v_l * lp)
+            c[LOWEST_PP, i] = (slope - c[LOWEST_P, i]) / step
+
+
+@element
+def write_wrenches(pose: Pose) -> None:
+    """Write each cable's scaled wrench per unit of scaled pull, its length following."""
+    c = pose.cables
+    for i in range(c.shape[1]):
+        factor = c[SHARE, i] * c[UNIT, i] / pose.scale[FORCE]
+        for k in pose.rows:
+            c[WRENCH + k, i] = factor * (c[LEVEL + k, i] + c[LIFT + k, i] * c[V_P, i])
+
+
+@element
+def smallest_pull(pose: Pose, i: int, floor: float) -> tuple[float, float]:
+    """Return the smallest scaled pull of a cable, and its rise per scaled c.
+
+    Of the line that touches the least tension in the cable at the present pull.
+    """
+    c, scale = pose.cables, pose.scale
+    if c[LEAST, i] > 0.0:
+        slope = c[LOWEST_P, i] * c[UNIT, i]
+        low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
+        return c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope, low_c
+    return floor / c[UNIT, i], 0.0
+
+
+@kernel
+def _measure(pose: Pose, c: float) -> tuple[float, float, float]:
+    """Return closure error [m], balance error over w [m] and load factor of the state.
+
+    Pull and top tension of every cable are put into its rows. A load factor is infinite where a
+    cable is too slack to be evaluated, stretched through zero length or below its least tension.
+    """
+    cables, rest = pose.cables, pose.rest
+    for k in range(6):
+        rest[k] = -c * pose.scale[SIZE] * pose.load[k]
+    closure, error, overload = 0.0, 0.0, 0.0
+    for i in range(cables.shape[1]):
+        p, length = cables[P, i], cables[L, i]
+        F, _, F_l, v, _, _, t, _, _ = unit_cable(
+            p, length, cables[X2, i], cables[D, i], cables[KAPPA, i]
+        )
+        cables[V, i] = v
+        cables[T, i] = t
+        for k in pose.rows:
+            rest[k] += cables[SHARE, i] * (cables[LEVEL + k, i] * p + cables[LIFT + k, i] * v)
+        # Sums instead of maxima where NaN has to get through.
+        closure = max(closure, abs(F / F_l)) + 0.0 * F
+        lowest, _ = _lowest_tension(cables, i, p, length, 0.0, v, 0.0)
+        held = p >= PULL_FLOOR and t > 0.0 and lowest * AT_LIMIT >= c * cables[LEAST, i]
+        overload = max(overload, t / cables[STRENGTH, i] if held else np.inf)
+    for k in pose.rows:
+        error += abs(rest[k])
+    return closure, error, overload
+
+
+@kernel
+def store(
+    out: Answers, at: int, pose: Pose, c: float, gap: float, straight_c: float, sizing: bool
+) -> int:
+    """Write a pose's answer, NaN unless it is solved; return that, or not converged.
+
+    Parameters
+    ----------
+    c, gap : float
+        Inverse weight [m/N], and how far the state is from optimal.
+    straight_c : float
+        Largest scaled inverse weight of straight cables; none if not above zero.
+    sizing : bool
+        Whether c was sought or given.
+    """
+    cables, scale = pose.cables, pose.scale
+    closure, error, overload = _measure(pose, c)
+    heaviest, shortest, massless = abs(c) * scale[SIZE], np.inf, 0.0
+    for i in range(cables.shape[1]):
+        heaviest = max(heaviest, cables[SHARE, i] * cables[T, i])
+        shortest = min(shortest, cables[L, i])
+        massless = max(massless, cables[STRAIGHT, i])
+    residual = closure / shortest + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
+    verdict = judge(residual, c, overload, sizing)
+    w = write_pose(out, at, verdict, c, closure, error)
+    for i in range(cables.shape[1]):
+        write_cable(out, at, i, cables, i, w)
+    out.poses[at, LOAD_FACTOR] = overload if residual <= TOLERANCE else np.nan
+    to_N = scale[SIZE] / (scale[FORCE] * straight_c) if straight_c > NOTHING else np.nan
+    out.poses[at, MASSLESS_TENSION] = massless * to_N
+    return verdict

@@ -1,0 +1,165 @@
+"""The best tensions of straight cables by convex programmes in CVXPY: the readable reference.
+
+Many poses are one block-diagonal problem. `designer.statics.distribution` is tested against it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Literal
+
+import cvxpy as cp
+import numpy as np
+from scipy.sparse import bsr_array
+
+from designer.arrays import FloatArray
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
+from designer.statics.distribution import (
+    _PROVEN,
+    _RANK,
+    Distribution,
+    _even_residual,
+    _separation,
+    _shaped,
+    _Shares,
+    _shares,
+    _worst,
+)
+
+Objective = Literal["smallest_largest", "least_squares", "centred"]
+"""Smallest largest tension, smallest sum of squares, or nearest to the middle of the range."""
+
+BLOCK = 200
+"""Poses in one problem; building it costs more than solving it."""
+# Of the sum over all poses of a block, so that each of them is good.
+_CLARABEL = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-11}
+
+
+def distribute(
+    robot: Robot,
+    poses: Poses,
+    tension_max_N: float,
+    objective: Objective = "smallest_largest",
+    *,
+    force_N: FloatArray | None = None,
+) -> Distribution:
+    """Return the best tensions between `Robot.tension_min_N` and an allowable tension.
+
+    Parameters
+    ----------
+    robot, poses
+        The robot, with at least as many cables as degrees of freedom, and its poses (...).
+    tension_max_N : float
+        Allowable tension; may be infinite unless the objective is the middle of the range [N].
+    objective : str
+        What to prefer; see `Objective`.
+    force_N : array (..., 3), optional
+        Force on the platform beside its weight, base frame [N].
+
+    Raises
+    ------
+    ValueError
+        If the range is empty, or has no middle although that is the objective.
+    """
+    if not robot.tension_min_N <= tension_max_N:
+        raise ValueError("the smallest tension is above the allowable one")
+    if objective == "centred" and not np.isfinite(tension_max_N):
+        raise ValueError("a range without an upper end has no middle")
+    shares = _shares(robot, poses, tension_max_N, force_N)
+    answers = [
+        _solve_block(_part(shares, slice(at, at + BLOCK)), objective)
+        for at in range(0, len(shares.wrench), BLOCK)
+    ]
+    parts = (np.concatenate(values) for values in zip(*answers, strict=True))
+    return _shaped(poses.shape, shares, *parts)
+
+
+def _part(shares: _Shares, chosen: Any) -> _Shares:
+    return replace(shares, matrix=shares.matrix[chosen], wrench=shares.wrench[chosen])
+
+
+def _solve_block(shares: _Shares, objective: Objective) -> tuple[Any, ...]:
+    """Return verdict, scaled tensions, residual, separating wrench and separation of a block."""
+    count, dof, n = shares.matrix.shape
+    verdict = np.full(count, Verdict.RANK_DEFICIENT, dtype=np.int8)
+    tension = np.full((count, n), np.nan)
+    residual = np.full(count, np.nan)
+    spans = np.linalg.matrix_rank(shares.matrix, tol=_RANK) == dof
+    distance, separating = np.zeros(count), np.full((count, dof), np.nan)
+    if spans.any():
+        distance[spans], separating[spans] = _distance(_part(shares, spans))
+    separation = _separation(shares, separating, upper=shares.high)
+    near = spans & (distance <= _PROVEN)
+    verdict[spans & ~near] = np.where(
+        separation[spans & ~near] > 0.0, Verdict.OUTSIDE_HULL, Verdict.NOT_CONVERGED
+    )
+    if near.any():
+        tension[near], residual[near] = _best(_part(shares, near), objective)
+        proven = residual[near] < _PROVEN
+        verdict[near] = np.where(proven, Verdict.SOLVED, Verdict.NOT_CONVERGED)
+    return verdict, tension, residual, separating, separation
+
+
+def _distance(shares: _Shares) -> tuple[FloatArray, FloatArray]:
+    """Return how far each load is from what the tensions can give, and the direction of it.
+
+    Linear programme: the largest component of A t - w, summed over the poses, which do not touch
+    each other. Its multipliers make the separating wrench.
+    """
+    count, dof, n = shares.matrix.shape
+    t, gap = cp.Variable(count * n), cp.Variable(count)
+    rest = _blocks(shares.matrix) @ t - shares.wrench.ravel()
+    each = _blocks(np.ones((count, dof, 1))) @ gap
+    above, below = rest - each <= 0.0, -rest - each <= 0.0
+    problem = cp.Problem(cp.Minimize(cp.sum(gap)), [above, below, *_range(t, shares)])
+    problem.solve(solver=cp.HIGHS)
+    push = np.asarray(below.dual_value - above.dual_value)
+    return np.asarray(gap.value), push.reshape(count, dof)
+
+
+def _best(shares: _Shares, objective: Objective) -> tuple[FloatArray, FloatArray]:
+    """Return the best tensions of poses that have some, and the residual of optimality."""
+    count, _, n = shares.matrix.shape
+    t, largest = cp.Variable(count * n), cp.Variable(count)
+    balance = _blocks(shares.matrix) @ t - shares.wrench.ravel() == 0.0
+    bounds = _range(t, shares)
+    if objective == "smallest_largest":
+        under = t - _blocks(np.ones((count, n, 1))) @ largest <= 0.0
+        problem = cp.Problem(cp.Minimize(cp.sum(largest)), [balance, under, *bounds])
+        problem.solve(solver=cp.HIGHS)
+    else:
+        middle = 0.5 * (shares.low + shares.high) if objective == "centred" else 0.0
+        problem = cp.Problem(cp.Minimize(0.5 * cp.sum_squares(t - middle)), [balance, *bounds])
+        problem.solve(solver=cp.CLARABEL, **_CLARABEL)
+    tension = np.asarray(t.value).reshape(count, n)
+    multiplier = np.asarray(balance.dual_value).reshape(count, -1)
+    if objective == "smallest_largest":
+        return tension, _even_residual(shares, tension, multiplier)
+    return tension, _square_residual(shares, tension, multiplier, middle)
+
+
+def _range(t: Any, shares: _Shares) -> list[Any]:
+    bounds = [shares.low - t <= 0.0]
+    return [*bounds, t - shares.high <= 0.0] if np.isfinite(shares.high) else bounds
+
+
+def _blocks(matrices: FloatArray) -> Any:
+    """Return matrices (n, rows, columns) as one sparse block-diagonal matrix."""
+    count, rows, columns = matrices.shape
+    places = np.arange(count), np.arange(count + 1)
+    return bsr_array((matrices, *places), shape=(count * rows, count * columns)).tocsc()
+
+
+def _square_residual(
+    shares: _Shares, tension: FloatArray, multiplier: FloatArray, middle: float
+) -> FloatArray:
+    """Return the residual of optimality for the least squares about a tension, pose by pose."""
+    pull = -(tension - middle) - np.einsum("pi,pij->pj", multiplier, shares.matrix)
+    # What remains has to be the multiplier of a bound, and vanish off that bound.
+    slackness = np.where(
+        pull > 0.0,
+        np.minimum(pull, np.abs(shares.high - tension)),
+        np.minimum(-pull, np.abs(tension - shares.low)),
+    )
+    return _worst(shares, tension, slackness)
