@@ -38,16 +38,8 @@ def select(
 ) -> SelectionResult:
     """Choose the best product among the grades that the study allows.
 
-    Parameters
-    ----------
-    robot, workspace, selection
-        The study.
-    grades : sequence of Grade
-        The whole catalogue; ``selection.grades`` narrows it.
-    built : AsBuilt, optional
-        By how much cables on this machine differ from their data sheet.
-    reporter : Reporter, optional
-        Shows progress.
+    ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
+    much cables on this machine differ from their data sheet.
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
     named = selection.grades

@@ -119,15 +119,11 @@ def cable_pairs(robot: Robot) -> list[tuple[int, int]]:
 
 
 def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
-    """Return how much of each cable, from its attachment, is not compared with the hull [m].
+    """Return the end of each cable (n_cables,) that is not compared with the hull [m].
 
     A quarter of the hull's largest extent, and the way out of the hull for an attachment inside
     it. A straight cable that leaves the hull at an angle ψ is then told if the clearance is more
     than sin ψ times that quarter.
-
-    Returns
-    -------
-    array (n_cables,)
     """
     return np.asarray(_OWN_SHARE * hull.extent_m + hull.depth_m(robot.attachments_m))
 

@@ -41,10 +41,7 @@ def survey_stiffness(
 ) -> StiffnessSurvey | None:
     """Return the softest and the stiffest pose; None if no pose is held stably.
 
-    Parameters
-    ----------
-    robot, workspace, cable
-        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
+    The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
     some = workspace.thinned(MOST_SAMPLES)

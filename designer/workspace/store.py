@@ -32,16 +32,9 @@ _COLUMNS = {
 
 
 class SweepFile:
-    """Context manager that appends chunks of a sweep to a NetCDF file.
+    """Context manager that appends chunks of a sweep to a new NetCDF file.
 
-    Parameters
-    ----------
-    path : Path
-        The file to create.
-    n_cables : int
-        Number of cables.
-    attributes : mapping
-        Provenance: text and numbers that are stored with the file.
+    ``attributes`` are provenance: text and numbers that are stored with the file.
     """
 
     def __init__(self, path: Path, n_cables: int, attributes: Mapping[str, Any]) -> None:

@@ -62,14 +62,10 @@ def choose_groups(
     progress: Callable[[], None] = lambda: None,
     most_proposals: int = MOST_PROPOSALS,
 ) -> GroupChoice:
-    """Choose a product for each group.
+    """Choose a product for each group of cables, of which every cable is in exactly one.
 
     Parameters
     ----------
-    robot, workspace, products
-        The study, the robot as built, and what is sold.
-    groups : sequence of CableGroup
-        Every cable is in exactly one of them.
     most_distinct : int, optional
         How many different products there may be; one for each group if left out.
     objective : str
@@ -78,8 +74,6 @@ def choose_groups(
         The best product for all cables together: where the search starts from.
     progress : callable
         Called after each proposal.
-    most_proposals : int
-        Where to stop.
     """
     by_price = objective == "cost"
     products = priced(products) if by_price else tuple(products)
@@ -120,18 +114,8 @@ def choose_groups_of(
 ) -> GroupChoice:
     """Choose a product for each group of a study, among the grades that it allows.
 
-    Parameters
-    ----------
-    workspace, selection
-        The study; cost is minimised where it is the first objective, mass otherwise.
-    grades : sequence of Grade
-        The whole catalogue; ``selection.grades`` narrows it.
-    built : AsBuilt
-        The robot as built, and by how much its cables differ from their data sheet.
-    single : Candidate or None
-        The best product for all cables.
-    reporter : Reporter
-        Shows progress.
+    Cost is minimised where it is the first objective, mass otherwise; ``selection.grades`` narrows
+    the catalogue; ``single`` is the best product for all cables.
     """
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
     products = products_of(selection, allowed, built)
