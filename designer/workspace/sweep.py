@@ -25,7 +25,7 @@ from designer.workspace.demand import diameter_demand, is_left_out, massless_dem
 from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.refine import Pool, refine, refine_over_branches
 from designer.workspace.result import Census, Extreme, WorkspaceMap
-from designer.workspace.store import SweepFile
+from designer.workspace.store import sweep_file
 
 
 def map_workspace(
@@ -50,12 +50,12 @@ def map_workspace(
         Called after each chunk.
     """
     gathered = _Gathered(workspace)
-    with nullcontext() if file is None else SweepFile(file, robot.n_cables, attributes) as store:
+    kept = sweep_file(file, robot.n_cables, attributes) if file else nullcontext(lambda *_: None)
+    with kept as store:
         for positions in workspace.positions_m():
             some, sizing = size_worst(robot, workspace, positions, material)
             gathered.add(some, sizing)
-            if store is not None:
-                store.append(some, sizing)
+            store(some, sizing)
             progress(len(positions))
     return _summarise(robot, workspace, material, gathered, file)
 
