@@ -32,8 +32,7 @@ from designer.selection.groups.result import (
     Proof,
     Proposal,
 )
-from designer.selection.groups.trials import Refutation, Trials
-from designer.selection.groups.verify import GroupVerification, verify_groups
+from designer.selection.groups.trials import GroupVerification, Refutation, Trials, verify_groups
 from designer.selection.products import Product, is_allowed, priced, products_of, undominated
 from designer.study import CableGroup, Selection, Workspace
 
