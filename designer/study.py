@@ -35,13 +35,10 @@ class Workspace:
     Parameters
     ----------
     region : Region
-        Prism or list of points, world frame.
-    samples : int
-        Number of poses to try (a list of points is taken whole).
-    sampling : str
-        ``low_discrepancy`` (Sobol) or ``grid``.
-    seed : int
-        Seed of the Sobol scrambling.
+        Prism, rectangle or list of points, world frame.
+    samples, sampling, seed
+        Number of poses to try (a list of points is taken whole), ``low_discrepancy`` (Sobol) or in
+        a ``grid``, and seed of the Sobol scrambling.
     hangs_below : str
         ``include`` or ``exclude`` poses in which a cable hangs below the platform.
     clearance_m : float or None
@@ -236,48 +233,27 @@ class LogColumn:
 
 @dataclass(frozen=True, slots=True)
 class Measurements:
-    """Data measured on the built machine, and what is known about it.
+    """Data measured on the built machine, and what is known about it."""
 
-    Parameters
-    ----------
-    file : Path
-        Table of measured poses, lengths and tensions.
-    linear_density_kg_per_m : float
-        Mass per length of the cable on the machine [kg/m].
-    axial_stiffness_N : float
-        EA of the cable on the machine [N].
-    columns : tuple of LogColumn
-        Columns of the file that are not as our names and units say.
-    settled : bool
-        Whether the rows are poses at rest; False for samples of a slow motion.
-    unknown : tuple of str
-        Ids of what is fitted from the start and not counted as a finding.
-    length_noise_m : float or None
-        Standard deviation of a measured length [m]; None where not given.
-    tension_noise_N : float or None
-        Standard deviation of a measured tension [N]; None where not given.
-    diameter_m : float or None
-        Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
-    minimum_breaking_load_N : float or None
-        Of the cable on the machine [N]; None where not given.
-    estimated_noise : tuple of str
-        Readings whose noise a diagnosis has estimated; the next one estimates it anew.
-    search_time_s : float
-        What the search for effects may take [s].
-    """
-
-    file: Path
-    linear_density_kg_per_m: float
-    axial_stiffness_N: float
+    file: Path  # Table of measured poses, lengths and tensions
+    linear_density_kg_per_m: float  # Mass per length of the cable on the machine [kg/m]
+    axial_stiffness_N: float  # EA of the cable on the machine [N]
+    # Columns of the file that are not as our names and units say
     columns: tuple[LogColumn, ...] = ()
-    settled: bool = True
+    settled: bool = True  # Whether the rows are poses at rest; False for samples of a slow motion
+    # Ids of what is fitted from the start and not counted as a finding
     unknown: tuple[str, ...] = ()
+    # Standard deviation of a measured length [m]; None where not given
     length_noise_m: float | None = None
+    # Standard deviation of a measured tension [N]; None where not given
     tension_noise_N: float | None = None
+    # Diameter of the cable, for effects of plugins that ask for it, and for bending [m]
     diameter_m: float | None = None
+    # Of the cable on the machine [N]; None where not given
     minimum_breaking_load_N: float | None = None
+    # Readings whose noise a diagnosis has estimated; the next one estimates it anew
     estimated_noise: tuple[Reading, ...] = ()
-    search_time_s: float = 600.0
+    search_time_s: float = 600.0  # What the search for effects may take [s]
 
     def __post_init__(self) -> None:
         for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):
@@ -290,20 +266,11 @@ class Measurements:
 
 @dataclass(frozen=True, slots=True)
 class DeclaredEffect:
-    """An effect that the model of this machine has.
+    """An effect that the model of this machine has."""
 
-    Parameters
-    ----------
-    id : str
-        As in `known_effects` of the study.
-    cable : int or None
-        The one cable that it concerns, from 1; None for all.
-    parameters : mapping of str to float
-        All of its parameters, in the units that their names end in.
-    """
-
-    id: str
-    cable: int | None
+    id: str  # As in `known_effects` of the study
+    cable: int | None  # The one cable that it concerns, from 1; None for all
+    # All of its parameters, in the units that their names end in
     parameters: Mapping[str, float] = field(hash=False)
 
     def __post_init__(self) -> None:
@@ -385,12 +352,7 @@ def require_enough_cables(study: Study) -> None:
 def declared_settings(study: Study, machine: Machine | None = None) -> tuple[Setting, ...]:
     """Return the declared effects with their values, in the order in which they act.
 
-    Parameters
-    ----------
-    study : Study
-        With its effects.
-    machine : Machine, optional
-        What to make them for; the study's robot with a cable of its family, if left out.
+    For a machine; the study's robot with a cable of its family, if left out.
 
     Raises
     ------
@@ -423,12 +385,7 @@ def declared_machine(study: Study) -> Machine:
 def as_built_by(study: Study, section_m: float | None = None) -> AsBuilt:
     """Return the robot and its cables as the declared effects have them.
 
-    Parameters
-    ----------
-    study : Study
-        With its effects.
-    section_m : float, optional
-        Diameter at which they are applied to a family that does not stay one [m].
+    ``section_m`` is the diameter at which they are applied to a family that does not stay one [m].
     """
     built = built_with(declared_machine(study), lambda machine: declared_settings(study, machine))
     return replace(built, section_m=section_m)

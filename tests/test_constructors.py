@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,14 @@ from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
+from designer.study import (
+    CableGroup,
+    DeclaredEffect,
+    Measurements,
+    Selection,
+    Study,
+    Workspace,
+)
 
 EXITS = frozen_array([[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9]])
 BODY = frozen_array([[-1, -1, 0], [1, -1, 0], [1, 1, 1], [-1, 1, 0], [0, -1, 1], [0, 1, 1]])
@@ -24,6 +32,8 @@ ROPE = Cable(0.01, 0.4, 6e6, 1e4)
 STEEL = Material(7800.0, 200e9, 180e6)
 BOX = Prism.box((0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
 ONE = Poses.at([4.0, 4.0, 3.0])
+SOME = Workspace(BOX, samples=8)
+HALVES = (CableGroup("front", (1, 2, 3)), CableGroup("back", (4, 5, 6, 7)))
 nan, inf = np.nan, np.inf
 
 WRONG = {
@@ -69,6 +79,45 @@ WRONG = {
     "a sampling": (lambda: Workspace(BOX, sampling="random"), "low_discrepancy, grid"),
     "a policy": (lambda: Workspace(BOX, hangs_below="perhaps"), "include, exclude"),
     "a clearance": (lambda: Workspace(BOX, clearance_m=nan), "clearance_m"),
+    "a box upside down": (lambda: Prism.box((1.0, 0.0), (0.0, 1.0), (0.0, 1.0)), "lowest x"),
+    "a corner nowhere": (lambda: Prism.over(BOX.polygon_m * nan, 0.0, (0.0, 1.0)), "finite"),
+    "an inset": (lambda: Prism.over(BOX.polygon_m, nan, (0.0, 1.0)), "inset_m"),
+    "a line in space": (lambda: Rectangle.over(np.zeros(3), 0.0, (0.0, 1.0)), r"\(n, 2\)"),
+    "a range of two": (lambda: Orientations.within([0.0, 0.0], [1.0, 1.0]), r"low_rad .*\(3\)"),
+    "a range of nothing": (lambda: Orientations.within([0.0] * 3, [0.0] * 3), "above it"),
+    "a range from above": (lambda: Orientations.within([0.0] * 3, [1.0, -1.0, 0.0]), "below"),
+    "a floor": (lambda: Workspace(BOX, floor_m=inf), "floor_m"),
+    "a safety factor": (lambda: Selection(safety_factor=0.5), "safety_factor .*below 1"),
+    "an efficiency": (lambda: Selection(termination_efficiency=1.2), "not be above 1"),
+    "a sheave": (lambda: Selection(sheave_diameter_m=0.0), "sheave_diameter_m"),
+    "an objective": (lambda: Selection(objectives=("beauty",)), "'beauty' is none of mass"),
+    "an objective twice": (lambda: Selection(objectives=("mass", "mass")), "given twice"),
+    "no objective": (lambda: Selection(objectives=()), "at least"),
+    "one grade": (lambda: Selection(grades="rope-a"), "several ids"),
+    "no products": (lambda: Selection(groups=HALVES, max_distinct_products=0), "max_distinct"),
+    "a limit on one": (lambda: Selection(max_distinct_products=1), "no meaning"),
+    "an empty group": (lambda: CableGroup("back", ()), "'back' has no cable"),
+    "a cable before the first": (lambda: CableGroup("back", (0,)), "not be below 1"),
+    "a cable in two groups": (
+        lambda: Selection(groups=(CableGroup("a", (1, 2)), CableGroup("b", (2,)))),
+        "cable 2 is in group 'a'",
+    ),
+    "a cable too many": (
+        lambda: Study("s", ROBOT, STEEL, workspace=SOME, selection=Selection(groups=HALVES)),
+        "wrong is 7",
+    ),
+    "many poses": (
+        lambda: Study("s", ROBOT, STEEL, pose=Poses(np.zeros((2, 3)), np.eye(3))),
+        "one pose",
+    ),
+    "a choice for nothing": (
+        lambda: Study("s", ROBOT, STEEL, selection=Selection()),
+        "needs the workspace",
+    ),
+    "a measured cable": (lambda: Measurements(Path("rows.csv"), -1.0, 1e6), "linear_density"),
+    "a noise": (lambda: Measurements(Path("a.csv"), 1.0, 1e6, length_noise_m=0.0), "length_noise"),
+    "a cable of an effect": (lambda: DeclaredEffect("creep", 0, {}), "cable"),
+    "a parameter": (lambda: DeclaredEffect("creep", None, {"strain": nan}), "strain"),
     "two cables for six": (lambda: solve_sagging(ROBOT, ONE, Cables((ROPE,) * 2)), "2 cables"),
 }
 

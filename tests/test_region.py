@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.model.region import PointList, Prism
+from designer.model.region import PointList, Prism, Rectangle
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
@@ -66,3 +66,40 @@ def test_nearest_is_inside_and_no_inside_point_is_nearer() -> None:
 def test_point_list_bounds() -> None:
     points = PointList(frozen_array([[0, 1, 2], [3, -1, 5]]))
     assert points.bounds_m.tolist() == [[0, -1, 2], [3, 1, 5]]
+
+
+REGIONS = [
+    Prism.over(TRIANGLE, 20.0, (-200.0, -40.0)),
+    Rectangle.over([[0, 0], [3, 4]], 0.5, (1.0, 3.0)),
+    PointList(np.random.default_rng(0).uniform(size=(300, 3))),
+]
+
+
+@pytest.mark.parametrize("region", REGIONS, ids=lambda region: type(region).__name__)
+@pytest.mark.parametrize("sampling", ["low_discrepancy", "grid"])
+def test_what_a_region_hands_out_lies_in_it(region, sampling) -> None:
+    rng = np.random.default_rng(1)
+    sampled = np.concatenate(list(region.samples_m(500, sampling, 0)))
+    border = region.border()
+    on_border = np.concatenate([border.landmarks_m(), border.samples_m(rng, 4, 8)])
+    for points in (sampled, region.inside_m(rng, 50), on_border):
+        assert points.shape[1] == 3
+        assert region.contains(region.nearest(points)).all()
+        assert region.nearest(points) == pytest.approx(points, abs=1e-9)
+    assert (len(sampled) == 300) == region.is_discrete or sampling == "grid"
+
+
+def test_a_region_measures_and_describes_itself() -> None:
+    prism, rectangle, points = REGIONS
+    assert [(name, unit) for name, _, unit in prism.sizes] == [
+        ("Base area", "m²"),
+        ("Volume", "m³"),
+    ]
+    assert prism.volume_m3 == pytest.approx(prism.area_m2 * 160)
+    assert rectangle.sizes == (("Area", pytest.approx(8.0), "m²"),)
+    assert rectangle.along == pytest.approx([0.6, 0.8])
+    assert rectangle.volume_m3 is points.volume_m3 is None
+    words = [region.words(str, "{} {}s".format) for region in REGIONS]
+    assert words[0] == "upright prism over 3 corners"
+    assert words[1].startswith("upright rectangle from [")
+    assert words[2] == "a list of 300 points"

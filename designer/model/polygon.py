@@ -69,10 +69,8 @@ def nearest_on_edges_m(polygon_m: FloatArray, points_m: FloatArray) -> FloatArra
 def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
     """Return points of a flat convex polygon (n_corners, 2 or 3), evenly spread over its area [m].
 
-    Parameters
-    ----------
-    share : array (n, 3)
-        Between 0 and 1: which triangle of the fan about the first corner, and where in it.
+    ``share`` (n, 3) tells, between 0 and 1, which triangle of the fan about the first corner, and
+    where in it.
     """
     first, second, third = corners_m[0], corners_m[1:-1], corners_m[2:]
     u, v = second - first, third - first

@@ -73,13 +73,7 @@ class Verdict(IntEnum):
 def hanging_cables(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
     """Tell which cables (..., n_cables) come from above and are lowest below the platform end.
 
-    A cable that comes from below pulls the platform down by design and does not count.
-
-    Parameters
-    ----------
-    force_z_N : array (..., n_cables)
-        Vertical force on each cable at the platform; above zero, the platform holds the cable up.
-    drop_m : array (..., n_cables)
-        From exit point to attachment point [m].
+    Where the platform holds the cable up, force above zero, and the drop to it is positive. A cable
+    that comes from below pulls the platform down by design and does not count.
     """
     return np.asarray((force_z_N > 0.0) & (drop_m >= 0.0))

@@ -16,13 +16,10 @@ from designer.sizing.newton import size_poses
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import Worst, worst_over_samples
-from designer.workspace.section import thinnest
+from designer.workspace.section import FamilyAt, thinnest
 
 _MOST_TURNS = 20
 _STILL = 1e-7
-
-_Family = Callable[[float], Material]
-"""From a diameter [m] to the family that is as strong as its member of that diameter."""
 
 
 def continuous_optimum(
@@ -62,7 +59,7 @@ def _member(
     grade: Grade,
     allowance: Allowance,
     built: AsBuilt,
-    family_at: _Family,
+    family_at: FamilyAt,
     worst_with: Callable[[Material], Worst],
 ) -> tuple[Material, float]:
     diameter = grade.sizes[0].diameter_m

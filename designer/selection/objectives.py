@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from designer.model.cable import Cable
-from designer.model.robot import Robot
-from designer.study import Objective, Workspace
-from designer.workspace.refine import LIGHT, Demand, refine_over_branches
-from designer.workspace.stiffness import displacement_demand
-
-STIFFNESS_POSES = 500
-"""Samples that the smallest stiffness is taken from before the search between them."""
+from designer.study import Objective
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,28 +50,3 @@ class Figures:
         if np.isnan(value):
             return np.inf
         return -value if MEANINGS[objective].more_is_better else value
-
-
-def smallest_stiffness_N_per_m(
-    robot: Robot, workspace: Workspace, cable: Cable, *, searched: bool
-) -> float:
-    """Return the smallest translational stiffness over the workspace [N/m].
-
-    The smallest force over displacement in any direction, the platform free to turn, at fixed
-    unstrained lengths, with sag; zero where the equilibrium is not stable, NaN where no pose
-    counts. Searched between the samples as well, or taken from `STIFFNESS_POSES` of them. See
-    `designer.statics.stiffness`.
-    """
-    demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = workspace.thinned(STIFFNESS_POSES)
-
-    def softness_with(**how: bool) -> Demand:
-        demand = demand_with(**how)
-        return lambda places: demand(places)[:, 0]
-
-    if searched:
-        (worst,) = refine_over_branches(workspace.space, softness_with, some, LIGHT)
-        softest = worst.demand
-    else:
-        softest = float(softness_with()(some).max(initial=-np.inf))
-    return float("nan") if np.isneginf(softest) else 1.0 / softest

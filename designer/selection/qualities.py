@@ -71,19 +71,7 @@ def qualities_of(
     built: AsBuilt,
     material: Material,
 ) -> Qualities | None:
-    """Survey the workspace with the cables of the design; None where no cable holds everywhere.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        Region, samples, clearance.
-    found, selection, groups
-        What sizing and selection came to.
-    built : AsBuilt
-        The robot as built.
-    material : Material
-        The configured family.
-    """
+    """Survey the workspace with the cables of the design; None where no cable holds everywhere."""
     cable = design_cable(found, selection, groups, built.material(material))
     if cable is None:
         return None

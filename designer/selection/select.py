@@ -17,12 +17,13 @@ from designer.progress import Reporter, Silent
 from designer.selection.compare import Entry, best_of, settle, standing_of
 from designer.selection.continuous import continuous_optimum
 from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS, Figures, smallest_stiffness_N_per_m
+from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.usable import Usable, usable
 from designer.selection.verify import Verification, refined, verify_sizes
 from designer.study import Objective, Selection, Workspace
+from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 _SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
 
@@ -38,16 +39,8 @@ def select(
 ) -> SelectionResult:
     """Choose the best product among the grades that the study allows.
 
-    Parameters
-    ----------
-    robot, workspace, selection
-        The study.
-    grades : sequence of Grade
-        The whole catalogue; ``selection.grades`` narrows it.
-    built : AsBuilt, optional
-        By how much cables on this machine differ from their data sheet.
-    reporter : Reporter, optional
-        Shows progress.
+    ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
+    much cables on this machine differ from their data sheet.
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
     named = selection.grades

@@ -62,10 +62,17 @@ def usable(
     A position is served where the size holds it in every orientation that the study asks for. One
     that the study leaves out because a cable hangs below the platform is not served.
     """
+
+    def serves(cable: Cable, some: FloatArray) -> BoolArray:
+        statics = solve_sagging(robot, Poses.at(some), cable)
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))
+
     samples = 0
     served, lost = np.zeros((2, len(cables)))
     for some in workspace.places():
-        each = np.stack([_serves(robot, workspace, cable, some) for _, cable in cables])
+        each = np.stack([serves(cable, some) for _, cable in cables])
         at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)
@@ -80,10 +87,3 @@ def usable(
             )
         ),
     )
-
-
-def _serves(robot: Robot, workspace: Workspace, cable: Cable, some: FloatArray) -> BoolArray:
-    statics = solve_sagging(robot, Poses.at(some), cable)
-    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))

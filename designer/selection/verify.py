@@ -125,20 +125,12 @@ def verify_sizes(
 ) -> list[Sampled]:
     """Solve every sample, and the landmarks, with every cable in one pass, with its own figures.
 
-    The landmarks of the border are not among the samples that are counted.
+    The landmarks of the border are not among the samples that are counted. Memory does not grow
+    with the samples. ``progress`` is called with the number of samples done.
 
-    Memory does not grow with the samples.
-
-    Parameters
-    ----------
-    robot, workspace, cables
-        The problem; cables in any order.
-    gives_up : bool
-        Whether a cable is left alone after the first chunk of samples with one that it cannot
-        hold, which settles that it does not serve the workspace. Of a robot that is slow to solve
-        also after the first chunk in which it goes beyond its allowable tension.
-    progress : callable
-        Called with the number of samples done.
+    With ``gives_up``, a cable is left alone after the first chunk of samples with one that it
+    cannot hold, which settles that it does not serve the workspace; of a robot that is slow to
+    solve also after the first chunk in which it goes beyond its allowable tension.
     """
     # The heavy ones first: slack cables are the harder, and start best from slack ones.
     order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)

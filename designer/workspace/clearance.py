@@ -11,9 +11,10 @@ platform's hull but for its last piece, which is meant to be near: see `cable_ma
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -46,34 +47,19 @@ class Clearance:
     # (...): The true distance is smaller than `distance_m` by no more than this [m]
     error_m: FloatArray
 
-    @classmethod
-    def nothing(cls, count: int) -> Clearance:
-        """Return the result of poses (count,) in which nothing is compared."""
-        return cls(
-            np.full(count, np.nan),
-            np.full((count, 2), PLATFORM),
-            np.full((count, 3), np.nan),
-            np.full(count, np.nan),
-        )
-
-    def reshaped(self, shape: tuple[int, ...]) -> Clearance:
-        """Return the same over other leading axes."""
-        return Clearance(
-            self.distance_m.reshape(shape),
-            self.pair.reshape(*shape, 2),
-            self.place_m.reshape(*shape, 3),
-            self.error_m.reshape(shape),
-        )
+    def each(self) -> Iterator[Any]:
+        """Yield the four arrays."""
+        return (getattr(self, one.name) for one in fields(self))
 
     def nearer(self, other: Clearance) -> Clearance:
         """Return in each pose the one of two whose distance is smaller."""
-        ours = ~(other.distance_m < np.nan_to_num(self.distance_m, nan=np.inf))
-        return Clearance(
-            np.where(ours, self.distance_m, other.distance_m),
-            np.where(ours[..., None], self.pair, other.pair),
-            np.where(ours[..., None], self.place_m, other.place_m),
-            np.where(ours, self.error_m, other.error_m),
-        )
+        theirs = other.distance_m < np.nan_to_num(self.distance_m, nan=np.inf)
+
+        def smaller(mine: Any, its: Any) -> Any:
+            apart = theirs.reshape(theirs.shape + (1,) * (mine.ndim - theirs.ndim))
+            return np.where(apart, its, mine)
+
+        return Clearance(*map(smaller, self.each(), other.each()))
 
 
 def clearance_among_cables(statics: Statics) -> Clearance:
@@ -91,17 +77,27 @@ def smallest_clearance(statics: Statics) -> Clearance:
     return clearance_among_cables(statics).nearer(clearance_to_platform(statics))
 
 
-def _in_chunks(statics: Statics, near: Callable[[Statics, Curves], _Near | None]) -> Clearance:
+def _in_chunks(
+    statics: Statics, near: Callable[[Statics, Curves], tuple[IntArray, Clearance] | None]
+) -> Clearance:
+    """Enter the smallest distance of each pose, of all that may be it in some of the poses."""
     shape = statics.verdict.shape
-    found = Clearance.nothing(int(np.prod(shape, dtype=np.int64)))
+    n = int(np.prod(shape, dtype=np.int64))
+    none = np.full(n, np.nan), np.full((n, 2), PLATFORM), np.full((n, 3), np.nan)
+    found = Clearance(*none, np.full(n, np.nan))
     solved = np.flatnonzero(statics.is_solved)
     for at in range(0, len(solved), _CHUNK):
         rows = solved[at : at + _CHUNK]
         some = _some(statics, rows)
         part = near(some, Curves.of(some))
-        if part is not None:
-            _fill(found, rows, part, statics.robot)
-    return found.reshaped(shape)
+        if part is None:
+            break
+        row, tried = part
+        # In descending order the last entry of each pose, its smallest, is what stays.
+        order = np.argsort(-tried.distance_m, kind="stable")
+        for all_of, values in zip(found.each(), tried.each(), strict=True):
+            all_of[rows[row[order]]] = values[order]
+    return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in found.each()))
 
 
 def cable_pairs(robot: Robot) -> list[tuple[int, int]]:
@@ -119,15 +115,11 @@ def cable_pairs(robot: Robot) -> list[tuple[int, int]]:
 
 
 def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
-    """Return how much of each cable, from its attachment, is not compared with the hull [m].
+    """Return the end of each cable (n_cables,) that is not compared with the hull [m].
 
     A quarter of the hull's largest extent, and the way out of the hull for an attachment inside
     it. A straight cable that leaves the hull at an angle ψ is then told if the clearance is more
     than sin ψ times that quarter.
-
-    Returns
-    -------
-    array (n_cables,)
     """
     return np.asarray(_OWN_SHARE * hull.extent_m + hull.depth_m(robot.attachments_m))
 
@@ -154,36 +146,14 @@ def _some(statics: Statics, rows: IntArray) -> Statics:
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Near:
-    """Candidates for the smallest distance: a pose, a pair, a distance, a place, a bound."""
-
-    row: IntArray
-    pair: IntArray
-    distance_m: FloatArray
-    place_m: FloatArray
-    error_m: FloatArray
-
-
-def _fill(found: Clearance, rows: IntArray, part: _Near, robot: Robot) -> None:
-    """Enter the smallest distance of each pose into the result."""
-    # In descending order the last entry of each pose, its smallest, is what stays.
-    order = np.argsort(-part.distance_m, kind="stable")
-    row = rows[part.row[order]]
-    found.distance_m[row] = part.distance_m[order]
-    found.pair[row] = part.pair[order]
-    found.place_m[row] = part.place_m[order] @ robot.upright
-    found.error_m[row] = part.error_m[order]
-
-
-def _among_cables(statics: Statics, curves: Curves) -> _Near | None:
+def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance] | None:
     robot = statics.robot
     pairs = np.array(cable_pairs(robot), dtype=np.int64).reshape(-1, 2)
     if len(pairs) == 0:
         return None
     n, count = robot.n_cables, len(statics.verdict)
-    everything = np.arange(count * n)
-    coarse = _whole(curves, everything, _COARSE)
+    whole = np.zeros(count * n), np.ones(count * n)
+    coarse = curves.polylines(np.arange(count * n), *whole, _COARSE)
     row, kind = _candidates(coarse, n, pairs)
     first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
     distance, middle, at = _between(_pick(coarse, first), _pick(coarse, second))
@@ -195,7 +165,7 @@ def _among_cables(statics: Statics, curves: Curves) -> _Near | None:
             for which, piece, index in zip((first, second), pieces, at, strict=True)
         ]
         distance, middle, at = _between(*pieces)
-    return _Near(row, pairs[kind], distance, middle, error)
+    return row, Clearance(distance, pairs[kind], middle @ robot.upright, error)
 
 
 def _candidates(coarse: Polylines, n: int, pairs: IntArray) -> tuple[IntArray, IntArray]:
@@ -221,7 +191,7 @@ def _candidates(coarse: Polylines, n: int, pairs: IntArray) -> tuple[IntArray, I
     return row, kind
 
 
-def _to_hull(statics: Statics, curves: Curves) -> _Near | None:
+def _to_hull(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance] | None:
     robot = statics.robot
     hull = platform_hull(robot)
     if hull is None:
@@ -242,7 +212,7 @@ def _to_hull(statics: Statics, curves: Curves) -> _Near | None:
         low, high = _around(piece, nearest)
     world = np.einsum("nb,nkb->nk", place, poses.rotation[row]) + poses.position_m[row]
     pair = np.stack([which % n, np.full(len(which), PLATFORM)], axis=-1)
-    return _Near(row, pair, distance, world, error)
+    return row, Clearance(distance, pair, world @ robot.upright, error)
 
 
 def _in_body(points_m: FloatArray, poses: Poses, row: IntArray) -> FloatArray:
@@ -311,10 +281,6 @@ def _around(piece: Polylines, at: IntArray) -> tuple[FloatArray, FloatArray]:
     rows = np.arange(len(at))
     last = piece.share.shape[1] - 1
     return piece.share[rows, np.maximum(at - 1, 0)], piece.share[rows, np.minimum(at + 2, last)]
-
-
-def _whole(curves: Curves, which: IntArray, segments: int) -> Polylines:
-    return curves.polylines(which, np.zeros(len(which)), np.ones(len(which)), segments)
 
 
 def _pick(lines: Polylines, which: IntArray) -> Polylines:

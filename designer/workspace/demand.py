@@ -30,12 +30,7 @@ def size_worst(
 ) -> tuple[FloatArray, Sizing]:
     """Size positions (n, 3), each in the orientation that asks for the most there.
 
-    Returns
-    -------
-    places : array (n, n_coordinates)
-        The positions in that orientation [m, rad].
-    sizing : Sizing
-        What is needed there.
+    The places (n, n_coordinates) in that orientation [m, rad], and what is needed there.
     """
     space = workspace.space
     some = space.places(positions_m)

@@ -57,18 +57,9 @@ def look_at(
     counts: BoolArray,
     floor_m: float | None,
 ) -> HangingCables:
-    """Return what was found before with these samples added.
+    """Return what was found before with these samples (n, n_coordinates) added, if they count.
 
-    Parameters
-    ----------
-    some : array (n, n_coordinates)
-        The samples, as places.
-    statics : Statics
-        Their cables.
-    counts : array (n,)
-        Which of them count.
-    floor_m : float or None
-        Height that no cable may hang below, upright frame [m].
+    No cable may hang below ``floor_m``, upright frame [m].
     """
     long = _add(found.long, some, statics.length_over_chord, counts, LONG, sign=1.0)
     below = found.below_floor

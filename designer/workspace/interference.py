@@ -74,15 +74,7 @@ class Interference:
 def survey(
     robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
 ) -> Interference:
-    """Look for the smallest clearances in a workspace: samples first, then between them.
-
-    Parameters
-    ----------
-    robot, workspace, cable
-        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
-    clearance_m : float
-        What is asked for [m].
-    """
+    """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
 
     some = workspace.thinned(MOST_SAMPLES)
     statics = solve_sagging(robot, Poses.at(some), cable)
@@ -99,7 +91,15 @@ def survey(
         if np.isnan(sampled.distance_m).all():
             return None
         (worst,) = refine_over_branches(workspace.space, nearness_with, some, LIGHT)
-        return _nearest(worst.place, clearance(worst.place[None]))
+        found = clearance(worst.place[None])
+        first, second = (int(number) for number in found.pair[0])
+        return Nearest(
+            distance_m=float(found.distance_m[0]),
+            error_m=float(found.error_m[0]),
+            pair=(first, second),
+            place=worst.place,
+            point_m=found.place_m[0],
+        )
 
     return Interference(
         clearance_m=clearance_m,
@@ -107,16 +107,4 @@ def survey(
         violating=int((cables.nearer(platform).distance_m < clearance_m).sum()),
         among_cables=nearest(clearance_among_cables, cables),
         to_platform=nearest(clearance_to_platform, platform),
-    )
-
-
-def _nearest(place: FloatArray, found: Clearance) -> Nearest:
-    """Return what is nearest in the one pose of a batch."""
-    first, second = (int(number) for number in found.pair[0])
-    return Nearest(
-        distance_m=float(found.distance_m[0]),
-        error_m=float(found.error_m[0]),
-        pair=(first, second),
-        place=place,
-        point_m=found.place_m[0],
     )

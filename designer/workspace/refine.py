@@ -78,23 +78,15 @@ LIGHT = Effort(
 def refine(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
-    """Return the largest of each of several demands that one computation yields.
+    """Return the largest of each of several demands (n, n_extremes) that one computation yields.
 
     It needs no derivative, since demands have kinks wherever another cable becomes the most loaded
     one. Orientations out of a range are searched together with the positions; of a list of
-    orientations each start keeps its own. The result is the largest that was found; that there is
-    none larger is not proved. Ends at the first place where any of the demands is infinite.
+    orientations each start keeps its own. Of a list of points every one is tried, since there is
+    nothing between. The result is the largest that was found; that there is none larger is not
+    proved. Ends at the first place where any of the demands is infinite.
 
-    Parameters
-    ----------
-    space : Space
-        Where to search; of a list of points every one is tried, since there is nothing between.
-    demand : callable
-        What is to be maximised, (n, n_extremes).
-    starts : array (n, n_coordinates)
-        Samples of the space that ask for much, such as the `Pool.places` of a sweep.
-    effort : Effort, optional
-        How hard to search.
+    ``starts`` (n, n_coordinates) are samples of the space that ask for much, such as `Pool.places`.
     """
     return _Search(space, demand, effort or Effort()).run(starts)
 
@@ -110,14 +102,8 @@ def refine_over_branches(
     To look for better branches takes a hundred times as long. Where it changes none of the starts,
     the search does without, and its results are computed again with it: a better branch asks for
     less, so that a largest diameter or tension stands if it stands there. If anything has changed,
-    the whole search is made again with it.
-
-    Parameters
-    ----------
-    demand_with : callable
-        Takes ``seeks_better``, whether to look for better branches, and returns the demand.
-    space, starts, effort
-        As for `refine`.
+    the whole search is made again with it. ``demand_with`` takes ``seeks_better``, whether to look
+    for them, and returns the demand.
     """
     plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
 

@@ -28,7 +28,8 @@ from designer.workspace.sweep import map_workspace
 
 FamilyAt = Callable[[float], Material]
 """From a diameter [m] to the family whose member of that diameter is right."""
-_DIAMETERS_M = np.geomspace(1e-4, 1.0, 81)
+_THICKEST_M = 1.0
+_DIAMETERS_M = np.geomspace(1e-4, _THICKEST_M, 81)
 """Where to look for the first section that serves itself; the next one is 12 % thicker."""
 _STILL = 1e-9
 _MOST_TURNS = 20
@@ -56,18 +57,9 @@ def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
 def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], Worst]) -> float:
     """Return the thinnest diameter that serves all poses with its own figures [m].
 
-    The worst pose at one section tells the next section, until no pose asks for more. NaN where
-    a pose cannot be served.
-
-    Parameters
-    ----------
-    robot : Robot
-        As built.
-    family_at : callable
-        See `FamilyAt`.
-    worst_of : callable
-        Returns the pose that needs the thickest member of a family, and that diameter [m], inf
-        where no member serves it.
+    The worst pose at one section tells the next section, until no pose asks for more. NaN where a
+    pose cannot be served. ``worst_of`` returns the pose that needs the thickest member of a family,
+    and that diameter [m], inf where no member serves it.
 
     Raises
     ------
@@ -98,7 +90,8 @@ def section_of_pose(built: AsBuilt, pose: Poses, material: Material) -> float | 
     """
     if built.is_family(material):
         return None
-    return _or_thickest(section_at(built.robot, pose, lambda d: built.material(material, d)))
+    found = section_at(built.robot, pose, lambda d: built.material(material, d))
+    return _THICKEST_M if math.isnan(found) else found
 
 
 def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Material) -> float | None:
@@ -113,8 +106,5 @@ def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Materia
         pose = found.infeasible_pose
         return Worst(np.full(6, np.nan) if pose is None else pose.place, math.inf)
 
-    return _or_thickest(thinnest(built.robot, lambda d: built.material(material, d), worst_of))
-
-
-def _or_thickest(diameter_m: float) -> float:
-    return float(_DIAMETERS_M[-1]) if math.isnan(diameter_m) else diameter_m
+    found = thinnest(built.robot, lambda d: built.material(material, d), worst_of)
+    return _THICKEST_M if math.isnan(found) else found

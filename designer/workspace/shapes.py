@@ -47,14 +47,8 @@ class Curves:
     ) -> Polylines:
         """Return polylines through points of the curves, evenly spaced in unstrained length.
 
-        Parameters
-        ----------
-        which : array (n,)
-            Numbers of curves.
-        low, high : array (n,)
-            Part of each to sample, as shares of its unstrained length.
-        segments : int
-            Number of straight pieces.
+        Of the curves of these numbers (n,), each from ``low`` to ``high`` (n,), shares of its
+        unstrained length.
         """
         share = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, segments + 1)
         length = self.length_m[which, None]

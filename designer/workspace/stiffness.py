@@ -14,10 +14,10 @@ from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
-from designer.workspace.refine import Demand, refine_over_branches
+from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 
-MOST_SAMPLES = 2000
-"""Poses that are looked at before the search between them."""
+MOST_SAMPLES, FEW_SAMPLES = 2000, 500
+"""Poses that are looked at before the search between them, for a design and for each candidate."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,10 +41,7 @@ def survey_stiffness(
 ) -> StiffnessSurvey | None:
     """Return the softest and the stiffest pose; None if no pose is held stably.
 
-    Parameters
-    ----------
-    robot, workspace, cable
-        What to look at; the search starts from `MOST_SAMPLES` of the workspace's samples.
+    The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
     some = workspace.thinned(MOST_SAMPLES)
@@ -61,6 +58,31 @@ def survey_stiffness(
         softest_place=softest.place,
         stiffest_place=stiffest.place,
     )
+
+
+def smallest_stiffness_N_per_m(
+    robot: Robot, workspace: Workspace, cable: Cable, *, searched: bool
+) -> float:
+    """Return the smallest translational stiffness over the workspace [N/m].
+
+    The smallest force over displacement in any direction, the platform free to turn, at fixed
+    unstrained lengths, with sag; zero where the equilibrium is not stable, NaN where no pose
+    counts. Searched between the samples as well, or taken from `FEW_SAMPLES` of them. See
+    `designer.statics.stiffness`.
+    """
+    demand_with = partial(displacement_demand, robot, workspace, cable)
+    some = workspace.thinned(FEW_SAMPLES)
+
+    def softness_with(**how: bool) -> Demand:
+        demand = demand_with(**how)
+        return lambda places: demand(places)[:, 0]
+
+    if searched:
+        (worst,) = refine_over_branches(workspace.space, softness_with, some, LIGHT)
+        softest = worst.demand
+    else:
+        softest = float(softness_with()(some).max(initial=-np.inf))
+    return float("nan") if np.isneginf(softest) else 1.0 / softest
 
 
 def displacement_demand(

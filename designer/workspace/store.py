@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,84 +28,62 @@ _COLUMNS = {
     "platform_tension": ("cable", "N", "tension at the platform"),
     "closure_residual": (None, "m", "worst closure error of the cable equations"),
     "equilibrium_residual": (None, "N", "what is left of the platform's balance"),
+    "verdict": (None, "", "outcome of the pose"),
+    "hangs_below": (None, "", "1 where a cable hangs below the platform"),
 }
+"""Of each variable its second axis, its unit (of those without, whole numbers) and its meaning."""
 
 
-class SweepFile:
-    """Context manager that appends chunks of a sweep to a NetCDF file.
+@contextmanager
+def sweep_file(
+    path: Path, n_cables: int, attributes: Mapping[str, Any]
+) -> Iterator[Callable[[FloatArray, Sizing], None]]:
+    """Open a new NetCDF file, and hand out a function that writes one chunk behind what is there.
 
-    Parameters
-    ----------
-    path : Path
-        The file to create.
-    n_cables : int
-        Number of cables.
-    attributes : mapping
-        Provenance: text and numbers that are stored with the file.
+    ``attributes`` are provenance: text and numbers that are stored with the file.
     """
+    import netCDF4
 
-    def __init__(self, path: Path, n_cables: int, attributes: Mapping[str, Any]) -> None:
-        import netCDF4
-
-        self._file = netCDF4.Dataset(path, "w")
-        self._file.setncatts(dict(attributes))
-        for name, size in (("sample", None), ("axis", 3), ("cable", n_cables)):
-            self._file.createDimension(name, size)
+    with netCDF4.Dataset(path, "w") as file:
+        file.setncatts(dict(attributes))
+        sizes = {"sample": None, "axis": 3, "cable": n_cables}
+        for name, size in sizes.items():
+            file.createDimension(name, size)
         for name, (extra, unit, meaning) in _COLUMNS.items():
-            self._create(name, "f8", ("sample",) if extra is None else ("sample", extra))
-            self._file[name].setncatts({"units": unit, "long_name": meaning})
-        self._create("verdict", "i1", ("sample",))
-        self._file["verdict"].setncatts(
-            {
-                "long_name": "outcome of the pose",
-                "flag_values": np.array([int(v) for v in Verdict], dtype=np.int8),
-                "flag_meanings": " ".join(v.label for v in Verdict),
-            }
-        )
-        self._create("hangs_below", "i1", ("sample",))
-        self._file["hangs_below"].long_name = "1 where a cable hangs below the platform"
+            axes = ("sample",) if extra is None else ("sample", extra)
+            chunks = [sizes[axis] or 2**15 for axis in axes]
+            kind = "f8" if unit else "i1"
+            file.createVariable(name, kind, axes, chunksizes=chunks, zlib=True, complevel=1)
+            file[name].setncatts({"units": unit} if unit else {})
+            file[name].long_name = meaning
+        file["verdict"].flag_values = np.array([int(v) for v in Verdict], dtype=np.int8)
+        file["verdict"].flag_meanings = " ".join(v.label for v in Verdict)
 
-    def append(self, some_places: FloatArray, sizing: Sizing) -> None:
-        """Write one chunk behind what is there."""
-        statics = sizing.statics
-        turns = some_places[:, 3:] if some_places.shape[1] > 3 else np.zeros_like(some_places)
-        values = {
-            "position": some_places[:, :3],
-            "rotation_vector": turns,
-            "diameter": sizing.diameter_m,
-            "max_tension": statics.largest_tension_N,
-            "massless_diameter": sizing.massless_diameter_m,
-            "massless_max_tension": sizing.massless_tension_N,
-            "length": statics.length_m,
-            "exit_tension": statics.exit_tension_N,
-            "platform_tension": statics.platform_tension_N,
-            "closure_residual": sizing.closure_residual_m,
-            "equilibrium_residual": sizing.equilibrium_residual_N,
-            "verdict": statics.verdict,
-            "hangs_below": statics.hangs_below,
-        }
-        start = self._file.dimensions["sample"].size
-        for name, value in values.items():
-            self._file[name][start : start + len(some_places)] = value
+        def append(places: FloatArray, sizing: Sizing) -> None:
+            start = file.dimensions["sample"].size
+            for name, value in _values(places, sizing).items():
+                file[name][start : start + len(places)] = value
 
-    def __enter__(self) -> SweepFile:
-        return self
+        yield append
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._file.close()
 
-    def _create(self, name: str, dtype: str, dimensions: tuple[str, ...]) -> None:
-        chunks = tuple(
-            2**15 if d == "sample" else self._file.dimensions[d].size for d in dimensions
-        )
-        self._file.createVariable(
-            name, dtype, dimensions, chunksizes=chunks, zlib=True, complevel=1
-        )
+def _values(places: FloatArray, sizing: Sizing) -> Mapping[str, Any]:
+    statics = sizing.statics
+    return {
+        "position": places[:, :3],
+        "rotation_vector": places[:, 3:] if places.shape[1] > 3 else 0.0 * places,
+        "diameter": sizing.diameter_m,
+        "max_tension": statics.largest_tension_N,
+        "massless_diameter": sizing.massless_diameter_m,
+        "massless_max_tension": sizing.massless_tension_N,
+        "length": statics.length_m,
+        "exit_tension": statics.exit_tension_N,
+        "platform_tension": statics.platform_tension_N,
+        "closure_residual": sizing.closure_residual_m,
+        "equilibrium_residual": sizing.equilibrium_residual_N,
+        "verdict": statics.verdict,
+        "hangs_below": statics.hangs_below,
+    }
 
 
 def open_sweep(path: Path) -> xr.Dataset:

@@ -20,8 +20,7 @@ from designer.selection.groups.balance import balance_at
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.choose import choose_groups, choose_groups_of
 from designer.selection.groups.result import GroupChoice
-from designer.selection.groups.trials import Trials
-from designer.selection.groups.verify import verify_groups
+from designer.selection.groups.trials import Trials, verify_groups
 from designer.selection.products import Product, priced, undominated
 from designer.selection.select import select
 from designer.statics.inverse import solve_sagging

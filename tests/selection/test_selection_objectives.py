@@ -14,10 +14,10 @@ from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
 from designer.selection.compare import dominator_of, is_undominated
-from designer.selection.objectives import smallest_stiffness_N_per_m
 from designer.selection.products import common_currency
 from designer.selection.select import best_product, select
 from designer.study import Selection, Workspace
+from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 SIZES = [14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 28.0, 32.0]

@@ -29,18 +29,20 @@ verified.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.robot import Poses, Robot
-from designer.selection.groups.verify import Members
 from designer.selection.products import Product
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.study import Workspace
 
+Members = Sequence[IntArray]
+"""Of each group the indices of its cables."""
 _TURNS_DEG = (0.0, 4.0, 12.0, 30.0)
 
 

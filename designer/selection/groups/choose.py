@@ -11,7 +11,6 @@ the linearisation decides how fast the answer is found, and only cuts decide wha
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -33,8 +32,7 @@ from designer.selection.groups.result import (
     Proof,
     Proposal,
 )
-from designer.selection.groups.trials import Refutation, Trials
-from designer.selection.groups.verify import GroupVerification, verify_groups
+from designer.selection.groups.trials import GroupVerification, Refutation, Trials, verify_groups
 from designer.selection.products import Product, is_allowed, priced, products_of, undominated
 from designer.study import CableGroup, Selection, Workspace
 
@@ -62,14 +60,10 @@ def choose_groups(
     progress: Callable[[], None] = lambda: None,
     most_proposals: int = MOST_PROPOSALS,
 ) -> GroupChoice:
-    """Choose a product for each group.
+    """Choose a product for each group of cables, of which every cable is in exactly one.
 
     Parameters
     ----------
-    robot, workspace, products
-        The study, the robot as built, and what is sold.
-    groups : sequence of CableGroup
-        Every cable is in exactly one of them.
     most_distinct : int, optional
         How many different products there may be; one for each group if left out.
     objective : str
@@ -78,8 +72,6 @@ def choose_groups(
         The best product for all cables together: where the search starts from.
     progress : callable
         Called after each proposal.
-    most_proposals : int
-        Where to stop.
     """
     by_price = objective == "cost"
     products = priced(products) if by_price else tuple(products)
@@ -120,18 +112,8 @@ def choose_groups_of(
 ) -> GroupChoice:
     """Choose a product for each group of a study, among the grades that it allows.
 
-    Parameters
-    ----------
-    workspace, selection
-        The study; cost is minimised where it is the first objective, mass otherwise.
-    grades : sequence of Grade
-        The whole catalogue; ``selection.grades`` narrows it.
-    built : AsBuilt
-        The robot as built, and by how much its cables differ from their data sheet.
-    single : Candidate or None
-        The best product for all cables.
-    reporter : Reporter
-        Shows progress.
+    Cost is minimised where it is the first objective, mass otherwise; ``selection.grades`` narrows
+    the catalogue; ``single`` is the best product for all cables.
     """
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
     products = products_of(selection, allowed, built)
@@ -207,7 +189,7 @@ class _Search:
             assignment = self.master.propose(self._guides)
             if assignment is None or not self._could_be_better(assignment):
                 break
-            outcome = self._examine(assignment, guided=True).outcome
+            outcome = self._examine(assignment, guided=True)
             if outcome == "not_better":
                 break
             if outcome == "fails":
@@ -226,16 +208,52 @@ class _Search:
                 return
             self._examine(assignment, guided=False)
 
-    def _examine(self, assignment: Assignment, *, guided: bool) -> Proposal:
+    def _examine(self, assignment: Assignment, *, guided: bool) -> Outcome:
         """Try a proposal, cut it off with what fails with it, and note it."""
-        proposal, block = self._tried(assignment, guided)
+        held: Assigned | None = None
+        outcome: Outcome = "fails"
+        block = _alone(assignment)
+        worst = self.trials.refutation(assignment)
+        if worst is None and self._is_no_better(assignment):
+            outcome = "not_better"
+        elif worst is None:
+            found = self._verified(assignment)
+            group = int(np.argmax(found.utilisation))
+            worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
+            if found.holds:
+                held = self._assigned(assignment, found)
+                is_better = self.best is None or held.total < self.best.total
+                self.best = held if is_better else self.best
+                outcome = "holds" if is_better else "not_better"
+        if worst is not None and outcome == "fails":
+            block = self._block(assignment, worst.group)
         self.master.cut(block)
-        if not guided and prod(len(products) for products in block) == 1:
-            beside = self._cut_beside(assignment)
-            proposal = replace(proposal, excluded=proposal.excluded + beside)
-        self.proposals.append(proposal)
+        excluded = prod(len(products) for products in block)
+        if not guided and excluded == 1:
+            excluded += self._cut_beside(assignment)
+        note = Proposal(
+            products=tuple(self.products[p] for p in assignment),
+            bound=self.master.cost_of(assignment),
+            total=held.total if held else None,
+            outcome=outcome,
+            group=worst.group if worst else None,
+            utilisation=worst.utilisation if worst else None,
+            place=worst.place if worst else None,
+            excluded=excluded,
+            guided=guided,
+        )
+        self.proposals.append(note)
         self.progress()
-        return proposal
+        return outcome
+
+    def _block(self, assignment: Assignment, culprit: int) -> Block:
+        """Return what fails with an assignment, in which a group is too weak."""
+        if self.by_weight:
+            block = block_by_weight(self.trials, assignment, culprit)
+            if block != _alone(assignment):
+                return block
+        room = min(_MOST_TRIALS_OF_A_BLOCK, _MOST_TRIALS - self.trials.count)
+        return block_by_trial(self.trials, assignment, culprit, self._could_be_better, room)
 
     def _cut_beside(self, assignment: Assignment) -> int:
         """Cut off those that differ in one group and cannot be the answer; return how many."""
@@ -258,60 +276,6 @@ class _Search:
             return False
         least = self._total(assignment, self.trials.least_length_m(assignment))
         return least >= self.best.total * (1.0 - _EQUAL)
-
-    def _tried(self, assignment: Assignment, guided: bool) -> tuple[Proposal, Block]:
-        refuted = self.trials.refutation(assignment)
-        alone = _alone(assignment)
-        if refuted is not None:
-            return self._failed(assignment, refuted, guided)
-        if self._is_no_better(assignment):
-            return self._noted(assignment, guided, "not_better"), alone
-        found = self._verified(assignment)
-        group = int(np.argmax(found.utilisation))
-        worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
-        if not found.holds:
-            return self._failed(assignment, worst, guided)
-        held = self._assigned(assignment, found)
-        is_better = self.best is None or held.total < self.best.total
-        self.best = held if is_better else self.best
-        outcome: Outcome = "holds" if is_better else "not_better"
-        return self._noted(assignment, guided, outcome, worst, total=held.total), alone
-
-    def _failed(
-        self, assignment: Assignment, refuted: Refutation, guided: bool
-    ) -> tuple[Proposal, Block]:
-        block = _alone(assignment)
-        if self.by_weight:
-            block = block_by_weight(self.trials, assignment, refuted.group)
-        if block == _alone(assignment):
-            room = min(_MOST_TRIALS_OF_A_BLOCK, _MOST_TRIALS - self.trials.count)
-            block = block_by_trial(
-                self.trials, assignment, refuted.group, self._could_be_better, room
-            )
-        excluded = prod(len(products) for products in block)
-        return self._noted(assignment, guided, "fails", refuted, excluded=excluded), block
-
-    def _noted(
-        self,
-        assignment: Assignment,
-        guided: bool,
-        outcome: Outcome,
-        worst: Refutation | None = None,
-        *,
-        total: float | None = None,
-        excluded: int = 1,
-    ) -> Proposal:
-        return Proposal(
-            products=tuple(self.products[p] for p in assignment),
-            bound=self.master.cost_of(assignment),
-            total=total,
-            outcome=outcome,
-            group=worst.group if worst else None,
-            utilisation=worst.utilisation if worst else None,
-            place=worst.place if worst else None,
-            excluded=excluded,
-            guided=guided,
-        )
 
     def _could_be_better(self, assignment: Assignment) -> bool:
         if not self.master.is_allowed(assignment):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from designer.arrays import FloatArray
-from designer.selection.groups.verify import GroupVerification
+from designer.selection.groups.trials import GroupVerification
 from designer.selection.products import Product
 from designer.study import CableGroup
 
