@@ -31,6 +31,7 @@ from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7
+# What no winch would do: leave so much of the load, or a cable so long for its chord.
 _MOST_LEFT = 0.9
 _LONGEST = 8.0
 
