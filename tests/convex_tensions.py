@@ -20,7 +20,6 @@ from designer.statics.distribution import (
     _RANK,
     Distribution,
     _even_residual,
-    _separation,
     _shaped,
     _Shares,
     _shares,
@@ -163,3 +162,18 @@ def _square_residual(
         np.minimum(-pull, np.abs(tension - shares.low)),
     )
     return _worst(shares, tension, slackness)
+
+
+def _separation(shares: _Shares, wrench: FloatArray, *, upper: float) -> FloatArray:
+    """Return by how much a wrench's product with the load exceeds that with any tensions.
+
+    Over the wrench's largest component; positive is a proof, whoever found the wrench.
+    """
+    size = np.abs(wrench).max(axis=1, keepdims=True)
+    wrench = wrench / np.where(size > 0.0, size, 1.0)
+    gain = np.einsum("pi,pij->pj", wrench, shares.matrix)
+    # Rounding in a product with an unbounded tension is no gain.
+    rising = gain > (_RANK if np.isinf(upper) else 0.0)
+    least = shares.low if np.isfinite(upper) else 0.0
+    most = np.where(rising, gain * upper if np.isfinite(upper) else np.inf, gain * least)
+    return np.asarray(np.einsum("pi,pi->p", wrench, shares.wrench) - most.sum(axis=1))

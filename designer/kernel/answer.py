@@ -13,7 +13,11 @@ from designer.model.verdict import Verdict
 
 # Numba knows plain integers, not members of an enumeration.
 SOLVED = int(Verdict.SOLVED)
+NOT_FOUND = int(Verdict.NOT_FOUND)
 NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
+OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
+RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
+NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 
 TOLERANCE = 1e-10
 """Largest residual of closure (over length) plus balance (over the largest force)."""

@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray, VerdictArray
+from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
 from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.pose import (
@@ -43,7 +44,6 @@ from designer.kernel.pose import (
     write_wrenches,
 )
 from designer.kernel.table import LIFT
-from designer.model.verdict import Verdict
 
 _BEYOND = 1e6
 _ROUNDING = 1e-15
@@ -53,10 +53,6 @@ _RANK = 1e-9
 _ENTERS = 1e-12
 """Product of a ray with what is left of the load above which it can still help."""
 _MOST_TURNS = 40
-_OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
-_NOT_FOUND = int(Verdict.NOT_FOUND)
-_NOT_CONVERGED = int(Verdict.NOT_CONVERGED)
-_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
 
 
 class Cone(NamedTuple):
@@ -125,18 +121,18 @@ def refuse_range(
     cone = new_cone(situation.rows.size, n)
     for at in range(start, stop):
         place(pose, situation, at)
-        out_verdict[at] = _NOT_CONVERGED
+        out_verdict[at] = NOT_CONVERGED
         out_separation[at] = np.nan
         out_wrench[at] = np.nan
         if not _set_rays(pose, cone):
             continue
         if not _spans(cone, n):
-            out_verdict[at] = _RANK_DEFICIENT
+            out_verdict[at] = RANK_DEFICIENT
         elif _separation(cone, n) > 0.0:
-            out_verdict[at] = _NOT_FOUND
+            out_verdict[at] = NOT_FOUND
             separation = _separation(cone, 2 * n)
             if separation > 0.0:
-                out_verdict[at] = _OUTSIDE_HULL
+                out_verdict[at] = OUTSIDE_HULL
                 out_separation[at] = separation
                 out_wrench[at] = cone.rest
 

@@ -53,23 +53,17 @@ def lanes_of(indices: IntArray, first: int) -> IntArray:
 
 @kernel
 def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: IntArray) -> None:
-    """Fill the geometry of one block, and the load to be balanced; cables are straight."""
+    """Fill the geometry of one block, and the load to be balanced.
+
+    Cables are straight, with half of their weight at the platform: the first guess.
+    """
     for j in range(LANES):
         for i in range(cables.shape[0]):
             place_cable(cables[i], j, situation, lane[j], i)
+            straighten(cables[i], j, 0.5)
         load = load_of(situation, lane[j])
         for axis in range(6):
             poses[LOAD + axis, j] = load[axis]
-    linearise_taut(cables)
-
-
-@kernel
-def linearise_taut(cables: FloatArray) -> None:
-    """Straight cables with half of their weight at the platform: the first guess."""
-    for i in range(cables.shape[0]):
-        row = cables[i]
-        for j in range(LANES):
-            straighten(row, j, 0.5)
 
 
 @kernel

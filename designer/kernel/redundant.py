@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray
-from designer.kernel.answer import NOT_CONVERGED, SOLVED, Answers
+from designer.kernel.answer import NOT_CONVERGED, OUTSIDE_HULL, RANK_DEFICIENT, SOLVED, Answers
 from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.interior import (
@@ -86,7 +86,6 @@ from designer.kernel.table import (
     V,
 )
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.model.verdict import Verdict
 
 KEPT_PULLS = (0.5, 0.9)
 """Share of its pull that a cable keeps in a step of the interior point; then more careful."""
@@ -100,8 +99,6 @@ _MOST_TURNS = 12
 _SETTLED = 1e-4
 _ALONG = 1e-5
 _LARGEST_TURN = 1.5
-_OUTSIDE_HULL = int(Verdict.OUTSIDE_HULL)
-_RANK_DEFICIENT = int(Verdict.RANK_DEFICIENT)
 
 
 @kernel
@@ -174,9 +171,9 @@ def solve_massless_range(
             out_tension[at, i] = max(tension, least_tension) if held else np.nan
         out_verdict[at] = SOLVED
         if not spans:
-            out_verdict[at] = _RANK_DEFICIENT
+            out_verdict[at] = RANK_DEFICIENT
         elif not held:
-            out_verdict[at] = _OUTSIDE_HULL if c <= NOTHING else NOT_CONVERGED
+            out_verdict[at] = OUTSIDE_HULL if c <= NOTHING else NOT_CONVERGED
         known = spans and _value_wrenches(pose, lp, scratch)
         for k in range(m):
             value = scratch.value[k] if rows[k] < 3 else scratch.value[k] / pose.scale[REACH]

@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.answer import LOAD_FACTOR, SOLVED, WEIGHT, Answers
+from designer.kernel.answer import LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
@@ -48,7 +48,6 @@ from designer.kernel.redundant import KEPT_PULLS, massless
 from designer.kernel.simplex import new_programme
 from designer.kernel.table import CHORD, LEVEL, LIFT, STRAIGHT, X2, D, P
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
-from designer.model.verdict import Verdict
 
 _RANDOM_STARTS = 6
 _RANDOM_SEED = 88172645463325252  # Marsaglia's own
@@ -65,7 +64,6 @@ _MARGIN = 1e-3
 _ABOVE_LEAST = 1.1
 _SHORTER = 0.7
 _HALVINGS = 40
-_NO_FINITE_CABLE = int(Verdict.NO_FINITE_CABLE)
 
 
 @kernel
@@ -98,7 +96,7 @@ def search_range(
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
         for attempt in range(n + 3 + _RANDOM_STARTS):
             if is_proved and best == -np.inf:  # nor does this section hold within its strength
-                out.verdict[at] = _NO_FINITE_CABLE if sizing else out.verdict[at]
+                out.verdict[at] = NO_FINITE_CABLE if sizing else out.verdict[at]
                 break
             s, state = _begin(pose, ask, straight_c, attempt, state)
             s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)

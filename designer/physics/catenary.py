@@ -53,18 +53,30 @@ def position_m(
     T_0, T_s = np.hypot(F_x, V_0), np.hypot(F_x, V_s)
     with np.errstate(invalid="ignore", divide="ignore"):
         rise = np.where(s == 0.0, 0.0, s * (V_s + V_0) / (T_s + T_0))
-        # sinh of the difference of two asinh; its conjugate form cancels only when the signs
-        # of the two slopes differ, where the plain difference does not.
-        conjugate = w * s * (V_s + V_0) / (V_s * T_0 + V_0 * T_s)
-        angle = np.where(
-            V_s * V_0 > 0.0,
-            np.arcsinh(conjugate),
-            np.arcsinh(V_s / F_x) - np.arcsinh(V_0 / F_x),
-        )
+        angle, _ = arc_angle(F_x, V_0, V_s, T_0, T_s, w * s)
         arc = np.where(F_x == 0.0, 0.0, F_x / w * angle)
     x = F_x * s / EA + arc
     z = F_z * s / EA + w / EA * (0.5 * s * s - length * s) + rise
     return x, z
+
+
+def arc_angle(
+    F_x: FloatArray,
+    V_0: FloatArray,
+    V_s: FloatArray,
+    T_0: FloatArray,
+    T_s: FloatArray,
+    change: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return asinh(V_s/F_x) - asinh(V_0/F_x) and its sinh, with V_s - V_0 as ``change`` (...).
+
+    T are the tensions. The conjugate form, which the sinh is, cancels only where the signs of the
+    two slopes differ; there the plain difference does not.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sinh = change * (V_s + V_0) / (V_s * T_0 + V_0 * T_s)
+        plain = np.arcsinh(V_s / F_x) - np.arcsinh(V_0 / F_x)
+        return np.where(V_s * V_0 > 0.0, np.arcsinh(sinh), plain), sinh
 
 
 def end_position_m(

@@ -28,9 +28,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
+from designer.physics import catenary
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _SHORT_ARC = 0.5
+"""Arc up to which ten nodes reach rounding, and above which the closed form loses few digits."""
 
 
 def flexibility_m_per_N(
@@ -64,7 +66,10 @@ def flexibility_m_per_N(
     )
     V_0 = F_z - w * length
     T_0, T_l = np.hypot(F_x, V_0), np.hypot(F_x, F_z)
-    angle, turn = _arc(length, F_x, F_z, V_0, T_0, T_l, w)
+    angle, sinh = catenary.arc_angle(F_x, V_0, F_z, T_0, T_l, w * length)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # V/T at the attachment point less the same at the exit point, free of cancellation.
+        turn = np.where(F_z * V_0 > 0.0, F_x**2 * sinh / (T_0 * T_l), F_z / T_l - V_0 / T_0)
     across = np.where(angle < _SHORT_ARC, _short_across(length, F_x, V_0, w), (angle - turn) / w)
     stretch = length / EA
     skew = -F_x * length * (F_z + V_0) / ((T_l + T_0) * T_l * T_0)
@@ -129,28 +134,8 @@ def stiffness_over_pulley_N_per_m(
         - (wrap / (EA + T_0))[..., None] * T_by
     )
     jacobian = np.concatenate([position_by, total_by[..., None, :]], axis=-2)
-    return _solve_or_nan(jacobian)[..., :2, :2]
-
-
-def _arc(
-    length: FloatArray,
-    F_x: FloatArray,
-    F_z: FloatArray,
-    V_0: FloatArray,
-    T_0: FloatArray,
-    T_l: FloatArray,
-    w: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return asinh(V/F_x) and V/T at the attachment point less the same at the exit point.
-
-    Where both ends slope the same way the differences are taken through their conjugates.
-    """
-    with np.errstate(invalid="ignore", divide="ignore"):
-        conjugate = w * length * (F_z + V_0) / (F_z * T_0 + V_0 * T_l)
-        same = F_z * V_0 > 0.0
-        angle = np.where(same, np.arcsinh(conjugate), np.arcsinh(F_z / F_x) - np.arcsinh(V_0 / F_x))
-        turn = np.where(same, F_x**2 * conjugate / (T_0 * T_l), F_z / T_l - V_0 / T_0)
-    return angle, turn
+    bad = ~np.isfinite(jacobian).all(axis=(-2, -1))[..., None, None]
+    return np.where(bad, np.nan, np.linalg.inv(np.where(bad, np.eye(3), jacobian)))[..., :2, :2]
 
 
 def _short_across(
@@ -181,10 +166,3 @@ def _inverse(matrix: FloatArray) -> FloatArray:
             [np.zeros((*c.shape, 2)), np.stack([np.zeros_like(c), 1.0 / c], axis=-1)], axis=-2
         )
     return np.where(soft[..., None, None], folded, inverse)
-
-
-def _solve_or_nan(matrix: FloatArray) -> FloatArray:
-    """Return inverses; NaN where the matrix has no finite entries."""
-    bad = np.asarray(~np.isfinite(matrix).all(axis=(-2, -1)))
-    safe = np.where(bad[..., None, None], np.eye(matrix.shape[-1]), matrix)
-    return np.where(bad[..., None, None], np.nan, np.linalg.inv(safe))

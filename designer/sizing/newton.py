@@ -53,7 +53,7 @@ def size_poses(
     Solves Riehl et al., ICRA 2010, eqs. (9) and (11)-(14), where at the optimum the most loaded
     cable is at the allowable stress, by the compiled Newton of `designer.kernel.square`; with more
     cables than degrees of freedom, over all internal forces, by `designer.kernel.redundant`. Where
-    another branch might be thinner, `designer.kernel.redundant_search` tries more of them, unless
+    another branch might be thinner, `designer.kernel.search` tries more of them, unless
     it is not to ``seeks_better`` than what was found first.
     """
     task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)

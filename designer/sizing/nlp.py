@@ -14,7 +14,12 @@ from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.robot import Poses, Robot
 from designer.physics import catenary
-from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
+from designer.statics.geometry import (
+    CableGeometry,
+    cable_geometry,
+    load_wrench_N,
+    structure_matrix,
+)
 from designer.statics.inverse import solve_massless
 
 _LEAST_SHARE = 0.02
@@ -105,15 +110,18 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Problem:
-    """The constraints in scaled unknowns (F_x, F_z, l of each cable, then ρ₀): eq. (13)."""
+    """The constraints in scaled unknowns (F_x, F_z, l of each cable, then ρ₀): eq. (13).
+
+    Forces are over the largest of straight cables, lengths over the chord, and the linear density
+    is over that of the massless design.
+    """
 
     material: Material
-    distance_m: FloatArray
-    drop_m: FloatArray
+    geometry: CableGeometry
     matrix: FloatArray
-    weight_N: FloatArray
+    load_N: FloatArray
     tension_N: FloatArray
-    chord_m: FloatArray
+    force_N: float
 
     @classmethod
     def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
@@ -122,41 +130,25 @@ class _Problem:
         largest = float(massless.largest_tension_N)
         if not largest > 0.0:
             raise ValueError("straight cables cannot hold this pose")
-        return cls(
-            material,
-            geometry.horizontal_distance_m,
-            geometry.drop_m,
-            structure_matrix(robot, geometry),
-            load_wrench_N(robot, pose),
-            np.maximum(massless.tension_N, _LEAST_SHARE * largest),
-            geometry.chord_m,
-        )
-
-    @property
-    def _force_scale_N(self) -> float:
-        return float(self.tension_N.max())
-
-    @property
-    def _density_scale(self) -> float:
-        """Linear density that the massless design asks for [kg/m]."""
-        section = self._force_scale_N / self.material.allowable_stress_Pa
-        return section * self.material.density_kg_per_m3
+        tension = np.maximum(massless.tension_N, _LEAST_SHARE * largest)
+        matrix, load = structure_matrix(robot, geometry), load_wrench_N(robot, pose)
+        return cls(material, geometry, matrix, load, tension, float(tension.max()))
 
     def start(self) -> FloatArray:
         """The massless design, as the loop has it."""
-        pull = self.tension_N / self.chord_m / self._force_scale_N
-        columns = [pull * self.distance_m, -pull * self.drop_m, self.chord_m / self.chord_m]
-        return np.append(np.stack(columns, axis=1).ravel(), 1.0)
+        pull = self.tension_N / self.geometry.chord_m / self.force_N
+        X, D = self.geometry.horizontal_distance_m, self.geometry.drop_m
+        return np.append(np.stack([pull * X, -pull * D, np.ones_like(X)], axis=1).ravel(), 1.0)
 
     def unpack(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, float]:
         """Return F_x, F_z [N], unstrained lengths [m] and linear density [kg/m]."""
         cables = u[:-1].reshape(-1, 3)
-        force = self._force_scale_N
+        section = float(u[-1]) * self.force_N / self.material.allowable_stress_Pa
         return (
-            cables[:, 0] * force,
-            cables[:, 1] * force,
-            cables[:, 2] * self.chord_m,
-            float(u[-1]) * self._density_scale,
+            cables[:, 0] * self.force_N,
+            cables[:, 1] * self.force_N,
+            cables[:, 2] * self.geometry.chord_m,
+            section * self.material.density_kg_per_m3,
         )
 
     def equations(self, u: FloatArray) -> FloatArray:
@@ -166,9 +158,10 @@ class _Problem:
         weight = density * STANDARD_GRAVITY_M_PER_S2
         x, z = catenary.end_position_m(length, force_x, force_z, stiffness, weight)
         forces = np.stack([force_x, force_z], axis=1).ravel()
-        balance = (self.matrix @ forces - self.weight_N) / self._force_scale_N
-        closure = np.concatenate([x - self.distance_m, z + self.drop_m])
-        return np.concatenate([closure / np.tile(self.chord_m, 2), balance])
+        balance = (self.matrix @ forces - self.load_N) / self.force_N
+        at = self.geometry
+        closure = np.concatenate([x - at.horizontal_distance_m, z + at.drop_m])
+        return np.concatenate([closure / np.tile(at.chord_m, 2), balance])
 
     def strength_margin(self, u: FloatArray) -> FloatArray:
         """Eq. (14), the allowable stress minus the stress at the exit point, over the former."""

@@ -81,10 +81,8 @@ class _State:
     ----------
     wrench, wrench_y, wrench_yy : array (dof, n_cables)
         Over the strength length.
-    tension, tension_y, tension_yy : array (n_cables,)
-        Largest tension over the strength length.
-    lowest, lowest_y : array (n_cables,)
-        Least tension anywhere in the cable, likewise.
+    tension, tension_y, lowest, lowest_y : array (n_cables,)
+        Largest and least tension anywhere in the cable, over the strength length.
     length_m : array (n_cables,)
         Unstrained lengths [m].
     """
@@ -94,7 +92,6 @@ class _State:
     wrench_yy: FloatArray
     tension: FloatArray
     tension_y: FloatArray
-    tension_yy: FloatArray
     lowest: FloatArray
     lowest_y: FloatArray
     length_m: FloatArray
@@ -134,10 +131,9 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     y, c = problem.start()
     state, trust, turns = problem.state(y), _TRUST, 0
     multiplier = np.zeros(len(problem.load))
-    programme = _programme(len(problem.load), len(y))
     while turns < max_turns and trust > _SMALLEST_TRUST:
         turns += 1
-        found = _solve(programme, problem, state, y, multiplier, trust)
+        found = _solve(problem, state, y, multiplier, trust)
         if found is None:
             trust *= 0.25
             continue
@@ -228,9 +224,8 @@ class _Problem:
         here, ahead, behind = (self._cables(y * f) for f in (1.0, 1.0 + _ALONG, 1.0 - _ALONG))
         step = _ALONG * y
         slopes = [(a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True)]
-        bends = [(a - 2.0 * h + b) / step**2 for a, h, b in zip(ahead, here, behind, strict=True)]
-        wrench, tension = ((here[k], slopes[k], bends[k]) for k in range(2))
-        return _State(*wrench, *tension, here[2], slopes[2], here[3])
+        bend = (ahead[0] - 2.0 * here[0] + behind[0]) / step**2
+        return _State(here[0], slopes[0], bend, here[1], slopes[1], here[2], slopes[2], here[3])
 
     def _cables(self, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         strength = self.material.strength_length_m
@@ -314,57 +309,38 @@ def _programme(dof: int, n: int) -> dict[str, Any]:
     import cvxpy as cp
 
     step, c, gap = cp.Variable(n), cp.Variable(), cp.Variable(nonneg=True)
-    data = {
-        "slope": cp.Parameter((dof, n)),
-        "rest": cp.Parameter(dof),
-        "tension": cp.Parameter(n),
-        "tension_slope": cp.Parameter(n),
-        "bend": cp.Parameter(n, nonneg=True),
-        "lowest": cp.Parameter(n),
-        "lowest_slope": cp.Parameter(n),
-        "load": cp.Parameter(dof),
-        "least": cp.Parameter(n, nonneg=True),
-        "trust": cp.Parameter(n, nonneg=True),
-    }
-    balance = data["rest"] + data["slope"] @ step - c * data["load"]
+    data = {name: cp.Parameter(n) for name in ("tension", "tension_y", "lowest", "lowest_y")}
+    data |= {name: cp.Parameter(n, nonneg=True) for name in ("bend", "least", "trust")}
+    data |= {name: cp.Parameter(dof) for name in ("rest", "load")}
+    data["wrench_y"] = cp.Parameter((dof, n))
+    balance = data["rest"] + data["wrench_y"] @ step - c * data["load"]
     constraints = [
         balance <= gap,
         -balance <= gap,
-        data["tension"] + cp.multiply(data["tension_slope"], step) - 1.0 <= gap,
-        c * data["least"] - data["lowest"] - cp.multiply(data["lowest_slope"], step) <= gap,
+        data["tension"] + cp.multiply(data["tension_y"], step) - 1.0 <= gap,
+        c * data["least"] - data["lowest"] - cp.multiply(data["lowest_y"], step) <= gap,
         cp.abs(step) <= data["trust"],
     ]
     curved = 0.5 * cp.sum_squares(cp.multiply(data["bend"], step))
-    return {
-        **data,
-        "step": step,
-        "c": c,
-        "constraints": constraints,
-        "problem": cp.Problem(cp.Minimize(curved - c + _PRICE * gap), constraints),
-    }
+    problem = cp.Problem(cp.Minimize(curved - c + _PRICE * gap), constraints)
+    return {"data": data, "step": step, "c": c, "balance": constraints[:2], "problem": problem}
 
 
 def _solve(
-    programme: dict[str, Any],
-    problem: _Problem,
-    state: _State,
-    y: FloatArray,
-    multiplier: FloatArray,
-    trust: float,
+    problem: _Problem, state: _State, y: FloatArray, multiplier: FloatArray, trust: float
 ) -> _Turn | None:
     import cvxpy as cp
 
-    bend = multiplier @ state.wrench_yy
-    programme["slope"].value = state.wrench_y
-    programme["rest"].value = state.wrench.sum(axis=1)
-    programme["tension"].value = state.tension
-    programme["tension_slope"].value = state.tension_y
-    programme["bend"].value = np.sqrt(np.maximum(bend, 0.0))
-    programme["lowest"].value = state.lowest
-    programme["lowest_slope"].value = state.lowest_y
-    programme["load"].value = problem.load
-    programme["least"].value = problem.least
-    programme["trust"].value = trust * y
+    programme = _programme(len(problem.load), len(y))
+    values = {
+        "rest": state.wrench.sum(axis=1),
+        "bend": np.sqrt(np.maximum(multiplier @ state.wrench_yy, 0.0)),
+        "load": problem.load,
+        "least": problem.least,
+        "trust": trust * y,
+    }
+    for name, parameter in programme["data"].items():
+        parameter.value = values[name] if name in values else getattr(state, name)
     try:
         with warnings.catch_warnings():
             # Of less than full accuracy; the residuals of the answer tell.
@@ -374,5 +350,5 @@ def _solve(
         return None
     if programme["step"].value is None:
         return None
-    above, below = (one.dual_value for one in programme["constraints"][:2])
+    above, below = (one.dual_value for one in programme["balance"])
     return _Turn(y + programme["step"].value, float(programme["c"].value), above - below)

@@ -31,7 +31,9 @@ from designer.statics.geometry import (
 from designer.statics.task import flat_poses, straight_run
 
 _PROVEN = 1e-6
+"""Residual of the optimality conditions up to which they count as met."""
 _RANK = 1e-9
+"""Product with a unit wrench that is rounding, and no gain."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +119,7 @@ def distribute_evenly(
     )
     scaled, multiplier = tension / shares.scale_N, dual * shares.rows
     residual = _even_residual(shares, scaled, multiplier)
-    separation = _separation(shares, -multiplier, upper=np.inf)
+    separation = _separation(shares, -multiplier)
     solved = verdict == Verdict.SOLVED
     verdict[solved & ~(residual < _PROVEN)] = Verdict.NOT_CONVERGED
     verdict[solved & (scaled.max(axis=1) > shares.high * (1.0 + 1e-12))] = Verdict.OUTSIDE_HULL
@@ -167,19 +169,17 @@ def _shaped(
     )
 
 
-def _separation(shares: _Shares, wrench: FloatArray, *, upper: float) -> FloatArray:
-    """Return by how much a wrench's product with the load exceeds that with any tensions.
+def _separation(shares: _Shares, wrench: FloatArray) -> FloatArray:
+    """Return a wrench's product with the load where that with any tensions is not above zero.
 
-    Over the wrench's largest component; positive is a proof, whoever found the wrench.
+    Over the wrench's largest component, minus infinity elsewhere; positive is a proof, whoever
+    found the wrench.
     """
     size = np.abs(wrench).max(axis=1, keepdims=True)
     wrench = wrench / np.where(size > 0.0, size, 1.0)
     gain = np.einsum("pi,pij->pj", wrench, shares.matrix)
-    # Rounding in a product with an unbounded tension is no gain.
-    rising = gain > (_RANK if np.isinf(upper) else 0.0)
-    least = shares.low if np.isfinite(upper) else 0.0
-    most = np.where(rising, gain * upper if np.isfinite(upper) else np.inf, gain * least)
-    return np.asarray(np.einsum("pi,pi->p", wrench, shares.wrench) - most.sum(axis=1))
+    of_load = np.einsum("pi,pi->p", wrench, shares.wrench)
+    return np.where((gain > _RANK).any(axis=1), -np.inf, of_load)
 
 
 def _even_residual(shares: _Shares, tension: FloatArray, multiplier: FloatArray) -> FloatArray:

@@ -13,12 +13,12 @@ Any number of cables will do: with fewer than degrees of freedom gravity holds t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
@@ -26,16 +26,15 @@ from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics
 from designer.statics.stiffness import is_stable, per_reach, reach_m, scaled, upright_stiffness
 
-if TYPE_CHECKING:
-    from designer.arrays import VerdictArray
-
 _MOST_STEPS = 300
+# Trust radii over the size of the robot: the first, and that at which a search gives up.
 _FIRST_RADIUS = 0.1
 _SMALLEST_RADIUS = 1e-14
 _FLOOR = 1e-10
+"""Least stiffness over the largest: what is softer would take a step of any length."""
 _TOLERANCE = 1e-9
 _POLISH = 3
-_EPS = float(np.finfo(np.float64).eps)
+"""Steps that are tried at rest for the last digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,13 +48,10 @@ class ForwardStatics:
         the platform's balance closes to 1e-9 of the largest tension; NaN otherwise.
     is_stable : array (...) of bool
         Whether the stiffness there is positive definite; only then does the platform stay.
-    steps : array (...) of int
-        Newton steps that were taken.
     """
 
     statics: Statics
     is_stable: BoolArray
-    steps: IntArray
 
     @property
     def verdict(self) -> VerdictArray:
@@ -115,7 +111,6 @@ class _Search:
         self.reach = reach_m(robot)
         self.size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0))) + self.reach
         self.radius = np.full(len(length_m), _FIRST_RADIUS * self.size)
-        self.steps = np.zeros(len(length_m), dtype=np.int64)
         self.left = np.full(len(length_m), _POLISH)
 
     def statics(self, chosen: BoolArray, poses: Poses) -> Statics:
@@ -157,15 +152,12 @@ class _Search:
         rests = np.linalg.norm(before, axis=-1) <= rounding
         mean_work = np.einsum("pi,pi->p", before + after, step)
         closer = np.linalg.norm(after, axis=-1) < np.linalg.norm(before, axis=-1)
+        # At rest a step is kept if it comes closer.
         kept = np.where(rests, closer, mean_work > 0.0)
         taken = np.minimum(length, radius)
-        self.radius[active] = np.where(
-            kept, np.maximum(radius, np.minimum(2.0 * taken, self.size)), 0.25 * taken
-        )
-        # At rest a few more steps are tried for the last digits, each kept if it comes closer.
-        self.radius[active] = np.where(rests, radius, self.radius[active])
+        wider = np.maximum(radius, np.minimum(2.0 * taken, self.size))
+        self.radius[active] = np.where(rests, radius, np.where(kept, wider, 0.25 * taken))
         self.left[active] -= rests
-        self.steps[active] += 1
         moved = np.flatnonzero(active)[kept]
         self.position[moved] = trial.position_m[kept]
         self.rotation[moved] = trial.rotation[kept]
@@ -198,7 +190,7 @@ def _newton_step(
     stiffest = strength.max(axis=-1)
     strength = np.maximum(strength, _FLOOR * stiffest[:, None])
     along = np.einsum("pij,pi->pj", axes, push) / strength
-    return np.einsum("pij,pj->pi", axes, along), 8.0 * _EPS * stiffest * size
+    return np.einsum("pij,pj->pi", axes, along), 8.0 * np.finfo(np.float64).eps * stiffest * size
 
 
 def _result(search: _Search, shape: tuple[int, ...], force_N: FloatArray | None) -> ForwardStatics:
@@ -218,18 +210,16 @@ def _result(search: _Search, shape: tuple[int, ...], force_N: FloatArray | None)
     run = statics.run
     if run.has_wrap:
         run = replace(run, exit_points_m=whole(run.exit_points_m), wrap_m=whole(run.wrap_m))
-    verdict = np.where(solved, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
     rotation = np.eye(3) if robot.is_point_mass else whole(search.rotation)
-    found = Statics(
-        robot=robot,
+    names = "weight_N_per_m", "axial_stiffness_N", "length_m", "force_x_N", "force_z_N"
+    numbers: dict[str, Any] = {name: whole(getattr(statics, name)) for name in names}
+    verdict = np.where(solved, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
+    found = replace(
+        statics,
         poses=Poses(whole(search.position), rotation),
         verdict=verdict.reshape(shape),
-        weight_N_per_m=whole(statics.weight_N_per_m),
-        axial_stiffness_N=whole(statics.axial_stiffness_N),
-        length_m=whole(statics.length_m),
-        force_x_N=whole(statics.force_x_N),
-        force_z_N=whole(statics.force_z_N),
         run=run,
         force_N=force_N,
+        **numbers,
     )
-    return ForwardStatics(found, stable.reshape(shape), search.steps.reshape(shape))
+    return ForwardStatics(found, stable.reshape(shape))

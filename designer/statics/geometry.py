@@ -45,6 +45,11 @@ def upright_poses(robot: Robot, poses: Poses) -> Poses:
     return Poses(np.asarray(poses.position_m @ turn.T), np.asarray(turn @ poses.rotation))
 
 
+def centre_of_mass_arm_m(robot: Robot, poses: Poses) -> FloatArray:
+    """Return the centre of mass from the body's origin, upright frame (..., 3) [m]."""
+    return np.asarray(upright_poses(robot, poses).rotation @ robot.platform.centre_of_mass_m)
+
+
 def upright_exit_points_m(robot: Robot) -> FloatArray:
     """Return the exit points in that frame (n_cables, 3) [m]."""
     if robot.is_upright:
@@ -145,8 +150,6 @@ def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None)
     force, moment = np.split(-robot.pull_N, 2)
     if force_N is not None:
         force = force + force_N @ robot.upright.T
-    rotation = upright_poses(robot, poses).rotation
-    arm = np.einsum("...ij,j->...i", rotation, robot.platform.centre_of_mass_m)
-    moment = moment + np.cross(arm, weight)
+    moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), weight)
     parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
     return np.asarray(np.concatenate(parts, axis=-1)[..., robot.balance_rows])

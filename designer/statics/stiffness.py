@@ -22,10 +22,11 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Robot
 from designer.physics import tangent
-from designer.statics.geometry import cable_geometry, upright_poses
+from designer.statics.geometry import cable_geometry, centre_of_mass_arm_m
 from designer.statics.inverse import Statics
 
 _SOFT = 1e-12
+"""Over the stiffest, or over the chord: what rounding leaves of nothing."""
 
 
 def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
@@ -73,14 +74,11 @@ def upright_stiffness(statics: Statics) -> FloatArray:
         return _balanced(robot, K.sum(axis=-3))
     lever = statics.geometry().lever_m
     B = _cross_matrix(lever)
-    F = _cross_matrix(_forces_N(statics))
+    plan = statics.force_x_N[..., None] * statics.geometry().outward
+    F = _cross_matrix(np.concatenate([plan, statics.force_z_N[..., None]], axis=-1))
     turn = -K @ B
     moment = B @ K
-    arm = np.einsum(
-        "...ij,j->...i",
-        upright_poses(robot, statics.poses).rotation,
-        robot.platform.centre_of_mass_m,
-    )
+    arm = centre_of_mass_arm_m(robot, statics.poses)
     weight = _cross_matrix(np.array([0.0, 0.0, -robot.weight_N]))
     turning = (B @ turn + F @ B).sum(axis=-3) - weight @ _cross_matrix(arm)
     left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
@@ -90,7 +88,9 @@ def upright_stiffness(statics: Statics) -> FloatArray:
 
 def is_stable(robot: Robot, stiffness: FloatArray) -> BoolArray:
     """Tell where a stiffness (..., dof, dof) of the robot is positive definite."""
-    eigenvalues = np.linalg.eigvalsh(_symmetric_or_zero(scaled(robot, stiffness)))
+    K = scaled(robot, stiffness)
+    K = np.where(np.isfinite(K).all(axis=(-2, -1), keepdims=True), K, 0.0)
+    eigenvalues = np.linalg.eigvalsh(0.5 * (K + np.swapaxes(K, -1, -2)))
     return np.asarray(eigenvalues[..., 0] > _SOFT * np.abs(eigenvalues).max(axis=-1))
 
 
@@ -135,13 +135,6 @@ def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     return np.where(good, largest, np.nan)
 
 
-def _forces_N(statics: Statics) -> FloatArray:
-    """Return the force on each cable at the platform, upright frame (..., n_cables, 3) [N]."""
-    outward = statics.geometry().outward
-    plan = statics.force_x_N[..., None] * outward
-    return np.concatenate([plan, statics.force_z_N[..., None]], axis=-1)
-
-
 def _in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
     """Turn stiffness in the vertical plane and across it into three dimensions."""
     out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
@@ -164,9 +157,3 @@ def _balanced(robot: Robot, stiffness: FloatArray) -> FloatArray:
     """Return the rows and columns that the cables balance."""
     rows = robot.balance_rows
     return np.asarray(stiffness[..., rows[:, None], rows])
-
-
-def _symmetric_or_zero(matrix: FloatArray) -> FloatArray:
-    finite = np.asarray(np.isfinite(matrix).all(axis=(-2, -1)))
-    safe = np.where(finite[..., None, None], matrix, 0.0)
-    return np.asarray(0.5 * (safe + np.swapaxes(safe, -1, -2)))

@@ -12,22 +12,30 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import pulley
-from designer.statics.geometry import cable_geometry, upright_exit_points_m, upright_situation
+from designer.statics.geometry import (
+    CableGeometry,
+    cable_geometry,
+    upright_exit_points_m,
+    upright_situation,
+)
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
 _FIRST_TURNS, _MOST_TURNS = 5, 40
+# Last turn of the angle at which a cable leaves its pulley: at rounding, and good enough.
 _STILL_RAD = 1e-13
 SETTLED_RAD = 1e-9
 _PATIENCE = 8
 """Turns after which a pose that does not come nearer moves by half as much."""
 _LEAST_SHARE = 1.0 / 32.0
+"""Of the way to the next tangent point, however it swings."""
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 _AS_GOOD = 1.0 + 1e-7
+"""Weight or tension over another's up to which they are the same but for rounding."""
 
 Answer = TypeVar("Answer")
 
@@ -92,10 +100,21 @@ def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
     if robot.pulley_radius_m == 0.0:
         return PulleyRun(upright_exit_points_m(robot), np.zeros(1))
     geometry = cable_geometry(robot, poses)
-    slope = pulley.straight_slope_rad(
+    return _run(robot, geometry, _straight_slope_rad(robot, geometry))
+
+
+def _straight_slope_rad(robot: Robot, geometry: CableGeometry) -> FloatArray:
+    return pulley.straight_slope_rad(
         geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
     )
-    return _run(robot, geometry.outward, slope)
+
+
+def _run(robot: Robot, geometry: CableGeometry, slope_rad: FloatArray) -> PulleyRun:
+    radius, exits = robot.pulley_radius_m, upright_exit_points_m(robot)
+    return PulleyRun(
+        pulley.tangent_point_m(exits, geometry.outward, slope_rad, radius),
+        pulley.wrap_length_m(slope_rad, radius),
+    )
 
 
 def flat_poses(poses: Poses) -> Poses:
@@ -292,14 +311,11 @@ def over_pulleys(
         run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
         return solve(run)[0], run, np.zeros(poses.shape)
     geometry = cable_geometry(robot, poses)
-    straight = pulley.straight_slope_rad(
-        geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
-    )
-    slope = straight
+    slope = straight = _straight_slope_rad(robot, geometry)
     strain: FloatArray | float = 0.0
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
     for turn in range(turns):
-        run = _run(robot, geometry.outward, slope).unstrained(strain)
+        run = _run(robot, geometry, slope).unstrained(strain)
         answer, found, strain = solve(run)
         step = np.where(np.isfinite(found), found, straight) - slope
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
@@ -309,12 +325,3 @@ def over_pulleys(
         share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
         slope = slope + share[..., None] * step
     return answer, run, gap
-
-
-def _run(robot: Robot, outward: FloatArray, slope_rad: FloatArray) -> PulleyRun:
-    radius = robot.pulley_radius_m
-    exits = upright_exit_points_m(robot)
-    return PulleyRun(
-        pulley.tangent_point_m(exits, outward, slope_rad, radius),
-        pulley.wrap_length_m(slope_rad, radius),
-    )

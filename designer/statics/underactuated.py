@@ -25,12 +25,13 @@ from designer.kernel.calling import plain
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.statics.geometry import one_cable, upright_poses, upright_situation
+from designer.statics.geometry import centre_of_mass_arm_m, one_cable, upright_situation
 from designer.statics.inverse import Statics, statics_with
 from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7
+# What no winch would do: leave so much of the load, or a cable so long for its chord.
 _MOST_LEFT = 0.9
 _LONGEST = 8.0
 
@@ -63,12 +64,15 @@ def solve_underactuated(
 
     n_poses = len(poses.position_m)
     out, told = np.empty((n_poses, robot.n_cables, 3)), np.empty((n_poses, 3))
-    load_N = _load_about_centre_N(robot, poses, force_N)
-    about_origin = upright_situation(robot, poses, robot.exit_points_m)
+    about_origin = upright_situation(robot, poses, robot.exit_points_m, force_N)
+    arm = centre_of_mass_arm_m(robot, poses)
+    pull_N, moment = about_origin.load[:, :3], about_origin.load[:, 3:]
+    # The weight has no moment about the centre of mass.
+    moment = moment - np.cross(arm, pull_N - np.array([0.0, 0.0, robot.weight_N]))
     about_centre = about_origin._replace(
         attachments=plain(robot.attachments_m - robot.platform.centre_of_mass_m),
-        load=plain(load_N),
-        positions=plain(about_origin.positions + _arm_m(robot, poses)),
+        load=plain(np.hstack([np.broadcast_to(pull_N, moment.shape), moment])),
+        positions=plain(about_origin.positions + arm),
         load_point=plain(np.zeros(3)),
     )
 
@@ -86,7 +90,7 @@ def solve_underactuated(
         return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
-    load = np.linalg.norm(load_N[:, :3], axis=1)
+    load = np.linalg.norm(pull_N, axis=1)
     held = (told[:, WRENCH_LEFT] <= _MOST_LEFT * load) & (told[:, LONGEST] <= _LONGEST)
     verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND).astype(np.int8)
     verdict[~((told[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = Verdict.NOT_CONVERGED
@@ -103,25 +107,10 @@ def imbalance(statics: Statics) -> FloatArray:
     wrench = np.zeros((*statics.verdict.shape, 6))
     wrench[..., robot.balance_rows] = statics.equilibrium_residual_N()
     force, moment = wrench[..., :3], wrench[..., 3:]
-    moment = moment - np.cross(_arm_m(robot, statics.poses), force)
+    moment = moment - np.cross(centre_of_mass_arm_m(robot, statics.poses), force)
     wrench[..., 3:] = moment
     left = np.linalg.norm(wrench[..., robot.balance_rows] * _scale(robot), axis=-1)
     return np.asarray(left / robot.weight_N)
-
-
-def _load_about_centre_N(robot: Robot, poses: Poses, force_N: FloatArray | None) -> FloatArray:
-    """Return what is to be held, about the centre of mass, upright frame (1 or n_poses, 6)."""
-    load = robot.loads_N(None if force_N is None else force_N @ robot.upright.T)
-    beside_weight = load[:, :3] - np.array([0.0, 0.0, robot.weight_N])
-    if not beside_weight.any():
-        return load
-    moment = load[:, 3:] - np.cross(_arm_m(robot, poses), beside_weight)
-    return np.hstack([np.broadcast_to(load[:, :3], moment.shape), moment])
-
-
-def _arm_m(robot: Robot, poses: Poses) -> FloatArray:
-    """Return the centre of mass from the body's origin, upright frame (..., 3)."""
-    return np.asarray(upright_poses(robot, poses).rotation @ robot.platform.centre_of_mass_m)
 
 
 def _scale(robot: Robot) -> FloatArray:
