@@ -14,9 +14,6 @@ from designer.model.region import Prism, Rectangle
 from designer.model.verdict import Verdict
 from designer.study import Study
 
-_STEPS = 400
-_IMPOSSIBLE = (Verdict.OUTSIDE_HULL, Verdict.NO_FINITE_CABLE, Verdict.RANK_DEFICIENT)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgeProfile:
@@ -55,7 +52,7 @@ class EdgeProfile:
     @property
     def is_proved(self) -> bool:
         """Whether no cable can hold what is not held beyond the limit, instead of none found."""
-        return bool(np.isin(self._beyond, [Verdict.SOLVED, *_IMPOSSIBLE]).all())
+        return not np.isin(self._beyond, [Verdict.NOT_CONVERGED, Verdict.NOT_FOUND]).any()
 
     @property
     def _beyond(self) -> VerdictArray:
@@ -117,7 +114,7 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
         start = np.array([*centre, focus_m[2]])
         return field_at(study, start + (reach - distance_m)[:, None] * ray)
 
-    distance = reach * np.linspace(1.0, 0.0, _STEPS) ** 2
+    distance = reach * np.linspace(1.0, 0.0, 400) ** 2  # denser toward the edge
     field = at(distance)
     inside = None
     if isinstance(region, Prism):
