@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from designer.analysis.field import Field
 from designer.analysis.maps import Focus
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.report import format as fmt
 from designer.report.figures import palette
 
@@ -133,9 +133,9 @@ class Steps:
         number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
         return np.asarray(self.levels[number % 2 == 0])
 
-    def colours_of(self, values: FloatArray) -> NDArray[np.uint8]:
-        """Return red, green and blue (n, 3) of values (n,)."""
-        return np.asarray(self.colormap(self.norm(values), bytes=True)[:, :3])
+    def colours_of(self, step: IntArray) -> NDArray[np.uint8]:
+        """Return red, green and blue (n, 3) of steps (n,), counted from 0."""
+        return np.round(255.0 * self.colormap(step)[:, :3]).astype(np.uint8)
 
     def bar(self, figure: Figure, label: str, **place: Any) -> None:
         """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""

@@ -280,7 +280,7 @@ def add_workspace(
         values = quantity.of(section)
         some = np.isfinite(values)
         if steps is not None:
-            stage.balls(position[some], 0.008 * size, steps.colours_of(values[some]))
+            stage.balls(position[some], 0.008 * size, steps.colours_of(steps.norm(values[some])))
         stage.balls(position[section.is_infeasible], 0.007 * size, palette.WARNING)
         stage.balls(position[section.is_left_out], 0.007 * size, palette.LEFT_OUT)
         stage.posts(position, floor, 1.0)

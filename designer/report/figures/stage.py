@@ -202,7 +202,7 @@ def banded(surface: PolyData, steps: Steps) -> PolyData:
     step = np.asarray(cut.cell_data[cut.cell_data.keys()[-1]]).astype(int).clip(0, count - 1)
     bare = cut.copy()
     bare.clear_data()
-    bare.cell_data["colour"] = steps.colormap(step, bytes=True)[:, :3]
+    bare.cell_data["colour"] = steps.colours_of(step)
     return bare
 
 
