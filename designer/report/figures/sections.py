@@ -221,11 +221,9 @@ def _paint(
     x, y = np.moveaxis(flat, -1, 0)
     axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     if is_bad.any():
-        bad: Style = {"levels": [0.5, 1.5]}
-        axes.contourf(x, y, is_bad.astype(np.float64), colors=[palette.WARNING_PALE], **bad)
-        bad |= {"colors": "none", "hatches": ["//////"]}
-        hatched = axes.contourf(x, y, is_bad.astype(np.float64), **bad)
-        hatched.set(edgecolor=palette.WARNING, linewidth=0.0)
+        look: Style = {"colors": [palette.WARNING_PALE], "hatches": ["//////"]}
+        bad = axes.contourf(x, y, is_bad.astype(np.float64), levels=[0.5, 1.5], **look)
+        bad.set(edgecolor=palette.WARNING, linewidth=0.0)
     if steps is None:
         return
     steps.fill(axes, x, y, values)
