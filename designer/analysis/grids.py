@@ -22,21 +22,10 @@ def centroid_m(polygon_m: FloatArray) -> FloatArray:
 
 
 def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> FloatArray:
-    """Return a horizontal section of the region as rings about its centre.
+    """Return a horizontal section of the region as rings about its centre (rings, spokes + 1, 3).
 
-    Parameters
-    ----------
-    region : Prism
-        The region.
-    z_m : float
-        Height of the section [m].
-    rings, spokes : int
-        Points outward and around; the last spoke repeats the first.
-
-    Returns
-    -------
-    array (rings, spokes + 1, 3)
-        Positions [m]; row 0 is the centre, the last row the outline with all its corners.
+    Row 0 is the centre, the last row the outline with all its corners; the last spoke repeats the
+    first [m].
     """
     outline = outline_m(region.polygon_m, spokes)
     return _at_height(_rings(centroid_m(region.polygon_m), outline, rings), z_m)

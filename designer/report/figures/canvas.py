@@ -143,14 +143,8 @@ def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray
 def svg(figure: Figure, key: str, title: str) -> str:
     """Return the figure as an ``<svg>`` element that scales with its surroundings, and empty it.
 
-    Parameters
-    ----------
-    figure : Figure
-        What to save, inside `drawing`.
-    key : str
-        Put before every id, so that several charts can stand in one page.
-    title : str
-        What the chart shows, for those who cannot see it.
+    Inside `drawing`. ``key`` is put before every id, so that several charts can stand in one page;
+    the title tells what the chart shows to those who cannot see it.
     """
     stream = io.StringIO()
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))

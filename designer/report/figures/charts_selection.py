@@ -33,14 +33,8 @@ def candidates_chart(selection: SelectionResult, most: int = 25) -> str:
     """Return a row for each grade: range of sizes, need, best size, as SVG.
 
     Grades that hold come first, the lightest on top; then those that end too thin, the nearest
-    first; then those of which no section holds.
-
-    Parameters
-    ----------
-    selection : SelectionResult
-        Where nothing was chosen, the grades outside the study's list that would hold follow.
-    most : int
-        How many rows to show; the figure says how many more there are.
+    first; then those of which no section holds. Where nothing was chosen, the grades outside the
+    study's list that would hold follow. The figure says how many more than ``most`` there are.
     """
     others = rank(selection.alternatives)[: most // 2]
     own = rank(selection.outcomes)[: most - len(others)]

@@ -27,14 +27,8 @@ _KILONEWTON = 1e3
 class MapQuantity:
     """One of the quantities that can be mapped.
 
-    Parameters
-    ----------
-    key : str
-        Short name, used in the ids of a drawing.
-    title, unit : str
-        Name and unit on the axis; no unit for a pure number.
-    scale : float
-        From SI to that unit.
+    ``key`` is used in the ids of a drawing; ``scale`` leads from SI to the unit on the axis, which
+    is empty for a pure number.
     """
 
     key: str
@@ -83,14 +77,9 @@ def tension_of(field: Field) -> MapQuantity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Steps:
-    """Round boundaries of the steps of a colour scale.
+    """Round boundaries (n,) of the steps of a colour scale, ascending.
 
-    Parameters
-    ----------
-    levels : array (n,)
-        Boundaries, ascending.
-    extend : str
-        ``max`` if there are values above the last boundary, else ``neither``.
+    ``extend`` is ``max`` if there are values above the last boundary.
     """
 
     levels: FloatArray
@@ -169,13 +158,6 @@ def steps_for(values: FloatArray, most: int = 14) -> Steps | None:
 
     Near a pose that no cable can hold the values grow without bound. They would squeeze all
     others into one colour, so the scale ends where nearly all of them lie, and says that it does.
-
-    Parameters
-    ----------
-    values : array
-        Any shape; NaN where there is no value.
-    most : int
-        How many steps at most.
     """
     from matplotlib.ticker import MaxNLocator
 

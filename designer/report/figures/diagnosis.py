@@ -36,16 +36,8 @@ def carriers_chart(
 ) -> str:
     """Return the residual against what it goes with, as SVG: a panel or two for each covariate.
 
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-        With residuals and covariates.
-    names : sequence of str
-        Covariates to show.
-    key : str
-        Put before ids, so that several charts can stand in one page.
-    layout : str
-        ``stacked``: before above after; ``overlaid``: both in one panel; ``after``: only that.
+    ``key`` is put before ids, so that several charts can stand in one page. The layout is before
+    above after (``stacked``), both in one panel (``overlaid``), or only ``after``.
     """
     stages = {"stacked": [["before"], ["after"]], "overlaid": [["before", "after"]]}
     rows = stages.get(layout, [["after"]])

@@ -205,12 +205,10 @@ def write_clear(
 
     Parameters
     ----------
-    anchors_m : array (n, 3)
-        Places that the text may stand beside, the best first [m].
+    anchors_m, distances : array (n, 3), iterable of float
+        Places that the text may stand beside [m], and how far off [points]; the best first.
     obstacles_px : array (k, 2)
         Points of lines and bodies that are better left free, see `obstacles`.
-    distances : iterable of float
-        From anchor to the edge of the text, the best first [points].
     """
     looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)

@@ -147,12 +147,7 @@ def workspace_scene(
 ) -> bytes:
     """Return a picture of the workspace with exit points and the cables at its worst pose, as PNG.
 
-    Parameters
-    ----------
-    maps : WorkspaceMaps
-        What to draw; a list of points is drawn as balls.
-    quantity : MapQuantity
-        What the colours mean.
+    A list of points is drawn as balls.
     """
     steps = scale_of(maps, quantity)
     stage = Stage(view_of(maps, look.frame))

@@ -90,13 +90,11 @@ def section_map(
     Parameters
     ----------
     shown : Section
-        Values in the unit of the label.
+        Values in the unit of the colour bar's label.
     key : str
         Short name, put before every id of the drawing.
-    label : str
-        Of the colour bar, with the unit.
-    why_bad : str
-        What the hatching means.
+    label, why_bad : str
+        Of the colour bar, and what the hatching means.
     limit : float or None
         The value that is asked for, whose contour is drawn boldly.
     """

@@ -46,13 +46,6 @@ SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0)
 class Stage:
     """A white stage without lamps, before a camera: a colour is what the colour bar says it is.
 
-    Parameters
-    ----------
-    view : View
-        Where the camera stands.
-    pen : Pen
-        How lines are drawn.
-
     Raises
     ------
     MissingLibraryError
