@@ -14,9 +14,6 @@ from designer.model.region import Prism, Rectangle
 from designer.model.verdict import Verdict
 from designer.study import Study
 
-_STEPS = 400
-_IMPOSSIBLE = (Verdict.OUTSIDE_HULL, Verdict.NO_FINITE_CABLE, Verdict.RANK_DEFICIENT)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgeProfile:
@@ -55,7 +52,7 @@ class EdgeProfile:
     @property
     def is_proved(self) -> bool:
         """Whether no cable can hold what is not held beyond the limit, instead of none found."""
-        return bool(np.isin(self._beyond, [Verdict.SOLVED, *_IMPOSSIBLE]).all())
+        return not np.isin(self._beyond, [Verdict.NOT_CONVERGED, Verdict.NOT_FOUND]).any()
 
     @property
     def _beyond(self) -> VerdictArray:
@@ -77,19 +74,9 @@ class EdgeProfile:
 def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     """Size the level line from the centre of the region through a pose to the edge of the hull.
 
-    Parameters
-    ----------
-    study : Study
-        With a workspace.
-    focus_m : array (3,)
-        The line runs at its height, and through it; where it lies in the centre, to the nearest
-        edge [m].
-
-    Returns
-    -------
-    EdgeProfile or None
-        None where the centre of the region lies outside the hull of the exit points, the region
-        or the robot lies in an upright plane, or things do not fall along z.
+    The line runs at the height of ``focus_m`` (3,) [m], and through it; where that lies in the
+    centre, to the nearest edge. None where the centre of the region lies outside the hull of the
+    exit points, the region or the robot lies in an upright plane, or things do not fall along z.
     """
     assert study.workspace is not None
     region = study.workspace.region
@@ -104,12 +91,7 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
         centre = np.asarray(region.points_m[:, :2].mean(axis=0))
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
         return None
-    offset = focus_m[:2] - centre
-    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
-        azimuth = float(np.arctan2(offset[1], offset[0]))
-    else:
-        around = np.linspace(-np.pi, np.pi, 361)
-        azimuth = float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])
+    azimuth = _azimuth_rad(hull, centre, focus_m)
     reach = grids.reach_m(hull, centre, azimuth)
     ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
@@ -117,7 +99,7 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
         start = np.array([*centre, focus_m[2]])
         return field_at(study, start + (reach - distance_m)[:, None] * ray)
 
-    distance = reach * np.linspace(1.0, 0.0, _STEPS) ** 2
+    distance = reach * np.linspace(1.0, 0.0, 400) ** 2  # denser toward the edge
     field = at(distance)
     inside = None
     if isinstance(region, Prism):
@@ -125,13 +107,22 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     return EdgeProfile(
         distance_m=distance,
         field=field,
-        focus_distance_m=reach - float(np.hypot(*offset)),
+        focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
         region_distance_m=inside,
         limit_distance_m=first_failure_m(at, distance, field, lambda some: some.is_solved),
         straight_distance_m=first_failure_m(
             at, distance, field, lambda some: some.is_held_straight
         ),
     )
+
+
+def _azimuth_rad(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> float:
+    """Direction to the focus, or to the nearest edge where the focus is in the centre."""
+    offset = focus_m[:2] - centre
+    if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
+        return float(np.arctan2(offset[1], offset[0]))
+    around = np.linspace(-np.pi, np.pi, 361)
+    return float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])
 
 
 def first_failure_m(
@@ -142,20 +133,8 @@ def first_failure_m(
 ) -> float | None:
     """Return where the first pose that is not held lies, on the way outward [m].
 
-    Parameters
-    ----------
-    at : callable
-        Field at distances (n,) [m].
-    distance_m, field : array (n,), Field
-        Descending distances [m] and the field there; between two of them the place is found by
-        bisection.
-    is_held : callable
-        Whether each pose of a field is held.
-
-    Returns
-    -------
-    float or None
-        None where all are held, and where the first is not.
+    Bisects between two of the descending distances (n,) [m], ``field`` being that at all of them.
+    None where all poses are held, and where the first is not.
     """
     from scipy.optimize import bisect
 

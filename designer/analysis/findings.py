@@ -35,12 +35,8 @@ _CHUNK = 2**18
 class MasslessChoice:
     """The size of the chosen grade that a design without sag would have picked.
 
-    Parameters
-    ----------
-    candidate : Candidate
-        The thinnest size whose allowable tension covers the massless one.
-    verification : Verification
-        What that size really meets in the workspace.
+    It is the thinnest whose allowable tension covers the massless one; ``verification`` tells what
+    it really meets in the workspace.
     """
 
     candidate: Candidate
@@ -60,14 +56,9 @@ class MasslessChoice:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OtherPolicy:
-    """The workspace with the opposite setting of ``hangs_below``.
+    """The workspace with the opposite setting of ``hangs_below``, and what that leads to.
 
-    Parameters
-    ----------
-    hangs_below : str
-        The opposite setting.
-    map : WorkspaceMap
-        What it leads to, from at most 20 000 samples and the search between them.
+    From at most 20 000 samples and the search between them.
     """
 
     hangs_below: HangsBelow

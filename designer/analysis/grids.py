@@ -9,7 +9,6 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.region import Prism, Rectangle
 
-_RINGS, _SPOKES, _LAYERS = 48, 180, 24
 _OPENING_RAD = np.radians(100.0)
 
 
@@ -23,21 +22,10 @@ def centroid_m(polygon_m: FloatArray) -> FloatArray:
 
 
 def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> FloatArray:
-    """Return a horizontal section of the region as rings about its centre.
+    """Return a horizontal section of the region as rings about its centre (rings, spokes + 1, 3).
 
-    Parameters
-    ----------
-    region : Prism
-        The region.
-    z_m : float
-        Height of the section [m].
-    rings, spokes : int
-        Points outward and around; the last spoke repeats the first.
-
-    Returns
-    -------
-    array (rings, spokes + 1, 3)
-        Positions [m]; row 0 is the centre, the last row the outline with all its corners.
+    Row 0 is the centre, the last row the outline with all its corners; the last spoke repeats the
+    first [m].
     """
     outline = outline_m(region.polygon_m, spokes)
     return _at_height(_rings(centroid_m(region.polygon_m), outline, rings), z_m)
@@ -76,11 +64,11 @@ def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
     """
     centre = centroid_m(region.polygon_m)
     outline = _opened(region.polygon_m, centre, toward_m)
-    rings = _rings(centre, outline, _RINGS)
+    rings = _rings(centre, outline, 48)
     low, high = region.z_m
 
     def raised(line: FloatArray) -> FloatArray:
-        return np.stack([_at_height(line, z) for z in np.linspace(low, high, _LAYERS)])
+        return np.stack([_at_height(line, z) for z in np.linspace(low, high, 24)])
 
     return {
         "top": _at_height(rings, high),
@@ -92,16 +80,14 @@ def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:
 
 
 def reach_m(polygon_m: FloatArray, centre_m: FloatArray, azimuth_rad: float) -> float:
-    """Return how far it is from a point inside a convex polygon to its edge [m].
+    """Return how far it is from a point (2,) inside a convex polygon to its edge [m].
 
     Parameters
     ----------
     polygon_m : array (n_corners, 2)
         Corners, counter-clockwise [m].
-    centre_m : array (2,)
-        The point [m].
-    azimuth_rad : float
-        Direction, from the x axis [rad].
+    centre_m, azimuth_rad : array (2,), float
+        The point [m], and the direction from the x axis [rad].
     """
     edges = np.roll(polygon_m, -1, axis=0) - polygon_m
     outward = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
@@ -123,7 +109,7 @@ def _opened(polygon_m: FloatArray, centre: FloatArray, toward_m: FloatArray) -> 
         centre + reach_m(polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
         for a in (start, start + _OPENING_RAD)
     ]
-    points = np.concatenate([outline_m(polygon_m, _SPOKES)[:-1], ends])
+    points = np.concatenate([outline_m(polygon_m, 180)[:-1], ends])
     turned = np.mod(_azimuth(points - centre) - start, 2.0 * np.pi)
     turned[-2:] = [2.0 * np.pi, _OPENING_RAD]
     kept = np.argsort(turned)

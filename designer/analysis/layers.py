@@ -17,8 +17,6 @@ from designer.workspace.demand import is_left_out
 
 _MOST = 5
 _HEIGHTS = 25
-_MOST_SOLVED = 2_000_000
-"""Poses of all sizes and orientations; rings and heights are fewer where there would be more."""
 _BEYOND = 1e3
 
 
@@ -52,7 +50,7 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
         return None
     plan = maps.shell["top"].position_m
     solved = plan[..., 0].size * _HEIGHTS * len(shown) * len(workspace.orientations.turns_rad)
-    share = min(1.0, np.sqrt(_MOST_SOLVED / solved))
+    share = min(1.0, np.sqrt(2e6 / solved))  # a coarser grid where there would be more to solve
     rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
     heights = np.linspace(*maps.region.z_m, max(2, round(share * _HEIGHTS)))
     position = np.repeat(plan[rings, :, None], len(heights), axis=2)

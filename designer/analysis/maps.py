@@ -22,9 +22,7 @@ from designer.study import Study, Workspace, as_built_by
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep
 
-_CURVE_POINTS = 300
 _MOST_POINTS = 3000
-_ALONG_AXIS = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,7 +145,7 @@ class WorkspaceMaps:
     def axis_labels(self) -> tuple[str, str]:
         """What the axes of such maps are."""
         main = int(np.argmax(self.across))
-        is_axis = bool(self.across[main] > 1.0 - _ALONG_AXIS)
+        is_axis = bool(self.across[main] > 1.0 - 1e-9)
         right = f"{'xyz'[main]} [m]" if is_axis else "along the plane [m]"
         return right, "z [m]" if self.is_upright else "y [m]"
 
@@ -158,12 +156,7 @@ class WorkspaceMaps:
 
 
 def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
-    """Compute what the figures of a workspace show.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        Of a study with a workspace, its sweep file in place.
+    """Compute what the figures of a workspace show, its sweep file in place.
 
     Raises
     ------
@@ -231,7 +224,7 @@ def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatAr
     ordered = np.sort(diameter_m[np.isfinite(diameter_m)])
     if len(ordered) == 0:
         return np.empty(0), np.empty(0)
-    at = np.unique(np.linspace(0, len(ordered) - 1, _CURVE_POINTS).round().astype(int))
+    at = np.unique(np.linspace(0, len(ordered) - 1, 300).round().astype(int))
     return ordered[at], (at + 1.0) / total
 
 

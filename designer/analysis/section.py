@@ -16,9 +16,6 @@ from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import is_left_out
 
-_STIFFNESS_GRID = (40, 144)
-_CLEARANCE_GRID = (16, 60)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
@@ -44,7 +41,7 @@ class Section:
 
 def displacement_section(analysis: Analysis) -> Section | None:
     """Return the largest displacement under a unit force [m/N]; None without an area."""
-    statics = _statics(analysis, _STIFFNESS_GRID)
+    statics = _statics(analysis, 40, 144)
     if statics is None:
         return None
     displacement = largest_displacement_m_per_N(statics)
@@ -56,21 +53,21 @@ def clearance_section(analysis: Analysis) -> Section | None:
     found = None if analysis.qualities is None else analysis.qualities.interference
     if found is None or found.worst is None:
         return None
-    statics = _statics(analysis, _CLEARANCE_GRID)
+    statics = _statics(analysis, 16, 60)
     if statics is None:
         return None
     distance = smallest_clearance(statics).distance_m
     return _section(analysis, statics, distance, ~statics.is_solved)
 
 
-def _statics(analysis: Analysis, grid: tuple[int, int]) -> Statics | None:
+def _statics(analysis: Analysis, rings: int, spokes: int) -> Statics | None:
     """Solve the section at the middle height, with the cable of the design."""
     workspace, qualities = analysis.study.workspace, analysis.qualities
     if workspace is None or qualities is None or not isinstance(workspace.region, Prism):
         return None
     if analysis.built.robot.is_planar:  # it has no area in plan
         return None
-    positions = grids.disc_m(workspace.region, 0.5 * sum(workspace.region.z_m), *grid)
+    positions = grids.disc_m(workspace.region, 0.5 * sum(workspace.region.z_m), rings, spokes)
     poses = Poses.at(positions, workspace.orientations.turns_rad[0])
     return solve_sagging(analysis.built.robot, poses, qualities.cable.cable)
 

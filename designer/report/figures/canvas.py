@@ -126,40 +126,25 @@ def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layou
 
 
 def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:
-    """Return a name and a place for each exit point, one for those closer together than a name.
+    """Return a name and a place for each exit point (n_cables, 2 or 3) [m].
 
-    Parameters
-    ----------
-    points_m : array (n_cables, 2 or 3)
-        Exit points [m].
-    apart_m : float
-        Names this close would overlap [m].
+    Those closer together than ``apart_m``, whose names would overlap, have one name [m].
     """
-    groups: list[list[int]] = []
+    groups: dict[int, list[int]] = {}
     for index, point in enumerate(points_m):
-        near = (g for g in groups if np.linalg.norm(points_m[g[0]] - point) < apart_m)
-        group = next(near, None)
-        if group is None:
-            groups.append([index])
-        else:
-            group.append(index)
+        near = (first for first in groups if np.linalg.norm(points_m[first] - point) < apart_m)
+        groups.setdefault(next(near, index), []).append(index)
     return [
         (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
-        for group in groups
+        for group in groups.values()
     ]
 
 
 def svg(figure: Figure, key: str, title: str) -> str:
     """Return the figure as an ``<svg>`` element that scales with its surroundings, and empty it.
 
-    Parameters
-    ----------
-    figure : Figure
-        What to save, inside `drawing`.
-    key : str
-        Put before every id, so that several charts can stand in one page.
-    title : str
-        What the chart shows, for those who cannot see it.
+    Inside `drawing`. ``key`` is put before every id, so that several charts can stand in one page;
+    the title tells what the chart shows to those who cannot see it.
     """
     stream = io.StringIO()
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))

@@ -15,7 +15,6 @@ from designer.report.figures.canvas import Style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_TITLE = "Needed diameter from the centre of the region through the worst pose to the edge"
 _AT_TOP = ("data", "axes fraction")
 
 
@@ -28,6 +27,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     if profile is None:
         return None
     start, top = _window(profile), _top(profile, focus)
+    shown = "Needed diameter from the centre of the region through the worst pose to the edge"
     with canvas.drawing():
         figure = canvas.sheet(70.0)
         axes = figure.subplots()
@@ -50,7 +50,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         height = fmt.number(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
         axes.set_xlabel("distance to the edge of the exit points' hull, along the line [m]")
-        return canvas.svg(figure, "edge", _TITLE)
+        return canvas.svg(figure, "edge", shown)
 
 
 def _window(profile: EdgeProfile) -> float:

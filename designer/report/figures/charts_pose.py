@@ -16,11 +16,6 @@ from designer.sizing.loop import Iterate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_MARKERS = 40
-_DIVERGES = 10.0
-_FEWEST = 3
-_KILONEWTON = 1e3
-
 
 def loop_chart(pose: PoseAnalysis) -> str:
     """Return both iterates of the loop side by side, with the optimum as their limit, as SVG.
@@ -29,7 +24,7 @@ def loop_chart(pose: PoseAnalysis) -> str:
     """
     turns = shown_turns(pose)
     largest_N = float(pose.sizing.statics.largest_tension_N)
-    unit, scale = ("N", 1.0) if largest_N < _KILONEWTON else ("kN", 1e-3)
+    unit, scale = ("N", 1.0) if largest_N < 1e3 else ("kN", 1e-3)
     tension = np.array([turn.max_tension_N for turn in turns]) * scale
     diameter = np.array([turn.diameter_m for turn in turns]) * 1e3
     title = "Largest tension and diameter over the turns of the loop"
@@ -56,8 +51,8 @@ def shown_turns(pose: PoseAnalysis) -> tuple[Iterate, ...]:
     turns = pose.loop.iterates
     if bool(pose.sizing.statics.is_solved):
         return turns
-    most_N = max((_DIVERGES * t.max_tension_N for t in turns[:1]), default=0.0)
-    return tuple(t for k, t in enumerate(turns) if k < _FEWEST or t.max_tension_N < most_N)
+    most_N = max((10.0 * t.max_tension_N for t in turns[:1]), default=0.0)
+    return tuple(t for k, t in enumerate(turns) if k < 3 or t.max_tension_N < most_N)
 
 
 def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
@@ -69,7 +64,7 @@ def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
         text, frame = f"optimum {fmt.number(limit)} {unit}", ("axes fraction", "data")
         style = {"ha": "right", "va": "bottom", "color": palette.SAG}
         canvas.note(axes, text, (1.0, limit), (0, 4), xycoords=frame, **style)
-    marker = "o" if len(values) <= _MOST_MARKERS else ""
+    marker = "o" if len(values) <= 40 else ""  # more would run together
     axes.plot(values, color=palette.SAG, marker=marker, markersize=3.2)
     rim = {"markeredgecolor": palette.MASSLESS, "markeredgewidth": 1.3}
     axes.plot(0, values[0], **(canvas.RING | rim), markersize=5.5)

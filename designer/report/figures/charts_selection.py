@@ -23,38 +23,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MOST = 25
-_ROW_MM = 4.6
-_PALE = 0.45
-_ROOM_PX = 14.0
-_FEW = 60
-_DECADE = 6.0
-_THOUSAND = 1e3
 _SIZE: Style = {"marker": "o", "markersize": 4.2, "markeredgecolor": palette.INK}
 _BEATEN: Style = {"markersize": 2.6, "markeredgewidth": 0.0}
 _FRONT: Style = {"markersize": 6.0, "markeredgewidth": 0.9, "markeredgecolor": palette.INK}
 _CHOSEN: Style = _FRONT | {"markersize": 9.0, "markeredgewidth": 1.8}
 
 
-def candidates_chart(selection: SelectionResult, most: int = _MOST) -> str:
+def candidates_chart(selection: SelectionResult, most: int = 25) -> str:
     """Return a row for each grade: range of sizes, need, best size, as SVG.
 
     Grades that hold come first, the lightest on top; then those that end too thin, the nearest
-    first; then those of which no section holds.
-
-    Parameters
-    ----------
-    selection : SelectionResult
-        Where nothing was chosen, the grades outside the study's list that would hold follow.
-    most : int
-        How many rows to show; the figure says how many more there are.
+    first; then those of which no section holds. Where nothing was chosen, the grades outside the
+    study's list that would hold follow. The figure says how many more than ``most`` there are.
     """
     others = rank(selection.alternatives)[: most // 2]
     own = rank(selection.outcomes)[: most - len(others)]
     shown = own + others
     left_out = len(selection.outcomes) + len(selection.alternatives) - len(shown)
     with canvas.drawing():
-        figure = canvas.sheet(20.0 + _ROW_MM * max(len(shown), 1))
+        figure = canvas.sheet(20.0 + 4.6 * max(len(shown), 1))
         axes = figure.subplots()
         right = _right_end(shown)
         axes.set(xlim=(0.0, right), ylim=(len(shown) - 0.4, -0.6))
@@ -122,7 +109,7 @@ def _pale(grade: Grade) -> str:
     from matplotlib.colors import to_hex, to_rgb
 
     colour = np.array(to_rgb(palette.CLASS_COLOURS[class_of(grade)]))
-    return to_hex(1.0 - _PALE * (1.0 - colour))
+    return to_hex(1.0 - 0.45 * (1.0 - colour))
 
 
 def _marked(outcome: GradeOutcome) -> list[Candidate]:
@@ -181,8 +168,8 @@ class _Along:
         meaning = MEANINGS[objective]
         unit, scale = meaning.unit or selection.currency or "", 1.0
         values = [c.figures.value(objective) for c in _holding(selection)]
-        if unit.startswith("N") and min(values, default=0.0) >= _THOUSAND:
-            unit, scale = f"k{unit}", 1.0 / _THOUSAND
+        if unit.startswith("N") and min(values, default=0.0) >= 1e3:
+            unit, scale = f"k{unit}", 1e-3
         return cls(objective, f"{meaning.title} [{unit}]" if unit else meaning.title, scale)
 
 
@@ -212,7 +199,7 @@ def _holding(selection: SelectionResult) -> list[Candidate]:
 
 def _panel(axes: Axes, selection: SelectionResult, across: _Along, up: _Along) -> None:
     holding, front = _holding(selection), list(selection.front)
-    size = _BEATEN["markersize"] * (1.5 if len(holding) < _FEW else 1.0)
+    size = _BEATEN["markersize"] * (1.5 if len(holding) < 60 else 1.0)
     for some, style in (
         ([c for c in holding if c not in front], _BEATEN | {"markersize": size}),
         (front[1:], _FRONT),
@@ -233,7 +220,7 @@ def _number(axes: Axes, front: list[Candidate], across: _Along, up: _Along) -> N
     for number, candidate in enumerate(front[:MOST_ROWS], start=1):
         for x, y in _points([candidate], across, up):
             place = axes.transData.transform((x, y))
-            if any(np.hypot(*(place - other)) < _ROOM_PX for other in taken):
+            if any(np.hypot(*(place - other)) < 14.0 for other in taken):
                 continue
             taken.append(place)
             style = {"ha": "right", "fontweight": "bold", "path_effects": canvas.halo()}
@@ -252,7 +239,7 @@ def _scales(axes: Axes, values: list[FloatArray]) -> None:
 
     for axis, which, along in zip((axes.xaxis, axes.yaxis), "xy", values, strict=True):
         span = float(along.max() / along.min()) if len(along) else 1.0
-        if span > _DECADE:
+        if span > 6.0:
             axes.set(**{f"{which}scale": "log"})
             subs = (1.0,) if span > 30.0 else (1.0, 2.0, 5.0)
             axis.set_major_locator(LogLocator(subs=subs))

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.analysis.maps import Served
+from designer.arrays import FloatArray
+from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
@@ -19,9 +21,6 @@ from designer.workspace.result import Census
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_APART = 0.03
-_LOW = 75.0  # where all sizes serve more, the axis begins here
-_HELD_BELOW = "#8CC1E0"
 _CHARACTER = 0.0098  # width of a character over the width of the figure
 
 
@@ -32,32 +31,11 @@ def served_chart(served: Served) -> str:
         figure = canvas.sheet(64.0)
         axes = figure.subplots()
         axes.set(ylim=(0.0, 104.0), xlim=_served_range(served))
-        curves = (
-            (served.massless_diameter_m, served.massless_share, palette.MASSLESS),
-            (served.diameter_m, served.share, palette.SAG),
-        )
-        for diameter_m, share, colour in curves:
-            if len(diameter_m) > 0:  # a staircase: a pose is served by its diameter and all above
-                right = max(axes.get_xlim()[1], 1e3 * diameter_m[-1])
-                x = np.concatenate([[0.0], 1e3 * diameter_m, [right]])
-                y = 100.0 * np.concatenate([[0.0], share, share[-1:]])
-                axes.step(x, y, where="post", color=colour)
-        names = (("massless", "massless", "right"), ("with sag", "serves all", "left"))
-        needed = (served.massless_needed_m, served.needed_m)
-        for (diameter_m, share, colour), (name, _, side) in zip(curves, names, strict=True):
-            if len(diameter_m) > 0:
-                at = int(np.searchsorted(share, 0.45 * share[-1]))
-                place = (1e3 * diameter_m[at], 45.0 * share[-1])
-                offset, va = ((6, -4), "top") if side == "left" else ((-6, 4), "bottom")
-                canvas.note(axes, name, place, offset, ha=side, va=va, color=colour)
-        for needed_m, (_, _, colour), (_, what, side) in zip(needed, curves, names, strict=True):
-            if np.isfinite(needed_m):
-                axes.axvline(1e3 * needed_m, color=colour, linewidth=0.9, linestyle=canvas.DASHES)
-                text = f"{what}: {fmt.number(1e3 * needed_m, 3)} mm"
-                place, offset = (1e3 * needed_m, 3.0), (-3 if side == "right" else 3, 0)
-                canvas.note(
-                    axes, text, place, offset, rotation=90, ha=side, va="bottom", color=colour
-                )
+        sag, straight = (palette.SAG, 1), (palette.MASSLESS, -1)
+        _curve(axes, served.massless_diameter_m, served.massless_share, "massless", *straight)
+        _curve(axes, served.diameter_m, served.share, "with sag", *sag)
+        _needed(axes, served.massless_needed_m, "massless", *straight)
+        _needed(axes, served.needed_m, "serves all", *sag)
         _unserved(axes, served)
         canvas.grid_lines(axes)
         axes.set_yticks(range(0, 101, 20))
@@ -80,6 +58,29 @@ def _served_range(served: Served) -> tuple[float, float]:
     return max(low - room, 0.0), high + room
 
 
+def _curve(
+    axes: Axes, diameter_m: FloatArray, share: FloatArray, name: str, colour: str, side: int
+) -> None:
+    """A staircase, since a pose is served by its diameter and by all above; its name at a side."""
+    if len(diameter_m) == 0:
+        return
+    right = max(axes.get_xlim()[1], 1e3 * diameter_m[-1])
+    x = np.concatenate([[0.0], 1e3 * diameter_m, [right]])
+    axes.step(x, 100.0 * np.concatenate([[0.0], share, share[-1:]]), where="post", color=colour)
+    at = int(np.searchsorted(share, 0.45 * share[-1]))
+    place = (1e3 * diameter_m[at], 45.0 * share[-1])
+    ha, va = ("left", "top") if side > 0 else ("right", "bottom")
+    canvas.note(axes, name, place, (6 * side, -4 * side), ha=ha, va=va, color=colour)
+
+
+def _needed(axes: Axes, needed_m: float, what: str, colour: str, side: int) -> None:
+    if np.isfinite(needed_m):
+        axes.axvline(1e3 * needed_m, color=colour, linewidth=0.9, linestyle=canvas.DASHES)
+        text = f"{what}: {fmt.number(1e3 * needed_m, 3)} mm"
+        style: Style = {"ha": "left" if side > 0 else "right", "va": "bottom", "color": colour}
+        canvas.note(axes, text, (1e3 * needed_m, 3.0), (3 * side, 0), rotation=90, **style)
+
+
 def _unserved(axes: Axes, served: Served) -> None:
     if served.samples == 0:
         axes.text(0.5, 50.0, "every pose is left out", ha="center", va="center")
@@ -100,7 +101,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         axes = figure.subplots()
         x = 1e3 * np.array([one.size.diameter_m for one in usable.sizes])
         y = 100.0 * np.array([one.fraction for one in usable.sizes])
-        low = _LOW if y.min() > _LOW else 0.0
+        low = 75.0 if y.min() > 75.0 else 0.0  # where the axis begins
         room = 100.0 - low
         axes.set(ylim=(low - 0.02 * room, 100.0 + 0.16 * room), xlim=_usable_range(usable, x))
         axes.plot(x, y, color=palette.SAG, linewidth=1.0, alpha=0.6)
@@ -119,7 +120,7 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         return canvas.svg(figure, "usable", "Share of the workspace that each size serves")
 
 
-def _usable_range(usable: Usable, diameters: np.ndarray) -> tuple[float, float]:
+def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
     """From the last size before any serves to a few above the one from which on all serve all."""
     serving = [k for k, one in enumerate(usable.sizes) if one.fraction > 0.0]
     low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
@@ -129,13 +130,13 @@ def _usable_range(usable: Usable, diameters: np.ndarray) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _name_sizes(axes: Axes, usable: Usable, x: np.ndarray, y: np.ndarray) -> None:
+def _name_sizes(axes: Axes, usable: Usable, x: FloatArray, y: FloatArray) -> None:
     """Name the sizes along the curve, as far as there is room."""
     left, right = axes.get_xlim()
     last = -1.0
     for one, at, share in zip(usable.sizes, x, y, strict=True):
         place = (at - left) / (right - left)
-        if not 0.0 <= place <= 1.0 or place - last < _APART:
+        if not 0.0 <= place <= 1.0 or place - last < 0.03:
             continue
         last = place
         side, va = (-1, "top") if share > 50.0 else (1, "bottom")
@@ -157,22 +158,21 @@ class Part:
 
 def parts(census: Census) -> tuple[Part, ...]:
     """Return the parts of the bar that are not empty; together they hold every sample."""
-    status = census.statuses
-    leaves_out = census.excluded > 0
-    finite = status["no_finite_cable"]
-    everything = (
-        Part("held", status["solved"] - census.hangs_below, palette.SAG),
-        Part(
-            "left out: a cable hangs below" if leaves_out else "held, a cable hangs below",
-            census.hangs_below + (finite if leaves_out else 0),
-            palette.LEFT_OUT if leaves_out else _HELD_BELOW,
-        ),
-        Part("no finite cable", 0 if leaves_out else finite, palette.WARNING_PALE, "//////"),
-        Part("no cables hold it", status["outside_hull"], palette.WARNING),
-        Part("none found", status["not_found"], palette.WARNING_PALE, "......"),
-        Part("rank deficient", status.get("rank_deficient", 0), palette.LEFT_OUT),
-        Part("not converged", status["not_converged"], palette.INK),
+    status = dict(census.statuses)
+    held = status["solved"] - census.hangs_below
+    below, label, colour = census.hangs_below, "held, a cable hangs below", palette.SAG_PALE
+    if census.excluded > 0:
+        below += status.pop("no_finite_cable")
+        label, colour = "left out: a cable hangs below", palette.LEFT_OUT
+    refused = (
+        (Verdict.NO_FINITE_CABLE, palette.WARNING_PALE, "//////"),
+        (Verdict.OUTSIDE_HULL, palette.WARNING, ""),
+        (Verdict.NOT_FOUND, palette.WARNING_PALE, "......"),
+        (Verdict.RANK_DEFICIENT, palette.LEFT_OUT, ""),
+        (Verdict.NOT_CONVERGED, palette.INK, ""),
     )
+    everything = [Part("held", held, palette.SAG), Part(label, below, colour)]
+    everything += [Part(v.reason, status.get(v.label, 0), *look) for v, *look in refused]
     return tuple(part for part in everything if part.count > 0)
 
 

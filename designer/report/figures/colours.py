@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from designer.analysis.field import Field
 from designer.analysis.maps import Focus
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.report import format as fmt
 from designer.report.figures import palette
 
@@ -27,14 +27,8 @@ _KILONEWTON = 1e3
 class MapQuantity:
     """One of the quantities that can be mapped.
 
-    Parameters
-    ----------
-    key : str
-        Short name, used in the ids of a drawing.
-    title, unit : str
-        Name and unit on the axis; no unit for a pure number.
-    scale : float
-        From SI to that unit.
+    ``key`` is used in the ids of a drawing; ``scale`` leads from SI to the unit on the axis, which
+    is empty for a pure number.
     """
 
     key: str
@@ -83,14 +77,9 @@ def tension_of(field: Field) -> MapQuantity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Steps:
-    """Round boundaries of the steps of a colour scale.
+    """Round boundaries (n,) of the steps of a colour scale, ascending.
 
-    Parameters
-    ----------
-    levels : array (n,)
-        Boundaries, ascending.
-    extend : str
-        ``max`` if there are values above the last boundary, else ``neither``.
+    ``extend`` is ``max`` if there are values above the last boundary.
     """
 
     levels: FloatArray
@@ -133,9 +122,9 @@ class Steps:
         number = np.round(self.levels / (self.levels[1] - self.levels[0])).astype(int)
         return np.asarray(self.levels[number % 2 == 0])
 
-    def colours_of(self, values: FloatArray) -> NDArray[np.uint8]:
-        """Return red, green and blue (n, 3) of values (n,)."""
-        return np.asarray(self.colormap(self.norm(values), bytes=True)[:, :3])
+    def colours_of(self, step: IntArray) -> NDArray[np.uint8]:
+        """Return red, green and blue (n, 3) of steps (n,), counted from 0."""
+        return np.round(255.0 * self.colormap(step)[:, :3]).astype(np.uint8)
 
     def bar(self, figure: Figure, label: str, **place: Any) -> None:
         """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""
@@ -169,13 +158,6 @@ def steps_for(values: FloatArray, most: int = 14) -> Steps | None:
 
     Near a pose that no cable can hold the values grow without bound. They would squeeze all
     others into one colour, so the scale ends where nearly all of them lie, and says that it does.
-
-    Parameters
-    ----------
-    values : array
-        Any shape; NaN where there is no value.
-    most : int
-        How many steps at most.
     """
     from matplotlib.ticker import MaxNLocator
 

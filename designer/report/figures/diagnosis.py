@@ -23,14 +23,10 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 500
 """Points of a panel; more would only make the file heavy."""
-_BEFORE, _AFTER, _TREND, _HELDOUT = "#8A8A8A", palette.SAG, palette.WARNING, "#DFECF6"
+_BEFORE, _AFTER, _HELDOUT = "#8A8A8A", palette.SAG, "#DFECF6"
 _BAND: Style = {"facecolor": palette.FAINT, "alpha": 0.25}
 _SMALL = palette.FONT_POINTS - 1.0
-_PANEL_MM, _LONE_MM = 36.0, 25.0  # so that a lone row finds room on the first page
-_MOST_MM = 215.0
 _BINS = 12
-_FEW = 3
-_LOG_ABOVE = 6.0
 
 Layout = Literal["stacked", "overlaid", "after"]
 
@@ -40,23 +36,16 @@ def carriers_chart(
 ) -> str:
     """Return the residual against what it goes with, as SVG: a panel or two for each covariate.
 
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-        With residuals and covariates.
-    names : sequence of str
-        Covariates to show.
-    key : str
-        Put before ids, so that several charts can stand in one page.
-    layout : str
-        ``stacked``: before above after; ``overlaid``: both in one panel; ``after``: only that.
+    ``key`` is put before ids, so that several charts can stand in one page. The layout is before
+    above after (``stacked``), both in one panel (``overlaid``), or only ``after``.
     """
     stages = {"stacked": [["before"], ["after"]], "overlaid": [["before", "after"]]}
     rows = stages.get(layout, [["after"]])
     with canvas.drawing(), warnings.catch_warnings():
         # names of columns may hold letters that the figure's font lacks
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        figure = canvas.sheet(12.0 + (_LONE_MM if len(rows) == 1 else _PANEL_MM * len(rows)))
+        # A lone row is lower, so that it finds room on the first page.
+        figure = canvas.sheet(37.0 if len(rows) == 1 else 12.0 + 36.0 * len(rows))
         grid = figure.subplots(len(rows), len(names), sharex="col", squeeze=False)
         for column, name in enumerate(names):
             values = diagnosis.covariates[name]
@@ -87,7 +76,7 @@ def _carrier(
     for residual, colour in (_looks(diagnosis)[stage] for stage in shown):
         y = residual[:, channel]
         _points(axes, covariate[rows], y[rows], diagnosis.heldout[rows], colour)
-        trend: Style = {"color": _TREND if len(shown) == 1 else colour, "linewidth": 1.4}
+        trend: Style = {"color": palette.WARNING if len(shown) == 1 else colour, "linewidth": 1.4}
         axes.plot(*running_median(covariate, y), **trend, path_effects=canvas.halo())
         residuals.append(y)
     axes.set_ylim(window(np.concatenate(residuals)))
@@ -96,7 +85,7 @@ def _carrier(
     axes.set_title(f"{reading}{stages}", loc="left")
     # Few labels, so that they keep apart; a covariate of few values has one for each.
     values = np.unique(covariate[np.isfinite(covariate)])
-    few = FixedLocator(values.tolist()) if len(values) <= _FEW else None
+    few = FixedLocator(values.tolist()) if len(values) <= 3 else None
     axes.xaxis.set_major_locator(few or MaxNLocator(3, min_n_ticks=2))
     axes.tick_params(labelsize=_SMALL)
 
@@ -129,7 +118,7 @@ def rows_chart(diagnosis: Diagnosis) -> str:
     blocks = {"length": slice(0, n), "tension": slice(n, 2 * n)}
     kinds = [name for name, block in blocks.items() if not np.isnan(before[:, block]).all()]
     with canvas.drawing():
-        figure = canvas.sheet(min(20.0 + 24.0 * n, _MOST_MM))
+        figure = canvas.sheet(min(20.0 + 24.0 * n, 215.0))  # a page at most
         grid = figure.subplots(n, max(len(kinds), 1), sharex=True, sharey="col", squeeze=False)
         for panels, name in zip(grid.T, kinds, strict=False):
             block = blocks[name]
@@ -232,7 +221,7 @@ def _error_panel(axes: Axes, diagnosis: Diagnosis, kind: Quantity) -> None:
     noise = kind.scale * kind.noise
     axes.axvline(noise, color=palette.INK, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
     least, most = kind.scale * min(shown), kind.scale * max(shown)
-    if least <= 0.0 or most / least < _LOG_ABOVE:
+    if least <= 0.0 or most / least < 6.0:
         axes.set_xlim(0.0, 1.4 * most)
     else:  # with plain numbers on the logarithmic axis
         axes.set_xscale("log")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import cycle
+from itertools import cycle, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,12 +18,6 @@ from designer.selection.groups.result import Assigned, GroupChoice
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito again; vermilion stays a warning.
-_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#222222")
-_STYLES = ("-", "--", ":")
-_THINNEST_PT, _THICKEST_PT = 1.2, 4.2
-_REGION = "#EEF1F4"
-
 
 def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assigned) -> str:
     """Return the plan as SVG: cables as thick as their products are to each other.
@@ -37,16 +31,18 @@ def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assig
     if robot.is_planar:
         plane = [int(np.argmax(np.ptp(exits[:, :2], axis=0))), 2]
     thickest = max(one.size.diameter_m for one in chosen.products)
-    styles = cycle([(colour, style) for style in _STYLES for colour in _COLOURS])
+    # Okabe and Ito again; vermilion stays a warning.
+    palette_of_groups = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#222222")
+    looks = cycle(product(("-", "--", ":"), palette_of_groups))
     used = chosen.verification.utilisation
     with canvas.drawing():
         figure = canvas.sheet(104.0, keeps_aspect=True)
         axes = figure.subplots()
         _region(axes, region, plane)
-        for group, product, share in zip(choice.groups, chosen.products, used, strict=True):
-            colour, style = next(styles)
-            label = f"{group.name}: {product.size.id}\n{product.grade.id}\n{100 * share:.1f} % used"
-            width = max(_THICKEST_PT * product.size.diameter_m / thickest, _THINNEST_PT)
+        for group, rope, share in zip(choice.groups, chosen.products, used, strict=True):
+            style, colour = next(looks)
+            label = f"{group.name}: {rope.size.id}\n{rope.grade.id}\n{100 * share:.1f} % used"
+            width = max(4.2 * rope.size.diameter_m / thickest, 1.2)
             for cable in group.cables:
                 line = np.stack([exits[cable - 1], ends[cable - 1]])[:, plane]
                 look: Style = {"color": colour, "linestyle": style, "linewidth": width}
@@ -71,7 +67,7 @@ def _region(axes: Axes, region: Region, plane: list[int]) -> None:
     corners = np.array([[left, low], [right, low], [right, high], [left, high]])
     if isinstance(region, Prism) and plane == [0, 1]:
         corners = region.polygon_m
-    axes.fill(*corners.T, facecolor=_REGION, edgecolor=palette.FAINT, label=label)
+    axes.fill(*corners.T, facecolor="#EEF1F4", edgecolor=palette.FAINT, label=label)
 
 
 def _platform(axes: Axes, ends_m: FloatArray) -> None:

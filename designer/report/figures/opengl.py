@@ -32,21 +32,18 @@ def why_no_scenes() -> str:
             if window:
                 os.environ[_CHOICE] = window
             return ""
-    return "Pictures in space are left out, since this machine cannot draw them. " + _remedy()
+    remedy = "They need a graphics driver with OpenGL."
+    if sys.platform.startswith("linux"):
+        remedy = (
+            "What they need is installed by 'apt-get install libegl1 libgl1-mesa-dri' (Debian, "
+            "Ubuntu) or 'dnf install mesa-libEGL mesa-dri-drivers' (Fedora)."
+        )
+    return f"Pictures in space are left out, since this machine cannot draw them. {remedy}"
 
 
 def begin_probe() -> None:
     """Begin to find it out, so that `why_no_scenes` need not wait for it later."""
     _probe(_windows()[0])
-
-
-def _remedy() -> str:
-    if not sys.platform.startswith("linux"):
-        return "They need a graphics driver with OpenGL."
-    return (
-        "What they need is installed by 'apt-get install libegl1 libgl1-mesa-dri' (Debian, "
-        "Ubuntu) or 'dnf install mesa-libEGL mesa-dri-drivers' (Fedora)."
-    )
 
 
 def _windows() -> tuple[str, ...]:

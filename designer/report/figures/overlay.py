@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_TICK_POINTS, _TICKS_APART_POINTS, _LINES_APART_POINTS = 13.5, 27.0, 15.0
-_DOTS_PER_INCH = 240.0  # 1600 px fill the column of the printed report
-_MARGIN = 0.01
 _SIDES = (
     ((0, 1), "center", "bottom"),
     ((1, 1), "left", "bottom"),
@@ -39,10 +36,8 @@ _SIDES = (
     ((-1, -1), "right", "top"),
 )
 """Where a text may stand, right and up, and how it is aligned then."""
-_OVER_TEXT, _OVER_LINE = 1000.0, 5.0
-_LEADER_POINTS = 15.0
-_ROOM_PX = 3.0
-_NAMES_APART_PX = 45.0
+_OVER_TEXT, _OVER_LINE, _BY_ORDER = 1000.0, 5.0, 0.02
+"""What it costs to cover a text or a point of a line, and to take the next place of the list."""
 
 
 def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
@@ -53,7 +48,7 @@ def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
     """
     from matplotlib.figure import Figure
 
-    dots_per_inch = letters * _DOTS_PER_INCH
+    dots_per_inch = letters * 240.0  # 1600 px fill the column of the printed report
     size = (WIDTH_PX / dots_per_inch, HEIGHT_PX / dots_per_inch)
     figure = Figure(figsize=size, dpi=dots_per_inch)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -85,7 +80,7 @@ def without_empty_rows(png: bytes) -> bytes:
     box = ImageChops.difference(image, blank).getbbox()
     if box is None:
         return png
-    margin = round(_MARGIN * image.height)
+    margin = round(0.01 * image.height)
     top, bottom = max(box[1] - margin, 0), min(box[3] + margin, image.height)
     stream = io.BytesIO()
     image.crop((0, top, image.width, bottom)).save(stream, format="png", optimize=True)
@@ -123,16 +118,16 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
         beyond[across] += near[across] - middle[across]
         outward = (view.pixels(beyond) - view.pixels(name)) * [1.0, -1.0]
         outward /= max(float(np.hypot(*outward)), 1e-9)
-        for tick in _ticks_along(view, bounds_m, axis, _TICKS_APART_POINTS * points):
+        for tick in _ticks_along(view, bounds_m, axis, 27.0 * points):
             point = name.copy()
             point[axis] = tick
-            if np.hypot(*(view.pixels(point) - taken)) >= _TICK_POINTS * points:
+            if np.hypot(*(view.pixels(point) - taken)) >= 13.5 * points:
                 _write(axes, view, point, fmt.trimmed(tick, 6), 9.0 * outward, **small)
         # The name of an axis begins beyond its numbers, wherever these stand.
         side = "left" if outward[0] > 0.0 else "right"
         ha = side if abs(outward[0]) > 0.5 else "center"
         _write(axes, view, name, f"{'xy'[axis]} [m]", 24.0 * outward, ha=ha)
-    for tick in _ticks_along(view, bounds_m, 2, _LINES_APART_POINTS * points):
+    for tick in _ticks_along(view, bounds_m, 2, 15.0 * points):
         place = np.array([*corner, tick])
         _write(axes, view, place, fmt.trimmed(tick, 6), (-5, 0), ha="right", **small)
     _write(axes, view, np.array([*corner, high[2]]), "z [m]", (-13, 12), ha="right")
@@ -206,22 +201,14 @@ def write_clear(
 ) -> None:
     """Write a text where it covers least, with a line to what it names where that is far off.
 
+    The texts that are already in the axes are not covered.
+
     Parameters
     ----------
-    axes : Axes
-        With the picture; the texts already in it are not covered.
-    view : View
-        Where points land.
-    anchors_m : array (n, 3)
-        Places that the text may stand beside, the best first [m].
-    text : str
-        What to write.
+    anchors_m, distances : array (n, 3), iterable of float
+        Places that the text may stand beside [m], and how far off [points]; the best first.
     obstacles_px : array (k, 2)
         Points of lines and bodies that are better left free, see `obstacles`.
-    distances : iterable of float
-        From anchor to the edge of the text, the best first [points].
-    **style
-        Of the text.
     """
     looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
@@ -241,9 +228,9 @@ def write_clear(
     anchors_px = view.pixels(np.atleast_2d(anchors_m))
     places = [(a, side, d) for d, a, side in product(distances, anchors_px, _SIDES)]
     costs = [_cost(put(*place), taken, obstacles_px) for place in places]
-    anchor, side, distance = places[int(np.argmin(costs + 0.02 * np.arange(len(costs))))]
+    anchor, side, distance = places[int(np.argmin(costs + _BY_ORDER * np.arange(len(costs))))]
     left, top, right, bottom = put(anchor, side, distance)
-    if distance > _LEADER_POINTS:
+    if distance > 15.0:
         end = np.clip(anchor, [left, top], [right, bottom])
         line: Style = {"color": palette.INK, "linewidth": 0.7, "zorder": 1.9}
         axes.plot(*np.stack([anchor, end]).T, path_effects=canvas.halo(), **line)
@@ -253,7 +240,7 @@ def write_exits(
     axes: Axes, view: View, exit_points_m: FloatArray, obstacles_px: FloatArray
 ) -> None:
     """Name the exit points (n_cables, 3) [m] that lie in the picture, neighbours together."""
-    for name, place in canvas.names_of(exit_points_m, _NAMES_APART_PX / view.pixels_per_m):
+    for name, place in canvas.names_of(exit_points_m, 45.0 / view.pixels_per_m):
         if view.shows(place):
             style = {"bbox": None, "path_effects": canvas.halo()}
             write_clear(axes, view, place, name, obstacles_px, (5.0, 9.0), **style)
@@ -279,7 +266,7 @@ def _boxes(*boxes: Any) -> FloatArray:
 
 def _cost(box: FloatArray, taken: FloatArray, obstacles_px: FloatArray) -> float:
     """How bad a place is: texts below it or the rim beyond it, then lines that it covers."""
-    left, top, right, bottom = box + _ROOM_PX * np.array([-1.0, -1.0, 1.0, 1.0])
+    left, top, right, bottom = box + 3.0 * np.array([-1.0, -1.0, 1.0, 1.0])
     if left < 0.0 or top < 0.0 or right > WIDTH_PX or bottom > HEIGHT_PX:
         return 10.0 * _OVER_TEXT
     wide = np.minimum(right, taken[:, 2]) - np.maximum(left, taken[:, 0])

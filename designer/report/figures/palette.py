@@ -10,7 +10,7 @@ from typing import Any
 COLORMAP = "viridis"
 """Sequential, perceptually even, also in grey; for diameter, tension and their ratio."""
 
-SAG = "#0072B2"
+SAG, SAG_PALE = "#0072B2", "#8CC1E0"
 """With sag."""
 MASSLESS = "#7F7F7F"
 """Straight weightless cables."""
@@ -31,8 +31,6 @@ CLASS_COLOURS = {
     "not stated": MASSLESS,
 }
 """Of the classes of a rope's material."""
-_CLASS_MARKERS = {"steel": "o", "stainless steel": "s", "fibre": "^", "not stated": "D"}
-
 PAPER_WIDTH_MM = 170.0
 """Column width of the printed report."""
 FONT_POINTS = 8.0
@@ -40,8 +38,5 @@ FONT_POINTS = 8.0
 
 def look_of(kind: str) -> dict[str, Any]:
     """Return colour and shape of the points of a class, for those who see no colours as well."""
-    return {
-        "linestyle": "none",
-        "color": CLASS_COLOURS[kind],
-        "marker": _CLASS_MARKERS[kind],
-    }
+    shapes = {"steel": "o", "stainless steel": "s", "fibre": "^", "not stated": "D"}
+    return {"linestyle": "none", "color": CLASS_COLOURS[kind], "marker": shapes[kind]}

@@ -5,6 +5,7 @@ The workspace is coloured by what its poses need, as in Riehl et al., ICRA 2010,
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,14 +38,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SPECK = 0.2
-_ROBOT_ELEVATION_RAD, _ELEVATION_RAD = np.radians([25.0, 28.0]).tolist()
-_ROBOT_FRAME = (0.075, 0.95, 0.13, 0.90)
-_FRAME, _COVER_FRAME = (0.085, 0.85, 0.11, 0.93), (0.03, 0.78, 0.06, 0.90)
-_BAR, _COVER_BAR = (0.895, 0.2, 0.016, 0.6), (0.83, 0.12, 0.028, 0.7)
-_COVER_LETTERS = 1.9
-_LABEL_AT = (0.35, 0.45, 0.28, 0.55, 0.2, 0.65)
-"""Where along a cable its tension may stand, the best first."""
+_ROBOT_ELEVATION_RAD = float(np.radians(25.0))
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """Where scene and colour bar stand in the picture, and the size of letters over the usual."""
+
+    frame: Frame
+    bar: tuple[float, float, float, float]
+    letters: float = 1.0
+
+
+_PAGE = _Look((0.085, 0.85, 0.11, 0.93), (0.895, 0.2, 0.016, 0.6))
+_COVER = _Look((0.03, 0.78, 0.06, 0.90), (0.83, 0.12, 0.028, 0.7), 1.9)
 
 
 def robot_scene(pose: PoseAnalysis) -> bytes:
@@ -64,7 +71,7 @@ def robot_scene(pose: PoseAnalysis) -> bytes:
         lines = np.concatenate([chords_m(statics), np.stack([base[:-1], base[1:]], axis=1)])
         azimuth = clear_azimuth_rad(lines, _ROBOT_ELEVATION_RAD)
     everything = np.concatenate([overlay.floor_corners(bounds), points])
-    stage = Stage(fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, _ROBOT_FRAME))
+    stage = Stage(fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90)))
     stage.lines(chords_m(statics), palette.MASSLESS, 1.5)  # for comparison
     if statics.is_solved:
         stage.lines(curves, palette.SAG, 7.0, 2.0)
@@ -129,42 +136,35 @@ def _label_robot(axes: Axes, view: View, statics: Statics, curves: FloatArray) -
     overlay.write_clear(axes, view, sag.on_cable_m, f"sag {length}", clear, (6.0, 18.0, 30.0))
     style: Style = {"color": palette.SAG, "fontsize": palette.FONT_POINTS - 0.5}
     for curve, tension_N in zip(curves, statics.exit_tension_N, strict=True):
-        anchors = curve[[int(share * len(curve)) for share in _LABEL_AT]]
+        along = (0.35, 0.45, 0.28, 0.55, 0.2, 0.65)  # where it may stand, the best first
+        anchors = curve[[int(share * len(curve)) for share in along]]
         text = fmt.newtons(float(tension_N))
         overlay.write_clear(axes, view, anchors, text, clear, (3.0, 6.0), **style)
 
 
 def workspace_scene(
-    maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER, *, is_cover: bool = False
+    maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER, look: _Look = _PAGE
 ) -> bytes:
     """Return a picture of the workspace with exit points and the cables at its worst pose, as PNG.
 
-    Parameters
-    ----------
-    maps : WorkspaceMaps
-        What to draw; a list of points is drawn as balls.
-    quantity : MapQuantity
-        What the colours mean.
-    is_cover : bool
-        Whether it is for the first page: small in print, so with large letters and no axes.
+    A list of points is drawn as balls.
     """
     steps = scale_of(maps, quantity)
-    stage = Stage(view_of(maps, _COVER_FRAME if is_cover else _FRAME))
+    stage = Stage(view_of(maps, look.frame))
     add_workspace(stage, maps, quantity, steps)
     with canvas.drawing():
-        figure, axes = _taken(stage, bounds_m(maps), _COVER_LETTERS if is_cover else 1.0)
+        figure, axes = _taken(stage, bounds_m(maps), look.letters)
         looks = [(text, {"facecolor": colour}) for colour, text in overlay.meanings(maps.shown)]
         canvas.legend(figure, looks, "lower left", ncols=2)
         if steps is not None:
-            bar = figure.add_axes(_COVER_BAR if is_cover else _BAR)
-            steps.bar(figure, quantity.label, cax=bar)
+            steps.bar(figure, quantity.label, cax=figure.add_axes(look.bar))
         _write_names(axes, stage.view, maps, quantity)
         return overlay.png(figure)
 
 
 def cover_scene(maps: WorkspaceMaps) -> bytes:
-    """Return the picture of the workspace as it is printed on the first page, as PNG."""
-    return workspace_scene(maps, is_cover=True)
+    """Return the same for the first page: small in print, so with large letters and no axes."""
+    return workspace_scene(maps, look=_COVER)
 
 
 def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
@@ -184,9 +184,9 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
         rest[f"size {number}"] = np.log(used).ravel(order="F")
     for number, colour in enumerate(colours(layers)):  # what it serves beyond the size before it
         where: Style = {"scalars": f"size {number}", "value": 0.0}
-        stage.add(rest.clip_scalar(**where, invert=True), colour)
+        stage.add(rest.clip_scalar(**where, invert=True), color=colour)
         rest = rest.clip_scalar(**where, invert=False)
-    stage.add(rest, palette.WARNING_PALE)
+    stage.add(rest, color=palette.WARNING_PALE)
     stage.lines(edges_m(maps), palette.INK, stage.pen.edge, 1.5)
     stage.balls(exits, 0.006 * size_m(maps), palette.INK)
     with canvas.drawing():
@@ -222,7 +222,7 @@ def scale_of(maps: WorkspaceMaps, quantity: MapQuantity) -> Steps | None:
     return steps_for(np.concatenate([quantity.of(field).ravel() for field in maps.shown]), 18)
 
 
-def view_of(maps: WorkspaceMaps, frame: Frame = _FRAME) -> View:
+def view_of(maps: WorkspaceMaps, frame: Frame = _PAGE.frame) -> View:
     """Return the view into the opening of the region, or of a list of points.
 
     Not along an axis, which would then be seen from its end.
@@ -240,7 +240,7 @@ def view_of(maps: WorkspaceMaps, frame: Frame = _FRAME) -> View:
         wanted = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
         azimuth = float(into + wanted - off_axis)
     everything = np.concatenate([overlay.floor_corners(bounds), top, shown])
-    return fitting(everything, azimuth, _ELEVATION_RAD, frame)
+    return fitting(everything, azimuth, float(np.radians(28.0)), frame)
 
 
 def bounds_m(maps: WorkspaceMaps) -> FloatArray:
@@ -252,7 +252,7 @@ def bounds_m(maps: WorkspaceMaps) -> FloatArray:
     everything = np.concatenate([region, exits])
     whole = np.array([everything.min(axis=0), everything.max(axis=0)])
     size = float(np.ptp(region, axis=0).max())
-    is_speck = maps.has_area and size < _SPECK * float(np.ptp(whole, axis=0).max())
+    is_speck = maps.has_area and size < 0.2 * float(np.ptp(whole, axis=0).max())
     return region if is_speck else whole
 
 
@@ -275,7 +275,7 @@ def add_workspace(
         values = quantity.of(section)
         some = np.isfinite(values)
         if steps is not None:
-            stage.balls(position[some], 0.008 * size, steps.colours_of(values[some]))
+            stage.balls(position[some], 0.008 * size, steps.colours_of(steps.norm(values[some])))
         stage.balls(position[section.is_infeasible], 0.007 * size, palette.WARNING)
         stage.balls(position[section.is_left_out], 0.007 * size, palette.LEFT_OUT)
         stage.posts(position, floor, 1.0)

@@ -30,13 +30,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDE_MM, _BESIDE_MM = 120.0, 150.0
-"""Width of one map alone, of several together."""
-_CHARACTER = 0.013  # half the width of a character over the width of small axes
-_RIGHT_END = 1.15  # a text may pass the right end of the axes, where no numbers stand
+_WIDE_MM = 120.0
 _HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
 _GREY: Style = {"facecolor": palette.LEFT_OUT}
-_LIMIT: Style = {"colors": palette.WARNING, "linewidths": 1.6}
 
 
 def slice_chart(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
@@ -55,7 +51,7 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
     """Return small maps of the same section side by side, one for each quantity, as SVG."""
     bar = {"location": "bottom", "shrink": 0.92, "aspect": 30}
     with canvas.drawing():
-        figure = _slice_sheet(maps, 38.0, _BESIDE_MM / len(quantities))
+        figure = _slice_sheet(maps, 38.0, 150.0 / len(quantities))
         row = figure.subplots(1, len(quantities), squeeze=False)[0]
         for axes, quantity in zip(row, quantities, strict=True):
             _slice(figure, axes, maps, quantity, 0.09, bar)
@@ -94,13 +90,11 @@ def section_map(
     Parameters
     ----------
     shown : Section
-        Values in the unit of the label.
+        Values in the unit of the colour bar's label.
     key : str
         Short name, put before every id of the drawing.
-    label : str
-        Of the colour bar, with the unit.
-    why_bad : str
-        What the hatching means.
+    label, why_bad : str
+        Of the colour bar, and what the hatching means.
     limit : float or None
         The value that is asked for, whose contour is drawn boldly.
     """
@@ -115,7 +109,8 @@ def section_map(
         axes = figure.subplots()
         _paint(axes, flat, values, shown.is_bad, steps)
         if has_limit:
-            axes.contour(*np.moveaxis(flat, -1, 0), values, levels=[limit], **_LIMIT)
+            bold: Style = {"colors": palette.WARNING, "linewidths": 1.6}
+            axes.contour(*np.moveaxis(flat, -1, 0), values, levels=[limit], **bold)
         _outline(axes, flat)
         _set_limits(axes, flat, corners)
         axes.set(xlabel="x [m]", ylabel="y [m]")
@@ -224,11 +219,9 @@ def _paint(
     x, y = np.moveaxis(flat, -1, 0)
     axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     if is_bad.any():
-        bad: Style = {"levels": [0.5, 1.5]}
-        axes.contourf(x, y, is_bad.astype(np.float64), colors=[palette.WARNING_PALE], **bad)
-        bad |= {"colors": "none", "hatches": ["//////"]}
-        hatched = axes.contourf(x, y, is_bad.astype(np.float64), **bad)
-        hatched.set(edgecolor=palette.WARNING, linewidth=0.0)
+        look: Style = {"colors": [palette.WARNING_PALE], "hatches": ["//////"]}
+        bad = axes.contourf(x, y, is_bad.astype(np.float64), levels=[0.5, 1.5], **look)
+        bad.set(edgecolor=palette.WARNING, linewidth=0.0)
     if steps is None:
         return
     steps.fill(axes, x, y, values)
@@ -322,8 +315,9 @@ def _write_away(
     right, up = away if away.any() else (0.0, 1.0)
     left_end, right_end = axes.get_xlim()
     share = float((place[0] - left_end) / (right_end - left_end))
-    half = _CHARACTER * len(text)
-    has_room = 2.0 * half < (_RIGHT_END - share if right > 0.0 else share)
+    half = 0.013 * len(text)  # of its width, over the width of small axes
+    # A text may pass the right end of the axes, where no numbers stand.
+    has_room = 2.0 * half < (1.15 - share if right > 0.0 else share)
     if 2.0 * abs(right) > abs(up) and has_room:
         offset = (points if right > 0.0 else -points, 0.0)
         style |= {"ha": "left" if right > 0.0 else "right", "va": "center"}

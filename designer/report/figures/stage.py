@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -46,13 +46,6 @@ SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0)
 class Stage:
     """A white stage without lamps, before a camera: a colour is what the colour bar says it is.
 
-    Parameters
-    ----------
-    view : View
-        Where the camera stands.
-    pen : Pen
-        How lines are drawn.
-
     Raises
     ------
     MissingLibraryError
@@ -91,10 +84,10 @@ class Stage:
         self.plotter.close()
         return np.asarray(image, dtype=np.uint8)
 
-    def add(self, mesh: PolyData, colour: str | tuple[float, ...]) -> None:
-        """Add a mesh of one colour, unless it is empty."""
+    def add(self, mesh: PolyData, **look: Any) -> None:
+        """Add a mesh, unless it is empty."""
         if mesh.n_cells > 0:
-            self.plotter.add_mesh(mesh, color=colour, lighting=False)
+            self.plotter.add_mesh(mesh, lighting=False, **look)
 
     def lines(
         self, lines_m: Iterable[FloatArray], colour: str, width: float, lift: float = 0.0
@@ -110,7 +103,7 @@ class Stage:
         mesh = pyvista.PolyData(
             np.concatenate(lifted), lines=pyvista.CellArray.from_irregular_cells(cells)
         )
-        self.plotter.add_mesh(mesh, color=colour, line_width=width, lighting=False)
+        self.add(mesh, color=colour, line_width=width)
 
     def posts(self, tops_m: FloatArray, floor_m: float, width: float) -> None:
         """Add thin uprights from points (n, 3) down to the floor [m]."""
@@ -137,8 +130,7 @@ class Stage:
             cloud["colour"] = colour
         ball = pyvista.Sphere(radius=radius_m, theta_resolution=16, phi_resolution=16)
         balls = cloud.glyph(geom=ball, scale=False, orient=False)
-        look = {"color": colour} if one else {"scalars": "colour", "rgb": True}
-        self.plotter.add_mesh(balls, lighting=False, **look)
+        self.add(balls, **({"color": colour} if one else {"scalars": "colour", "rgb": True}))
 
     def hull(self, points_m: FloatArray, colour: str) -> None:
         """Add the hull of points (n, 3) [m] with its edges; flat where they lie in one plane."""
@@ -148,10 +140,8 @@ class Stage:
         if len(faces) == 0:
             return
         hull = pyvista.PolyData.from_regular_faces(points_m.astype(np.float64), faces)
-        self.add(hull, colour)
-        edges = hull.extract_feature_edges(feature_angle=20.0)
-        if edges.n_cells > 0:
-            self.plotter.add_mesh(edges, color=palette.INK, line_width=2.0, lighting=False)
+        self.add(hull, color=colour)
+        self.add(hull.extract_feature_edges(feature_angle=20.0), color=palette.INK, line_width=2.0)
 
     def field(self, field: Field, quantity: MapQuantity, steps: Steps | None) -> None:
         """Add a surface (n, m) coloured by a quantity, with lines of equal value.
@@ -160,12 +150,11 @@ class Stage:
         """
         counted = counted_surface(field, quantity)
         if steps is not None and counted.n_cells > 0:
-            bands = banded(counted, steps)
-            self.plotter.add_mesh(bands, scalars="colour", rgb=True, lighting=False)
-        self.add(left_out_surface(field, quantity), palette.LEFT_OUT)
-        self.add(quads(field.position_m, _any_corner(field.is_infeasible)), palette.WARNING)
-        if steps is not None:
+            self.add(banded(counted, steps), scalars="colour", rgb=True)
             self.lines(contour_lines(counted, steps), "white", self.pen.contour, 1.0)
+        self.add(left_out_surface(field, quantity), color=palette.LEFT_OUT)
+        failed = quads(field.position_m, _any_corner(field.is_infeasible))
+        self.add(failed, color=palette.WARNING)
 
 
 def counted_surface(field: Field, quantity: MapQuantity) -> PolyData:
@@ -206,14 +195,12 @@ def banded(surface: PolyData, steps: Steps) -> PolyData:
     step = np.asarray(cut.cell_data[cut.cell_data.keys()[-1]]).astype(int).clip(0, count - 1)
     bare = cut.copy()
     bare.clear_data()
-    bare.cell_data["colour"] = steps.colormap(step, bytes=True)[:, :3]
+    bare.cell_data["colour"] = steps.colours_of(step)
     return bare
 
 
 def contour_lines(surface: PolyData, steps: Steps) -> list[FloatArray]:
     """Return the lines of equal value at the labelled steps, each (n, 3) [m]."""
-    if surface.n_cells == 0:
-        return []
     lines = surface.contour(isosurfaces=list(steps.ticks), scalars="values")
     if lines.n_cells == 0:
         return []

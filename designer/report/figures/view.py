@@ -14,7 +14,6 @@ from designer.arrays import FloatArray
 WIDTH_PX, HEIGHT_PX = 1600, 1000
 Frame = tuple[float, float, float, float]
 """Left, right, lower and upper bound of a part of the picture, as shares of it."""
-_FROM_THE_SIDE_RAD = float(np.radians(25.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,4 +124,4 @@ def facing_azimuth_rad(along: FloatArray) -> float:
 
     ``along`` (2,) is the horizontal direction in the plane that shall point to the right.
     """
-    return float(np.arctan2(-along[0], along[1]) + _FROM_THE_SIDE_RAD)
+    return float(np.arctan2(-along[0], along[1]) + np.radians(25.0))
