@@ -26,7 +26,6 @@ Json = dict[str, Any]
 
 def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     """Return everything that ``diagnosis.json`` holds; a missing number is None."""
-    noise, before, after = diagnosis.noise, diagnosis.stages[0], diagnosis.final
     where = diagnosis.left_in
     answer = {
         "format": DIAGNOSIS_FORMAT,
@@ -52,19 +51,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             "rows": where.rows if where else [],
         },
         "scatter": {"present": diagnosis.is_scattered, **diagnosis.scatter},
-        "error": {
-            "length_m": _before_after(before.length_m, after.length_m, noise.length_m),
-            "tension_N": _before_after(before.tension_N, after.tension_N, noise.tension_N),
-        },
-        "forward": {
-            "before": _foretold(diagnosis.foretold_before),
-            "after": _foretold(diagnosis.foretold_after),
-        },
-        "noise": {"source": noise.source},
-        "stages": [
-            {"label": s.label, "length_m": _error(s.length_m), "tension_N": _error(s.tension_N)}
-            for s in diagnosis.stages
-        ],
+        **_errors(diagnosis),
         "search": {"is_complete": not diagnosis.not_tried, "not_tried": diagnosis.not_tried},
         "balance": _balance(diagnosis),
         "proposals": [
@@ -225,6 +212,25 @@ def _finding(finding: Finding) -> Json:
         "heldout_gain": finding.heldout_gain,
         "heldout_gain_std": finding.heldout_gain_std,
         "warnings": finding.warnings,
+    }
+
+
+def _errors(diagnosis: Diagnosis) -> Json:
+    noise, before, after = diagnosis.noise, diagnosis.stages[0], diagnosis.final
+    return {
+        "error": {
+            "length_m": _before_after(before.length_m, after.length_m, noise.length_m),
+            "tension_N": _before_after(before.tension_N, after.tension_N, noise.tension_N),
+        },
+        "forward": {
+            "before": _foretold(diagnosis.foretold_before),
+            "after": _foretold(diagnosis.foretold_after),
+        },
+        "noise": {"source": noise.source},
+        "stages": [
+            {"label": s.label, "length_m": _error(s.length_m), "tension_N": _error(s.tension_N)}
+            for s in diagnosis.stages
+        ],
     }
 
 

@@ -14,11 +14,9 @@ from designer.selection.compare import Entry
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.verify import verify
-from designer.study import DeclaredEffect, Study, as_built_by
+from designer.study import DeclaredEffect, Study, Workspace, as_built_by
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
-
-_NONE = float("nan")
 
 
 def declared_by(diagnosis: Diagnosis) -> tuple[DeclaredEffect, ...]:
@@ -45,11 +43,16 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     better = replace(study, effects=declared_by(diagnosis))
     last = _selected(better, grades) if reaches else first
     mounted = mounted_use(study)
+    kept = None  # where the product chosen before is as good as any
+    before, after = first.product, last.product
+    if before is not None and (after is None or after.name != before.name):
+        cable = Allowance.of(study.selection).cable(before.grade, before.size)
+        kept = _use(last.built, study.workspace, cable)
     return replace(
         diagnosis,
         design_before=first.choice,
         design_after=last.choice,
-        kept=_kept(study, first, last),
+        kept=kept,
         mounted_before=mounted,
         mounted_after=mounted_use(better) if reaches else mounted,
     )
@@ -79,24 +82,17 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
     found = Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
-        diameter_m=chosen.size.diameter_m if chosen else _NONE,
-        max_tension_N=chosen.verification.max_tension_N if chosen else _NONE,
-        optimum_m=worst.diameter_m if worst else _NONE,
-        optimum_tension_N=worst.max_tension_N if worst else _NONE,
-        utilisation=chosen.verification.utilisation if chosen else _NONE,
+        diameter_m=chosen.size.diameter_m if chosen else math.nan,
+        max_tension_N=chosen.verification.max_tension_N if chosen else math.nan,
+        optimum_m=worst.diameter_m if worst else math.nan,
+        optimum_tension_N=worst.max_tension_N if worst else math.nan,
+        utilisation=chosen.verification.utilisation if chosen else math.nan,
     )
     return _Selected(found, chosen, built)
 
 
-def _kept(study: Study, first: _Selected, last: _Selected) -> Use | None:
-    """Return what the product of the first choice meets in the last; None where that is as good."""
-    before, after = first.product, last.product
-    assert study.workspace is not None
-    assert study.selection is not None
-    if before is None or (after is not None and after.name == before.name):
-        return None
-    cable = Allowance.of(study.selection).cable(before.grade, before.size)
-    found = verify(last.built.robot, study.workspace, last.built.cable(cable))
+def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
+    found = verify(built.robot, workspace, built.cable(cable))
     return Use(found.max_tension_N, found.utilisation)
 
 
@@ -118,11 +114,9 @@ def mounted_use(study: Study) -> Use | None:
             return None
         left = min(left, bent)
     cable = Cable(
-        diameter_m=rope.diameter_m or _NONE,
+        diameter_m=rope.diameter_m or math.nan,
         linear_density_kg_per_m=rope.linear_density_kg_per_m,
         axial_stiffness_N=rope.axial_stiffness_N,
         allowable_tension_N=rope.minimum_breaking_load_N * left / selection.safety_factor,
     )
-    built = as_built_by(study)
-    found = verify(built.robot, workspace, built.cable(cable))
-    return Use(found.max_tension_N, found.utilisation)
+    return _use(as_built_by(study), workspace, cable)

@@ -35,9 +35,9 @@ from designer.model.measured_data import Measured
 from designer.study import Measurements, Study
 
 _NOISE_ROUNDS = 2
-"""Searches where noise is estimated: a third has never another noise by `_NOISE_CHANGE`."""
+"""Searches at most: the second has the noise that the first one's model leaves."""
 _NOISE_CHANGE = 0.15
-"""Relative change of the noise that is worth another search: chances hardly move by less."""
+"""Relative change of the noise that is worth another search: losses go with its square."""
 _UNKNOWN = 10.0
 """How many times as far as a finding that which is declared unknown may be from the drawing."""
 _RIVALS_PARTED = 2

@@ -14,10 +14,10 @@ from designer.diagnosis.structure import SIGNIFICANCE, Structure, beside
 from designer.effects.effect import Effect, Readings
 
 _CHANCE = 1e-5
-"""Of a drift by accident: each of up to five effects is tried with six covariates."""
+"""Of a drift by accident: with six covariates for each of up to five effects still below 0.001."""
 _VARIATION = 0.2
-"""Of an effect's own size, over one standard deviation of a covariate: a true constant that is
-found beside another effect may seem to vary by a tenth."""
+"""Of an effect's own size, over one standard deviation of a covariate: what varies by less than a
+fifth counts as the constant that it is in the model."""
 _LEAST_VARIATION, _SHARE_OF_LEFT = 0.05, 0.5
 """A smaller variation will do where it explains most of what is left."""
 _CLIP = 4.0

@@ -13,7 +13,7 @@ from designer.diagnosis.robust import is_outlier, rms
 from designer.effects.effect import Setting
 
 _DRAWS = 400
-"""Of the bootstrap: the ends of a 95 % interval scatter by a twentieth of its width."""
+"""Of the bootstrap: the ends of a 95 % interval scatter by a thirtieth of its width."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,11 +30,11 @@ _FULL_SLOPE = (0.75, 1.25)
 """How much a reading at the end of its range falls short, over what is predicted beyond: all of
 it; a gain, even one of half, keeps below."""
 _KNEES = np.linspace(0.5, 0.95, 10)
-"""Quantiles at which a range may end: a sensor that stops before its middle is not in use."""
+"""Quantiles of the prediction at which a range may end: half of the readings count as sound."""
 _MOST_READINGS = 16
 """Readings that are looked at, of eight cables, for the chance of a bend by accident."""
 _LEFT = 0.1
-"""Of the mean square, where exchanged readings fit: a gain or a bias leaves more."""
+"""Of the mean square, that exchanged readings may leave: they fit nearly as well as right ones."""
 _OFF = 3.0
 """Standard deviations by which readings on wrong plugs are off at least."""
 _END = 0.25

@@ -13,16 +13,15 @@ from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Setting, Values
 
 _HUBER = 3.0
-"""Standard deviations up to which a residual counts by its square: normal noise loses 1 % so."""
+"""Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
 _STEP = 1e-3
-"""Of a typical change: differences are good to some 1e-6 of a slope, which a one-sided step of a
-smooth model bears."""
+"""Of a typical change: so short that one side will do, and far above the solver's residual."""
 _TRIAL_TURNS, _ALL_TURNS = 12, 80
 """Evaluations of a fit from near its end, and from anywhere."""
 _MOST_JUDGED = 5
-"""Fits until the distrust of readings agrees with what the fit leaves; two are usual."""
+"""Fits at most until the distrust of readings agrees with what the fit leaves."""
 _TRIAL_TOLERANCE, _TOLERANCE = 1e-5, 1e-8
-"""Relative: a trial is only compared, the final model is told to four digits."""
+"""Relative: a trial is only compared with others, the final model is told."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +61,11 @@ class Fit:
     def variance(self) -> float:
         """Loss over degrees of freedom, at least 1: how much the noise is exceeded."""
         return max(1.0, self.loss / max(self.n_data - len(self.vector), 1))
+
+    def is_plausible(self, effect: Effect) -> bool:
+        """Tell whether an effect has values here that an engineer would believe."""
+        values = next(s.values for s in self.settings if s.effect.key == effect.key)
+        return all(p.is_plausible(values[p.name]) for p in effect.parameters)
 
 
 def huber(residual: FloatArray) -> FloatArray:

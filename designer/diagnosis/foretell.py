@@ -1,4 +1,4 @@
-"""Where the platform would be, and how tense its cables, by the measured lengths alone.
+"""Forward prediction: pose and tensions by the measured lengths alone.
 
 This is what a user of the machine sees of a model: winches give lengths, forward statics makes a
 pose of them. Nothing is fitted to it; the poses of the rows are used as starts, and compared.

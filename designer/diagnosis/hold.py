@@ -129,7 +129,7 @@ def keep_what_helps(
     whole : Problem
         The same problem with all readings.
     heldout : array (n_rows,) of bool
-        The rows to foretell.
+        The rows to predict.
 
     Returns
     -------

@@ -19,12 +19,12 @@ from designer.model.measured_data import Measured, Noise
 from designer.statics.internal import solve_internal
 
 _MOST_TURNS = 12
-"""What sensors add depends so little on internal forces that three turns are usual."""
+"""Turns at most: what sensors add depends little on internal forces, so that few will do."""
 _STILL = 1e-7
 """Of the noise: far below what the slopes of a fit would show."""
 _ABOUT = (0.7, 2.8)
-"""Residual over the distrust within which the latter stays: wider than the factor of two between
-two distrusts, so that it cannot swing between them."""
+"""Residual over the distrust within which the latter stays. A new distrust, a power of two, is at
+most a factor of two below the residual; √2 more on either side keep it from swinging."""
 
 
 class InternalForces:

@@ -17,7 +17,7 @@ from designer.model.measured_data import Measured, Noise
 from designer.study import Measurements
 
 _ROUGH_LENGTH, _ROUGH_TENSION = 0.01, 0.1
-"""What a model may be off by at first, over a typical reading: only their ratio counts, and
+"""What a model may be off by at first, over a typical reading: mostly their ratio counts, and
 tensions are foretold worse than lengths."""
 
 

@@ -51,22 +51,17 @@ def imbalance_of(machine: Machine, measured: Measured) -> FloatArray | None:
 
 def added_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
     """Return wind and late load on the platform, base frame (n_rows, 3) [N]; None without."""
-    wind_N = wind_force_N(machine, measured)
-    if machine.late_load_kg == 0.0 or measured.time_s is None:
-        return wind_N
-    down = -machine.robot.upright[2]
-    weight_N = STANDARD_GRAVITY_M_PER_S2 * machine.late_load_kg * down
-    load_N = (measured.time_s >= machine.late_load_from_s)[:, None] * weight_N
-    return np.asarray(load_N if wind_N is None else wind_N + load_N)
-
-
-def wind_force_N(machine: Machine, measured: Measured) -> FloatArray | None:
-    """Return the wind's force on the platform, base frame (n_rows, 3) [N]; None without."""
-    if machine.drag_area_m2 == 0.0 or measured.wind_m_per_s is None:
-        return None
-    wind = measured.wind_m_per_s
-    speed = np.linalg.norm(wind, axis=1, keepdims=True)
-    return np.asarray(0.5 * AIR_DENSITY_KG_PER_M3 * machine.drag_area_m2 * speed * wind)
+    forces = []
+    if machine.drag_area_m2 != 0.0 and measured.wind_m_per_s is not None:
+        wind = measured.wind_m_per_s
+        speed = np.linalg.norm(wind, axis=1, keepdims=True)
+        forces.append(0.5 * AIR_DENSITY_KG_PER_M3 * machine.drag_area_m2 * speed * wind)
+    if machine.late_load_kg != 0.0 and measured.time_s is not None:
+        down = -machine.robot.upright[2]
+        weight_N = STANDARD_GRAVITY_M_PER_S2 * machine.late_load_kg * down
+        is_late = measured.time_s >= machine.late_load_from_s
+        forces.append(is_late[:, None] * weight_N)
+    return np.asarray(sum(forces)) if forces else None
 
 
 def straightened_m(machine: Machine, tension_N: FloatArray, span_m: FloatArray) -> FloatArray:

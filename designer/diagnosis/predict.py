@@ -19,7 +19,7 @@ from designer.model.measured_data import EVEN, Measured, Noise
 _SLOPES_KEPT = 8
 """Slopes that are remembered: those of the parts of one validation, and a few more."""
 _MACHINES_KEPT = 64
-"""Readings that are remembered: those of one round's slopes."""
+"""Readings that are remembered: more than the slopes of one fit ask for."""
 
 
 class Predictor:

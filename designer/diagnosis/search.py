@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from designer.arrays import BoolArray
 from designer.diagnosis.blocks import folds
@@ -17,9 +17,14 @@ SIGNIFICANCE = 0.001
 RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
+"""For each parameter, in units of the variance that is left: Akaike's information criterion."""
 _MOST_EFFECTS = 5
+"""More that a machine lacks at once are not to be told apart by one log."""
 _ALWAYS_VALIDATED = 3
+"""Candidates of a round that are cross-validated whatever comes of it: a report shows them."""
 _EXCHANGED = 8
+"""Best candidates of a round that may take the place of a member: what is worse alone is seldom
+better there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,13 +61,13 @@ class Trial:
 
     @property
     def earns_its_place(self) -> bool:
-        """Whether it is no accident, and foretells rows that it has not seen."""
+        """Whether it is no accident, and predicts rows that it has not seen."""
         return self.chance < SIGNIFICANCE and self.heldout_gain > 0.0
 
     @property
     def may_be_added(self) -> bool:
         """Whether it earns its place with values that an engineer would believe."""
-        return self.earns_its_place and is_plausible(self.fit, self.effect)
+        return self.earns_its_place and self.fit.is_plausible(self.effect)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +121,7 @@ def _simplest(trials: Sequence[Trial]) -> Trial | None:
 
 
 def _half_as_good(effect: Effect, steps: Sequence[Step]) -> set[str]:
-    """Return what foretold unseen rows at least half as well when an effect was added."""
+    """Return what predicted unseen rows at least half as well when an effect was added."""
     added = [step for step in steps if step.added is not None and step.added.key == effect.key]
     if not added:
         return set()
@@ -124,10 +129,11 @@ def _half_as_good(effect: Effect, steps: Sequence[Step]) -> set[str]:
     return {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
 
 
-def is_plausible(model: Fit, effect: Effect) -> bool:
-    """Tell whether a model has an effect with values that an engineer would believe."""
-    values = next(s.values for s in model.settings if s.effect.key == effect.key)
-    return all(p.plausible[0] <= values[p.name] <= p.plausible[1] for p in effect.parameters)
+def _chance(gain: float, effect: Effect, looks: int) -> float:
+    """Return how probable a gain is by chance in any of so many candidates."""
+    from scipy.stats import chi2
+
+    return min(float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * looks, 1.0)
 
 
 def _best_variance(trials: Sequence[Trial]) -> float:
@@ -185,7 +191,7 @@ class Searcher:
             found = self._exchanged([*found, best.effect], best.fit, outsiders)
             found = self._pruned(found)
             present = self.fit(found, best.fit)
-        found = self._foretelling(found, present)
+        found = self._predicting(found, present)
         return Search(tuple(steps), self.fit(found, present, thorough=True), tuple(found))
 
     def fit(
@@ -205,8 +211,7 @@ class Searcher:
         self, found: Sequence[Effect], present: Fit, part: str = "candidates"
     ) -> list[Trial]:
         """Try every other candidate in addition, best first."""
-        taken = {e.key for e in (*found, *self._given)}
-        others = [e for e in self._candidates if e.key not in taken]
+        others = self._others(found)
         tried = [
             self._trial(found, present, effect, len(others))
             for effect in self._progress.each(part, others)
@@ -222,18 +227,16 @@ class Searcher:
 
         Each is fitted from the present model, and from where each round of the search left it. It
         stays a rival if the fitted rows suit it about as well, with a penalty for its parameters or
-        without one; or if it foretold unseen rows at least half as well when ``effect`` was added,
-        and foretells them about as well in its place.
+        without one; or if it predicted unseen rows at least half as well when ``effect`` was added,
+        and predicts them about as well in its place.
         """
         rest = [e for e in found if e.key != effect.key]
-        taken = {e.key for e in (*found, *self._given)}
         scale = present.variance * present.inflation[effect.key]
         good = _half_as_good(effect, steps)
         answer = []
-        others = [e for e in self._candidates if e.key not in taken]
-        for other in self._progress.each(f"rivals of {effect.key}", others):
+        for other in self._progress.each(f"rivals of {effect.key}", self._others(found)):
             swapped = self._in_place([*rest, other], present, other, steps)
-            if not is_plausible(swapped, other):
+            if not swapped.is_plausible(other):
                 continue
             gaps = (
                 swapped.loss - present.loss,
@@ -247,6 +250,10 @@ class Searcher:
                 answer.append(other)
         return answer
 
+    def _others(self, found: Sequence[Effect]) -> list[Effect]:
+        taken = {effect.key for effect in (*found, *self._given)}
+        return [effect for effect in self._candidates if effect.key not in taken]
+
     def _in_place(
         self, effects: Sequence[Effect], present: Fit, other: Effect, steps: Sequence[Step]
     ) -> Fit:
@@ -257,12 +264,9 @@ class Searcher:
         return min(fits, key=lambda one: one.loss)
 
     def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
-        from scipy.stats import chi2
-
         model = self.fit([*found, effect], present, anew=True)
         gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
-        chance = float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * n_others
-        return Trial(effect, model, gain, min(chance, 1.0), float("nan"))
+        return Trial(effect, model, gain, _chance(gain, effect, n_others), float("nan"))
 
     def _validated_best(self, found: Sequence[Effect], tried: list[Trial]) -> list[Trial]:
         """Cross-validate from the best down, the first few and then until one earns its place."""
@@ -281,8 +285,7 @@ class Searcher:
             return trial
         gain = self._unseen_loss(found, trial.fit)
         gain -= self._unseen_loss([*found, trial.effect], trial.fit)
-        heldout = gain / trial.fit.variance
-        return Trial(trial.effect, trial.fit, trial.gain, trial.chance, heldout)
+        return replace(trial, heldout_gain=gain / trial.fit.variance)
 
     def _unseen_loss(self, found: Sequence[Effect], near: Fit) -> float:
         """Return the loss over each part of the rows, fitted to the other parts."""
@@ -300,8 +303,7 @@ class Searcher:
         present = self.fit(found, near)
         for k in range(len(found) - 1):  # the newest was chosen among all
             for other in outsiders:
-                taken = {e.key for e in (*found, *self._given)}
-                if other.key in taken or self._progress.is_over:
+                if other not in self._others(found) or self._progress.is_over:
                     continue
                 swapped = [*found[:k], other, *found[k + 1 :]]
                 model = self.fit(swapped, present)
@@ -312,8 +314,6 @@ class Searcher:
 
     def _pruned(self, found: list[Effect]) -> list[Effect]:
         """Leave out what the others have made superfluous."""
-        from scipy.stats import chi2
-
         present = self.fit(found)
         for effect in list(found):
             if len(found) == 1:
@@ -321,14 +321,13 @@ class Searcher:
             rest = [e for e in found if e.key != effect.key]
             without = self.fit(rest, present)
             scale = present.variance * present.inflation[effect.key]
-            loss = max((without.loss - present.loss) / scale, 0.0)
-            chance = float(chi2.sf(loss, len(effect.parameters))) * len(self._candidates)
-            if chance > SIGNIFICANCE:
+            gain = (without.loss - present.loss) / scale
+            if _chance(gain, effect, len(self._candidates)) > SIGNIFICANCE:
                 found, present = rest, without
         return found
 
-    def _foretelling(self, found: list[Effect], present: Fit) -> list[Effect]:
-        """Leave out what no longer helps to foretell rows that a fit has not seen."""
+    def _predicting(self, found: list[Effect], present: Fit) -> list[Effect]:
+        """Leave out what no longer helps to predict rows that a fit has not seen."""
         loss = self._unseen_loss(found, present) if len(found) > 1 else 0.0
         for effect in list(found):
             if len(found) == 1:
@@ -343,8 +342,5 @@ class Searcher:
         return model.loss + _PENALTY * model.variance * len(model.vector)
 
     def _sorted(self, effects: Sequence[Effect]) -> list[Effect]:
-        order = [e.key for e in self._candidates]
-        first = [e for e in effects if e.key not in order]
-        return first + sorted(
-            (e for e in effects if e.key in order), key=lambda e: order.index(e.key)
-        )
+        place = {effect.key: k for k, effect in enumerate(self._candidates)}
+        return sorted(effects, key=lambda effect: place.get(effect.key, -1))

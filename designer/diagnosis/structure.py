@@ -1,4 +1,4 @@
-"""Is there structure beyond noise, and what does it go with?"""
+"""Lack of fit: is there structure beyond noise, and what does it go with?"""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ _DRAWS = 999
 _CUT = 4.0
 """Standard deviations at which channels are clipped, so that no outlier makes structure."""
 _LARGE = 1.3
-"""Times the noise from which on what lasts is no noise of the sensors: a declared noise is seldom
-known better than to a third."""
+"""Times the noise beyond which what lasts is a drift: by less, a declared noise may be wrong."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import astuple, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from designer.model.robot import Robot
 _PROBES_M = (1e-3, 7e-3, 0.05, 0.35)
 """Diameters at which a family is looked at, to tell whether an effect leaves it one."""
 _SAME = 1e-9
+"""Relative: beyond rounding, below what any effect does."""
 _ANY_FAMILY = Material(6000.0, 1e11, 2e8)
 
 
@@ -54,7 +55,7 @@ class AsBuilt:
         They are where every effect scales; not where one adds, such as a film of ice, which is
         little on a thick cable and much on a thin one.
         """
-        first, *others = (_figures(self._at(material, d)) for d in _PROBES_M)
+        first, *others = (astuple(self._at(material, d)) for d in _PROBES_M)
         return all(np.allclose(other, first, rtol=_SAME, atol=0.0) for other in others)
 
     def material(self, material: Material, diameter_m: float | None = None) -> Material:
@@ -119,17 +120,11 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
     return AsBuilt(thin, _unchanged if has_none else lambda cable: built(cable).cable)
 
 
-def _figures(material: Material) -> tuple[float, ...]:
-    return tuple(getattr(material, field.name) for field in fields(material))
-
-
 def _is_same(one: Robot, other: Robot) -> bool:
+    pairs: list[tuple[Any, Any]] = [(one, other), (one.platform, other.platform)]
     return all(
-        np.array_equal(mine, theirs)
-        for mine, theirs in zip(_all_of(one), _all_of(other), strict=True)
+        np.array_equal(getattr(mine, field.name), getattr(theirs, field.name))
+        for mine, theirs in pairs
+        for field in fields(mine)
+        if field.name != "platform"
     )
-
-
-def _all_of(robot: Robot) -> list[Any]:
-    own = [getattr(robot, field.name) for field in fields(robot) if field.name != "platform"]
-    return own + [getattr(robot.platform, field.name) for field in fields(robot.platform)]

@@ -89,21 +89,15 @@ def _assign_mapped(
     column = named.get(entry.name)
     if column is None:
         found.awaited.add(entry.target)
-        found.faults.append(_no_such_column(found.table, named, entry, study))
+        problem = f"there is no such column in {found.table.name}"
+        expected = f"a name in its first line{did_you_mean(entry.name, named)}"
+        found.faults.append(study.source.fault(f"{_MAP}.{entry.name}", problem, expected))
     elif entry.target == COVARIATE:
         found.covariates[entry.name] = column
     elif entry.target != IGNORE:
         found.ours[entry.target] = replace(
             column, values=column.values * entry.scale + entry.offset
         )
-
-
-def _no_such_column(
-    table: Table, named: dict[str, RawColumn], entry: LogColumn, study: Study
-) -> Fault:
-    problem = f"there is no such column in {table.name}"
-    expected = f"a name in its first line{did_you_mean(entry.name, named)}"
-    return study.source.fault(f"{_MAP}.{entry.name}", problem, expected)
 
 
 def _assign_by_name(found: Assigned, column: RawColumn, study: Study) -> None:
@@ -138,7 +132,13 @@ def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
     lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
     known = {*found.ours, *found.awaited}
     if known.isdisjoint(POSITION):
-        yield _no_pose(found)
+        problem = (
+            "there is no measured pose; the diagnosis holds readings against the pose of each row, "
+            "which is indispensable and has to be measured by other means than the winches"
+        )
+        expected = f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}"
+        hint = did_you_mean(POSITION[0], found.covariates)
+        yield found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
     else:
         yield from _missing_of(found, POSITION)
         if not study.robot.is_point_mass:
@@ -152,16 +152,6 @@ def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
     for names in (lengths, tensions):
         if not known.isdisjoint(names):
             yield from _missing_of(found, names)
-
-
-def _no_pose(found: Assigned) -> Fault:
-    problem = (
-        "there is no measured pose; the diagnosis holds readings against the pose of each row, "
-        "which is indispensable and has to be measured by other means than the winches"
-    )
-    expected = f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}"
-    hint = did_you_mean(POSITION[0], found.covariates)
-    return found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
 
 
 def _missing_rotation(found: Assigned) -> Iterator[Fault]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -25,9 +26,8 @@ class TextCell(NamedTuple):
 
 def read_cells(cells: Sequence[str], first_row: int) -> tuple[FloatArray, list[TextCell]]:
     """Return the numbers of a column, NaN for nothing or a text, and the texts."""
-    plain = _all_numbers(cells)
-    if plain is not None:
-        return plain, []
+    with suppress(ValueError):  # the quick way, which most columns allow
+        return np.array([_float(cell) for cell in cells]), []
     numbers = [_number(cell) for cell in cells]
     texts = [
         TextCell(row, cell.strip())
@@ -42,24 +42,17 @@ def is_number(cell: str) -> bool:
     return cell.strip().casefold() not in _NOTHING and _number(cell) is not None
 
 
-def _all_numbers(cells: Sequence[str]) -> FloatArray | None:
-    """Return the column the quick way, which most columns allow; None where it does not."""
-    if any("_" in cell for cell in cells):  # Python reads '1_2' as 12
-        return None
-    try:
-        return np.array([float(cell) for cell in cells])
-    except ValueError:
-        return None
-
-
 def _number(cell: str) -> float | None:
     """Return the number, NaN for nothing, None for a text."""
-    text = cell.strip().casefold()
-    if text in _NOTHING:
+    if cell.strip().casefold() in _NOTHING:
         return math.nan
-    if "_" in text:
-        return None
     try:
-        return float(text)
+        return _float(cell)
     except ValueError:
         return None
+
+
+def _float(cell: str) -> float:
+    if "_" in cell:  # Python reads '1_2' as 12
+        raise ValueError(cell)
+    return float(cell)

@@ -80,25 +80,11 @@ def dimension_of(name: str) -> Dimension | None:
     cable = cable_of(name)
     if cable is not None and str(cable) == name.split("_")[1] and cable > 0:
         return LENGTH if name.startswith("length") else FORCE
-    return ANGLE if _is_euler_angle(name) else None
-
-
-def _is_euler_angle(name: str) -> bool:
-    found = _EULER.fullmatch(name)
-    if found is None:
-        return False
-    axes = found["axes"]
-    return bool(axes[0] != axes[1] != axes[2])
+    euler = _EULER.fullmatch(name)  # a turn about the same axis twice in a row is one
+    return ANGLE if euler and euler["axes"][0] != euler["axes"][1] != euler["axes"][2] else None
 
 
 def column_hint(name: str) -> str:
     """Return a hint at the column of ours whose name is most like this one."""
-    known = (
-        *_DIMENSIONS,
-        *length_names(_MOST_CABLES),
-        *tension_names(_MOST_CABLES),
-        *_COMMON_EULER,
-        IGNORE,
-        COVARIATE,
-    )
-    return did_you_mean(name, known)
+    readings = (*length_names(_MOST_CABLES), *tension_names(_MOST_CABLES))
+    return did_you_mean(name, (*_DIMENSIONS, *readings, *_COMMON_EULER, IGNORE, COVARIATE))

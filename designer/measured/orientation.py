@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray
 from designer.errors import Fault
 from designer.measured.assign import Assigned
-from designer.measured.faults import first_few
 from designer.measured.names import QUATERNION, ROTATION_VECTOR
 
 _LARGEST_NORM_ERROR = 0.01
@@ -48,13 +45,10 @@ def quaternion_faults(found: Assigned, kept: BoolArray) -> list[Fault]:
         return []
     norm = np.sqrt(sum(column.values**2 for column in columns))
     rows = np.flatnonzero(kept & np.isfinite(norm) & (np.abs(norm - 1.0) > _LARGEST_NORM_ERROR))
-    name = columns[0].name
-    return first_few(
-        _faults(found, name, norm, rows), len(rows), found.table.name, "such quaternions"
+    faults = (
+        found.table.fault(
+            int(row), columns[0].name, f"has a quaternion of length {norm[row]:.4g}", "1 within 1 %"
+        )
+        for row in rows
     )
-
-
-def _faults(found: Assigned, name: str, norm: FloatArray, rows: IntArray) -> Iterator[Fault]:
-    for row in rows:
-        problem = f"has a quaternion of length {norm[row]:.4g}"
-        yield found.table.fault(int(row), name, problem, "1 within 1 %")
+    return found.table.first_few(faults, len(rows), "such quaternions")

@@ -9,9 +9,8 @@ from designer.errors import Fault, InputError
 from designer.measured.assign import Assigned, assign
 from designer.measured.names import POSITION, length_names, tension_names
 from designer.measured.orientation import orientation, quaternion_faults
-from designer.measured.plausible import unit_faults
 from designer.measured.rows import Rows, cell_faults, usable_rows
-from designer.measured.sense import sense_faults
+from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
 from designer.model.measured_data import Measured
@@ -40,14 +39,18 @@ def read_measured(study: Study) -> Measured:
         If the config names no measurements or the file is not as it should be; carries every
         fault, a hundred at most.
     """
-    measurements = _measurements(study)
+    measurements = study.measurements
+    if measurements is None:
+        expected = "a mapping with the file of measured data and the cable on the machine"
+        raise InputError([study.source.fault("measurements", "is missing", expected)])
     table = _table(study, measurements)
     with np.errstate(over="ignore", invalid="ignore"):  # numbers without bounds become faults
         found = assign(table, study, measurements)
         rows = usable_rows(found, study.robot.n_cables, settled=measurements.settled)
-        _refuse([*_head_and_cells(found), *rows.faults, *quaternion_faults(found, rows.kept)])
+        faults = [*found.table.faults, *found.faults, *cell_faults(found), *rows.faults]
+        _refuse([*faults, *quaternion_faults(found, rows.kept)])
     poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
-    _refuse(_one_pose(table, poses))
+    _refuse_one_pose(table, poses)
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
     told = (*(effect.id for effect in study.effects), *measurements.unknown)
     known = study.known_effects.effects
@@ -60,17 +63,6 @@ def read_measured(study: Study) -> Measured:
 def _refuse(faults: list[Fault]) -> None:
     if faults:
         raise InputError(faults[:MOST_FAULTS])
-
-
-def _head_and_cells(found: Assigned) -> list[Fault]:
-    return [*found.table.faults, *found.faults, *cell_faults(found)]
-
-
-def _measurements(study: Study) -> Measurements:
-    if study.measurements is None:
-        expected = "a mapping with the file of measured data and the cable on the machine"
-        raise InputError([study.source.fault("measurements", "is missing", expected)])
-    return study.measurements
 
 
 def _table(study: Study, measurements: Measurements) -> Table:
@@ -104,13 +96,12 @@ def _stacked(found: Assigned, names: tuple[str, ...], kept: BoolArray) -> FloatA
     return np.stack(columns, axis=1)[kept]
 
 
-def _one_pose(table: Table, poses: Poses) -> list[Fault]:
+def _refuse_one_pose(table: Table, poses: Poses) -> None:
     has_moved = np.ptp(poses.position_m, axis=0).max() > _SAME_PLACE_M
     has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > _SAME_ROTATION
-    if has_moved or has_turned:
-        return []
-    problem = "all rows are at one pose, so nothing can be told apart"
-    return [Fault(table.name, None, "", problem, "different poses")]
+    if not has_moved and not has_turned:
+        problem = "all rows are at one pose, so nothing can be told apart"
+        raise InputError([Fault(table.name, None, "", problem, "different poses")])
 
 
 def _measured(
@@ -119,7 +110,11 @@ def _measured(
     notes = [*found.notes, *rows.notes]
     kept = rows.kept
     lengths, tensions = (names(n_cables) for names in (length_names, tension_names))
-    notes += _empty_readings(found, kept, lengths + tensions)
+    notes += [
+        f"{column.name} has no reading"
+        for column in found.present(lengths + tensions)
+        if np.isnan(column.values[kept]).all()
+    ]
     row_numbers = np.flatnonzero(kept).astype(np.int64) + 1
     row_numbers.setflags(write=False)
     time = time_s(found, kept, notes)
@@ -136,11 +131,3 @@ def _measured(
         notes=tuple(notes),
         sha256=found.table.sha256,
     )
-
-
-def _empty_readings(found: Assigned, kept: BoolArray, names: tuple[str, ...]) -> list[str]:
-    return [
-        f"{column.name} has no reading"
-        for column in found.present(names)
-        if np.isnan(column.values[kept]).all()
-    ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +11,12 @@ from designer.arrays import BoolArray, IntArray
 from designer.errors import Fault
 from designer.measured.assign import Assigned
 from designer.measured.cells import MOST_ALIKE, is_number
-from designer.measured.faults import first_few, row_list
 from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
 from designer.measured.table import RawColumn
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
 FEWEST_ROWS = 8
-_NUMBER = "a number, or nothing where there is none"
-_FINITE = "a finite number, or nothing where there is none"
+"""A quarter is held out from every fit, and what is left has to show more than its noise."""
 _LARGEST_NUMBER = 1e30
 _BOUNDS = {
     LENGTH: (-1e7, 1e7),  # these three as in the config
@@ -77,19 +74,24 @@ def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
     has_reading = _with_reading(found, n_cables)
     kept = has_pose & has_reading
     notes = [
-        f"{row_list((np.flatnonzero(left_out) + 1).tolist())} without {what} left out"
+        f"{_row_list(np.flatnonzero(left_out) + 1)} without {what} left out"
         for left_out, what in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
     faults += [*_missing_times(found, kept), *_times_out_of_order(found, kept, settled=settled)]
     if kept.sum() < FEWEST_ROWS:
-        faults.append(_too_few(found, int(kept.sum())))
+        total = found.table.n_rows
+        problem = f"{kept.sum()} of {total} rows have a pose and a reading"
+        problem = problem if total else "there are no rows"
+        expected = f"at least {FEWEST_ROWS} rows"
+        faults.append(Fault(found.table.name, None, "", problem, expected))
     return Rows(kept, faults, notes)
 
 
 def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
     with_text = [column for column in columns if column.n_texts]
-    if len(with_text) > 1 and all(_is_text_on_top_alone(column) for column in with_text):
+    in_top_row = [column.n_texts == 1 and column.texts[0].row == 0 for column in with_text]
+    if len(with_text) > 1 and all(in_top_row):
         text = describe(with_text[0].texts[0].text)
         problem = f"holds texts, such as {text}, in {len(with_text)} columns"
         expected = "numbers; units of columns go into measurements.columns"
@@ -102,17 +104,13 @@ def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
         for cell in column.texts
     )
     total = sum(column.n_texts for column in columns)
-    return first_few(faults, total, found.table.name, "cells with a text")
-
-
-def _is_text_on_top_alone(column: RawColumn) -> bool:
-    return column.n_texts == 1 and column.texts[0].row == 0
+    return found.table.first_few(faults, total, "cells with a text")
 
 
 def _instead_of(text: str) -> str:
     if "," in text and is_number(text.replace(",", "")):
         return "a number with a decimal point and without commas"
-    return _NUMBER
+    return "a number, or nothing where there is none"
 
 
 def _boundless_faults(found: Assigned, columns: list[tuple[str, RawColumn]]) -> list[Fault]:
@@ -126,46 +124,35 @@ def _boundless_faults(found: Assigned, columns: list[tuple[str, RawColumn]]) -> 
         for row in rows[:MOST_ALIKE]:
             value = float(column.values[row])
             expected = f"{low:g} to {high:g} {dimension.unit}; units go into measurements.columns"
-            expected = _FINITE if abs(value) > _LARGEST_NUMBER else expected
-            faults.append(
-                found.table.fault(int(row), column.name, f"has the value {value:g}", expected)
-            )
-    return first_few(faults, total, found.table.name, "values out of all bounds")
-
-
-def _row_faults(
-    found: Assigned, places: Iterable[tuple[RawColumn, IntArray]], problem: str, expected: str
-) -> Iterator[Fault]:
-    for column, rows in places:
-        for row in rows:
-            yield found.table.fault(int(row), column.name, problem, expected)
+            if abs(value) > _LARGEST_NUMBER:
+                expected = "a finite number, or nothing where there is none"
+            problem = f"has the value {value:g}"
+            faults.append(found.table.fault(int(row), column.name, problem, expected))
+    return found.table.first_few(faults, total, "values out of all bounds")
 
 
 def _with_reading(found: Assigned, n_cables: int) -> BoolArray:
     readings = found.present(length_names(n_cables) + tension_names(n_cables))
     if not readings:
         return np.ones(found.table.n_rows, dtype=np.bool_)
-    missing = np.array([np.isnan(column.values) for column in readings])
-    return np.asarray(~missing.all(axis=0))
+    return np.asarray(~np.all([np.isnan(column.values) for column in readings], axis=0))
 
 
 def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
     """Return which rows have a pose, and the faults of those that have half of one."""
-    columns = found.present((*POSITION, *found.rotation)) if found.table.n_rows else []
+    table = found.table
+    columns = found.present((*POSITION, *found.rotation)) if table.n_rows else []
     empty = [column for column in columns if column.is_empty]
-    faults = [found.table.fault(None, one.name, "is empty", "a pose in each row") for one in empty]
+    faults = [table.fault(None, one.name, "is empty", "a pose in each row") for one in empty]
     filled = [column for column in columns if not column.is_empty and not column.n_texts]
     if not filled:
-        return np.ones(found.table.n_rows, dtype=np.bool_), faults
+        return np.ones(table.n_rows, dtype=np.bool_), faults
     missing = np.array([np.isnan(column.values) for column in filled])
     has_pose = np.asarray(~missing.all(axis=0))
-    places = [
-        (column, np.flatnonzero(is_missing & has_pose))
-        for column, is_missing in zip(filled, missing, strict=True)
-    ]
-    halves = _row_faults(found, places, "has half a pose, this is missing", "all of it, or nothing")
-    total = sum(len(rows) for _, rows in places)
-    return has_pose, faults + first_few(halves, total, found.table.name, "missing values")
+    places = np.argwhere(missing & has_pose)
+    problem, expected = "has half a pose, this is missing", "all of it, or nothing"
+    halves = (table.fault(int(row), filled[k].name, problem, expected) for k, row in places)
+    return has_pose, faults + table.first_few(halves, len(places), "missing values")
 
 
 def _missing_times(found: Assigned, kept: BoolArray) -> list[Fault]:
@@ -173,8 +160,9 @@ def _missing_times(found: Assigned, kept: BoolArray) -> list[Fault]:
     if time is None or time.is_empty or time.n_texts:
         return []
     rows = np.flatnonzero(np.isnan(time.values) & kept)
-    faults = _row_faults(found, [(time, rows)], "has no time", "a time in each row, or in none")
-    return first_few(faults, len(rows), found.table.name, "rows without a time")
+    problem, expected = "has no time", "a time in each row, or in none"
+    faults = (found.table.fault(int(row), time.name, problem, expected) for row in rows)
+    return found.table.first_few(faults, len(rows), "rows without a time")
 
 
 def _times_out_of_order(found: Assigned, kept: BoolArray, *, settled: bool) -> list[Fault]:
@@ -188,7 +176,7 @@ def _times_out_of_order(found: Assigned, kept: BoolArray, *, settled: bool) -> l
     step = np.diff(time.values[rows])
     places = np.flatnonzero(step < 0.0 if settled else step <= 0.0)
     faults = (_out_of_order(found, time, *rows[place : place + 2]) for place in places)
-    return first_few(faults, len(places), found.table.name, "rows out of order")
+    return found.table.first_few(faults, len(places), "rows out of order")
 
 
 def _out_of_order(found: Assigned, time: RawColumn, before: int, row: int) -> Fault:
@@ -200,7 +188,9 @@ def _out_of_order(found: Assigned, time: RawColumn, before: int, row: int) -> Fa
     return found.table.fault(int(row), time.name, problem, "rows in the order of their time")
 
 
-def _too_few(found: Assigned, count: int) -> Fault:
-    total = found.table.n_rows
-    problem = f"{count} of {total} rows have a pose and a reading" if total else "there are no rows"
-    return Fault(found.table.name, None, "", problem, f"at least {FEWEST_ROWS} rows")
+def _row_list(rows: IntArray) -> str:
+    """Return row numbers in words, neighbours together: ``row 3``, ``rows 1 to 4, 9``."""
+    spans = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+    shown = [f"{a[0]}" if len(a) == 1 else f"{a[0]} to {a[-1]}" for a in spans[:MOST_ALIKE]]
+    more = ["…"] * (len(spans) > MOST_ALIKE)
+    return f"row{'s' * (len(rows) != 1)} {', '.join(shown + more)}"

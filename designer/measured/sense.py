@@ -1,16 +1,17 @@
-"""Does a log make sense? Signs, the order of the cables, and units of what is not a length."""
+"""Does a log make sense? Units, signs, the order of the cables, told by straight cables."""
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
-from designer.measured.faults import first_few
-from designer.measured.names import TEMPERATURE_NAME, length_names, tension_names
+from designer.measured.names import POSITION, TEMPERATURE_NAME, length_names, tension_names
 from designer.measured.table import Table
 from designer.model.measured_data import Measured
 from designer.model.robot import Robot
@@ -19,14 +20,82 @@ from designer.statics.geometry import cable_geometry
 FEWEST_POSES = 5
 """Several are held out from every fit, and an exit point alone has three unknowns."""
 
-_ALIKE = 0.99
-_UNLIKE = 0.9
+_UNITS = {"millimetres": 1e3, "centimetres": 1e2, "feet": 1.0 / 0.3048, "inches": 1.0 / 0.0254}
+_LEVEL_TOLERANCE = 1.1
+"""Of a length over its straight distance: sag and stretch are less."""
+_SPREAD_TOLERANCE = 2.0
+"""Of spreads over the rows, which follow the geometry loosely."""
+_FAR_OFF = 30.0
+"""So loosely that they tell only units that are as far off as this."""
+_ALIKE, _UNLIKE = 0.99, 0.9
+"""Correlation of a length with a distance: sag leaves more than the former, noise than the latter;
+between them nothing is told."""
 _SAME_M = 1e-6
 _KELVIN_FROM = 150.0
+"""No machine is as hot in °C, or as cold in kelvin."""
+_PUSHING = -0.01
+"""Of the load: a load cell that is only off reads less of a push."""
 _LIGHTEST = 0.5
 """Cables pull along themselves, so that their tensions add up to the weight at least; rest: doubt
 about the weight."""
 _MAP = "measurements.columns"
+_METRES = f"metres, or the unit in {_MAP}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Ratio:
+    """Measured lengths of one cable over straight distances, by level and by spread over rows."""
+
+    level: float
+    spread: float
+
+    @property
+    def unit(self) -> str | None:
+        """The unit that the lengths seem to be in; None for metres, or where nothing is told."""
+        for unit, factor in _UNITS.items():
+            if _is_near(self.level, factor, _LEVEL_TOLERANCE):
+                return unit
+            if factor > _FAR_OFF and _is_near(self.spread, factor, _SPREAD_TOLERANCE):
+                return unit
+        return None
+
+
+def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) -> list[Fault]:
+    """Return lengths or positions that seem to be in another unit than metres.
+
+    Parameters
+    ----------
+    robot, measured
+        The robot as declared, and its log.
+    file : str
+        The log, for messages.
+    is_homed : bool
+        Whether the winches' offsets are known, so that the level of the lengths means something;
+        their spread over the rows always does.
+    """
+    chord = cable_geometry(robot, measured.poses).chord_m
+    ratios = [
+        _ratio(length, distance, is_homed=is_homed)
+        for length, distance in zip(measured.length_m.T, chord.T, strict=True)
+    ]
+    spreads = [ratio.spread for ratio in ratios if not math.isnan(ratio.spread)]
+    # Positions in millimetres; nobody measures lengths in kilometres.
+    if spreads and _is_near(float(np.median(spreads)), 1e-3, 3.0):
+        problem = (
+            f"the lengths change about {_about(spreads)} times as much as the positions ask for, "
+            "as if these were in millimetres"
+        )
+        return [Fault(file, 1, ", ".join(POSITION), problem, _METRES)]
+    names, units = length_names(len(ratios)), [ratio.unit for ratio in ratios]
+    faults = []
+    for unit in dict.fromkeys(one for one in units if one):
+        cables = [k for k, one in enumerate(units) if one == unit]
+        problem = (
+            f"lengths change about {_about([ratios[k].spread for k in cables])} times as much as "
+            f"the poses ask for, as if they were in {unit}"
+        )
+        faults.append(Fault(file, 1, ", ".join(names[k] for k in cables), problem, _METRES))
+    return faults
 
 
 def sense_faults(robot: Robot, measured: Measured, table: Table, *, is_homed: bool) -> list[Fault]:
@@ -46,6 +115,23 @@ def sense_faults(robot: Robot, measured: Measured, table: Table, *, is_homed: bo
     if not faults and is_homed:
         faults += _not_positive(measured, table)
     return faults or list(_too_light(robot, measured, table))
+
+
+def _ratio(length_m: FloatArray, chord_m: FloatArray, *, is_homed: bool) -> _Ratio:
+    seen = ~np.isnan(length_m)
+    if not seen.any() or np.ptp(chord_m[seen]) == 0.0:
+        return _Ratio(math.nan, math.nan)
+    length, chord = length_m[seen], chord_m[seen]
+    level = float(np.median(length / chord)) if is_homed else math.nan
+    return _Ratio(level, float(np.std(length) / np.std(chord)))
+
+
+def _is_near(value: float, factor: float, tolerance: float) -> bool:
+    return factor / tolerance < value < factor * tolerance
+
+
+def _about(values: Sequence[float]) -> str:
+    return f"{float(f'{np.median(values):.2g}'):g}"
 
 
 def _few_poses(measured: Measured, table: Table) -> Iterator[Fault]:
@@ -104,17 +190,17 @@ def _not_positive(measured: Measured, table: Table) -> list[Fault]:
         )
         for cable, row in places
     )
-    return first_few(faults, len(places), table.name, "lengths that are not positive")
+    return table.first_few(faults, len(places), "lengths that are not positive")
 
 
 def _pushing(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
-    """Tell load cells that read a push most of the time; one that is only off reads little."""
-    limit_N = -0.01 * _pull_N(robot)
-    for name, middle_N in zip(
-        tension_names(robot.n_cables), _medians(measured.tension_N), strict=True
-    ):
-        if middle_N < limit_N:
-            problem = f"is {middle_N:.4g} N in the middle, but no cable can push"
+    """Tell load cells that read a push most of the time."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
+        middle_N = np.nanmedian(measured.tension_N, axis=0)
+    for name, tension_N in zip(tension_names(robot.n_cables), middle_N, strict=True):
+        if tension_N < _PUSHING * _pull_N(robot):
+            problem = f"is {tension_N:.4g} N in the middle, but no cable can push"
             yield table.fault(None, name, problem, f"a pull, or 'scale: -1' in {_MAP}")
 
 
@@ -134,9 +220,3 @@ def _too_light(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault
 
 def _pull_N(robot: Robot) -> float:
     return float(np.linalg.norm(robot.pull_N[:3]))
-
-
-def _medians(values: FloatArray) -> FloatArray:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
-        return np.asarray(np.nanmedian(values, axis=0))

@@ -12,19 +12,17 @@ from designer.measured.rows import is_numeric
 
 def time_s(found: Assigned, kept: BoolArray, notes: list[str]) -> FloatArray | None:
     """Return the time of each row [s]; None where it is not recorded or always the same."""
-    column = found.ours.get(TIME_NAME)
-    return None if column is None else _varying(column.values[kept], column.name, notes)
+    return _varying(found, TIME_NAME, kept, notes)
 
 
 def temperature_C(
     found: Assigned, kept: BoolArray, time: FloatArray | None, notes: list[str]
 ) -> FloatArray | None:
     """Return the temperature in each row [°C]; None where not recorded or always the same."""
-    column = found.ours.get(TEMPERATURE_NAME)
-    if column is None:
+    values = _varying(found, TEMPERATURE_NAME, kept, notes)
+    if values is None:
         return None
-    values = _varying(column.values[kept], column.name, notes)
-    return None if values is None else _filled(values, time, column.name, notes)
+    return _filled(values, time, found.ours[TEMPERATURE_NAME].name, notes)
 
 
 def wind_m_per_s(
@@ -78,16 +76,17 @@ def _is_constant(values: FloatArray) -> bool:
     return len(present) == 0 or bool(np.ptp(present) == 0.0)
 
 
-def _varying(values: FloatArray, name: str, notes: list[str]) -> FloatArray | None:
-    if _is_constant(values):
-        notes.append(_left_out(name, values))
+def _varying(found: Assigned, name: str, kept: BoolArray, notes: list[str]) -> FloatArray | None:
+    """Return one of our columns; None, and a note, where it is always the same."""
+    column = found.ours.get(name)
+    if column is None:
         return None
-    return frozen_array(values)
-
-
-def _left_out(name: str, values: FloatArray) -> str:
-    is_empty = np.isnan(values).all()
-    return f"{name} left out, {'empty' if is_empty else 'the same in all rows'}"
+    values = frozen_array(column.values[kept])
+    if _is_constant(values):
+        why = "empty" if np.isnan(values).all() else "the same in all rows"
+        notes.append(f"{column.name} left out, {why}")
+        return None
+    return values
 
 
 def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[str]) -> FloatArray:
@@ -96,8 +95,7 @@ def _filled(values: FloatArray, time: FloatArray | None, name: str, notes: list[
     if not missing.any():
         return values
     place = np.arange(float(len(values))) if time is None else time
-    known = ~missing
     count = int(missing.sum())
     rows = f"{count} row" + "s" * (count != 1)
     notes.append(f"{name} is missing in {rows} and taken from those around")
-    return frozen_array(np.interp(place, place[known], values[known]))
+    return frozen_array(np.interp(place, place[~missing], values[~missing]))

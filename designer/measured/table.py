@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import BinaryIO, NoReturn
@@ -15,11 +15,11 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.errors import Fault, InputError
 from designer.measured.cells import MOST_ALIKE, TextCell, is_number, read_cells
-from designer.measured.faults import first_few
 
 LARGEST_FILE_BYTES = 200_000_000
 _LONGEST_LINE_BYTES = 1_000_000
 _ROWS_AT_ONCE = 4096
+"""Few enough that their text takes no memory to speak of, many enough for whole columns."""
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _EXPECTED = "a CSV file: names of columns in its first line, numbers below"
 
@@ -91,6 +91,13 @@ class Table:
         where = "" if row is None else f"row {row + 1} "
         return Fault(self.name, line, column, f"{where}{problem}", expected)
 
+    def first_few(self, faults: Iterable[Fault], total: int, kind: str) -> list[Fault]:
+        """Return the first of ``total`` faults of one kind, and one that counts the others."""
+        told = list(islice(faults, MOST_ALIKE))
+        if total > len(told):
+            told.append(Fault(self.name, None, "", f"and {total - len(told)} more {kind}"))
+        return told
+
 
 def read_table(file: BinaryIO, name: str) -> Table:
     """Return the table in an open file, which messages call ``name``.
@@ -102,10 +109,22 @@ def read_table(file: BinaryIO, name: str) -> Table:
     """
     digest = hashlib.sha256()
     rows = _rows(_lines(file, name, digest.update), name)
-    body = _Body(name, _head(rows, name))
+    names = _head(rows, name)
+    columns = [_Filling() for _ in names]
+    lines: list[int] = []
+    misfits: list[tuple[int, int]] = []
     while block := list(islice(rows, _ROWS_AT_ONCE)):
-        body.add(block)
-    return replace(body.table(), sha256=digest.hexdigest())
+        first_row = len(lines)
+        lines += [line for line, _ in block]
+        widths = enumerate((len(cells) for _, cells in block), start=first_row)
+        misfits += [(row, width) for row, width in widths if width != len(names)]
+        nothing = [""] * len(names)  # a row of another width stays as one without anything in it
+        kept = (cells if len(cells) == len(names) else nothing for _, cells in block)
+        for column, filled in zip(columns, zip(*kept, strict=True), strict=True):
+            column.add(filled, first_row)
+    filled_columns = tuple(one.column(own) for own, one in zip(names, columns, strict=True))
+    table = Table(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
+    return replace(table, faults=(*_repeated_names(table), *_misfits(table, misfits)))
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
@@ -121,19 +140,15 @@ def _lines(file: BinaryIO, name: str, see: Callable[[bytes], None]) -> Iterator[
             limit = f"at most {LARGEST_FILE_BYTES / 1e6:g} MB"
             _refuse(name, None, "the file is too large", limit)
         see(raw)
-        yield _decoded(raw, name, number)
-
-
-def _decoded(raw: bytes, name: str, number: int) -> str:
-    try:
-        text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
-    except UnicodeDecodeError:
-        _refuse(name, number, "this is not text in UTF-8")
-    if _CONTROL_CODE.search(text):
-        _refuse(name, number, "this is a binary file")
-    if len(raw) == _LONGEST_LINE_BYTES:
-        _refuse(name, number, "this line is too long")
-    return text
+        try:
+            text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
+        except UnicodeDecodeError:
+            _refuse(name, number, "this is not text in UTF-8")
+        if _CONTROL_CODE.search(text):
+            _refuse(name, number, "this is a binary file")
+        if len(raw) == _LONGEST_LINE_BYTES:
+            _refuse(name, number, "this line is too long")
+        yield text
 
 
 def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
@@ -146,16 +161,12 @@ def _rows(lines: Iterator[str], name: str) -> Iterator[tuple[int, list[str]]]:
         except StopIteration:
             return
         except csv.Error as error:
-            _refuse(name, line, *_no_csv(str(error)))
+            if str(error).startswith("new-line character"):
+                expected = "line feeds, as text files have now"
+                _refuse(name, line, "the lines end with carriage returns alone", expected)
+            _refuse(name, line, f"this is not valid CSV: {error}")
         if len(cells) > 1 or "".join(cells).strip():
             yield line, cells
-
-
-def _no_csv(reason: str) -> tuple[str, str]:
-    """Return the problem and what was expected, in words of our own for what users meet."""
-    if reason.startswith("new-line character"):
-        return "the lines end with carriage returns alone", "line feeds, as text files have now"
-    return f"this is not valid CSV: {reason}", _EXPECTED
 
 
 def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
@@ -192,49 +203,24 @@ class _Filling:
         return RawColumn(name, values, self.n_texts, tuple(self.texts))
 
 
-class _Body:
-    """The rows below the head."""
-
-    def __init__(self, name: str, names: list[str]) -> None:
-        self._name = name
-        self._names = names
-        self._columns = [_Filling() for _ in names]
-        self._lines: list[int] = []
-        self._misfits: list[Fault] = []
-        self._n_misfits = 0
-
-    def add(self, block: list[tuple[int, list[str]]]) -> None:
-        """Take in rows; those of another width stay as rows without anything in them."""
-        width = len(self._names)
-        first_row = len(self._lines)
-        nothing = [""] * width
-        kept = [cells if len(cells) == width else nothing for _, cells in block]
-        for place, (line, cells) in enumerate(block, start=first_row):
-            if len(cells) != width:
-                self._take_misfit(place, line, len(cells))
-        self._lines += [line for line, _ in block]
-        for filling, column in zip(self._columns, zip(*kept, strict=True), strict=True):
-            filling.add(column, first_row)
-
-    def _take_misfit(self, row: int, line: int, width: int) -> None:
-        self._n_misfits += 1
-        if len(self._misfits) < MOST_ALIKE:
-            problem = f"row {row + 1} has {width} value" + "s" * (width != 1)
-            expected = f"{len(self._names)}, as the first line has names"
-            self._misfits.append(Fault(self._name, line, "", problem, expected))
-
-    def table(self) -> Table:
-        columns = tuple(
-            filling.column(name) for name, filling in zip(self._names, self._columns, strict=True)
+def _misfits(table: Table, misfits: list[tuple[int, int]]) -> list[Fault]:
+    """Return the rows of another width, each given with that."""
+    faults = (
+        table.fault(
+            row,
+            "",
+            f"has {width} value" + "s" * (width != 1),
+            f"{len(table.columns)}, as the first line has names",
         )
-        lines = np.array(self._lines, dtype=np.int64)
-        misfits = first_few(self._misfits, self._n_misfits, self._name, "rows of another width")
-        return Table(self._name, columns, lines, (*self._repeated_names(), *misfits))
+        for row, width in misfits
+    )
+    return table.first_few(faults, len(misfits), "rows of another width")
 
-    def _repeated_names(self) -> Iterator[Fault]:
-        places: dict[str, int] = {}
-        for place, name in enumerate(self._names, start=1):
-            if name and name in places:
-                problem = f"columns {places[name]} and {place} have the same name"
-                yield Fault(self._name, 1, name, problem, "a name for each column")
-            places.setdefault(name, place)
+
+def _repeated_names(table: Table) -> Iterator[Fault]:
+    places: dict[str, int] = {}
+    for place, column in enumerate(table.columns, start=1):
+        if column.name and column.name in places:
+            problem = f"columns {places[column.name]} and {place} have the same name"
+            yield table.fault(None, column.name, problem, "a name for each column")
+        places.setdefault(column.name, place)
