@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pydantic_core import PydanticCustomError
 
 from designer.documents.bounds import parameter_bound
-from designer.documents.fields import Quantity, WholeNumber
+from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Data, Key, Node, path_text, printable
 from designer.effects.names import EffectName, ParameterName
 from designer.spelling import did_you_mean, nearest_name
@@ -162,7 +162,7 @@ def _value(
             found.refuse(place, "is missing", parameter.dimension.expected)
         return parameter.neutral or 0.0
     bound = parameter_bound(parameter.dimension)
-    quantity = Quantity(
+    quantity = QuantityField(
         parameter.dimension,
         parameter.above,
         bound.least if parameter.at_least is None else parameter.at_least,
