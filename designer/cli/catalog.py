@@ -40,18 +40,15 @@ def catalog_list(
 
     Example:  designer catalog list --construction 7x19 --diameter 6mm
     """
-    from designer.cli.terminal import print_left_out
-    from designer.cli.terminal_catalog import print_grades
-    from designer.grades.listing import Wanted, list_rows, split_nominal
-    from designer.grades.registry import load_catalogue
+    from designer.cli.tables import print_grades
+    from designer.grades.listing import Wanted, split_nominal
 
-    catalogue = load_catalogue(with_plugins=not no_plugins)
-    print_left_out(catalogue.problems)
+    catalogue = _loaded(no_plugins)
     wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
     products, computed = split_nominal(wanted.among(catalogue.grades))
     shown, others = (computed, products) if nominal else (products, computed)
     if shown:
-        print_grades(list_rows(shown))
+        print_grades(shown)
     if others and not nominal:
         typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
     if not shown:
@@ -59,11 +56,19 @@ def catalog_list(
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
-def _material(name: str | None, catalogue: Catalogue) -> str | None:
-    from designer.grades.listing import materials
+def _loaded(no_plugins: bool) -> Catalogue:
+    """Return all grades, after a line for each that was left out."""
+    from designer.cli.terminal import print_left_out
+    from designer.grades.registry import load_catalogue
 
-    known = materials(catalogue.grades)
-    if name is not None and name.casefold() not in (one.casefold() for one in known):
+    catalogue = load_catalogue(with_plugins=not no_plugins)
+    print_left_out(catalogue.problems)
+    return catalogue
+
+
+def _material(name: str | None, catalogue: Catalogue) -> str | None:
+    known = sorted({grade.material for grade in catalogue.grades if grade.material})
+    if name is not None and name.casefold() not in map(str.casefold, known):
         problem = f"no grade is of {name!r}"
         raise InputError([Fault("--material", None, "", problem, ", ".join(known))])
     return name
@@ -97,13 +102,9 @@ def catalog_show(
 
     Example:  designer catalog show unirope-7x19-galvanised
     """
-    from designer.cli.terminal import print_left_out
-    from designer.cli.terminal_catalog import print_grade
-    from designer.grades.registry import load_catalogue
+    from designer.cli.tables import print_grade
 
-    catalogue = load_catalogue(with_plugins=not no_plugins)
-    print_left_out(catalogue.problems)
-    print_grade(catalogue.grade(grade))
+    print_grade(_loaded(no_plugins).grade(grade))
 
 
 @catalog.command("check")
@@ -122,9 +123,7 @@ def catalog_check(
 
     Example:  designer catalog check my-ropes/
     """
-    from designer.cli.terminal import print_left_out
     from designer.grades.listing import check_path, summary
-    from designer.grades.registry import load_catalogue
 
     if path is not None:
         faults = check_path(path)
@@ -132,8 +131,7 @@ def catalog_check(
             raise InputError(faults)
         typer.echo(f"{path}: no fault found")
         return
-    catalogue = load_catalogue(with_plugins=not no_plugins)
-    print_left_out(catalogue.problems)
+    catalogue = _loaded(no_plugins)
     typer.echo(summary(catalogue) + ("" if catalogue.problems else ": no fault found"))
     if catalogue.problems:
         raise typer.Exit(WRONG_INPUT)

@@ -107,12 +107,8 @@ def report(
     Exit status 0: there is a cable, and it keeps the clearance asked for. 1: there is none or it
     does not, and the report says why. 2: the input is wrong, and nothing is written.
     """
-    from designer.cli.terminal import (
-        ProgressBars,
-        announce_compiling,
-        print_left_out,
-        print_summary,
-    )
+    from designer.cli.tables import print_summary
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
     from designer.plugins.find import find_plugins
     from designer.report.figures.opengl import begin_probe, why_no_scenes
@@ -158,7 +154,8 @@ def size(
     Example:  designer size fast.yaml
     """
     from designer.analysis.result_json import json_text, size_dict
-    from designer.cli.terminal import announce_compiling, print_pose
+    from designer.cli.tables import print_pose
+    from designer.cli.terminal import announce_compiling
     from designer.plugins.find import find_plugins
     from designer.study import require_enough_cables
 
@@ -210,7 +207,8 @@ def diagnose(
     Exit status 0: all structure is explained. 1: some is left, or declared effects do not help.
     2: the input is wrong.
     """
-    from designer.cli.terminal import Spinner, announce_compiling, print_diagnosis, print_left_out
+    from designer.cli.tables import print_diagnosis
+    from designer.cli.terminal import Spinner, announce_compiling, print_left_out
     from designer.io.output import file_names, output_folder
     from designer.measured.read import read_measured
     from designer.plugins.find import find_plugins
@@ -256,8 +254,8 @@ def diagnose(
 
 
 def _check(study: Study, measured: Measured, folder: Path) -> None:
+    from designer.cli.tables import print_check
     from designer.cli.terminal import Spinner, announce_compiling
-    from designer.cli.terminal_check import print_check
     from designer.diagnosis.check import check
     from designer.io.output import file_names, output_folder
 

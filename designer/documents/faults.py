@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, get_args, get_origin
 
-from pydantic import BaseModel, Tag, ValidationError
+from pydantic import Tag, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from designer.documents.document import Document
+from designer.documents.fields import ReadAs
 from designer.documents.node import Key, printable
+from designer.documents.section import AnySection, FileValue, Section, fields_of
 from designer.errors import Fault
 from designer.units import describe
 
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 MOST_FAULTS = 100
 """As many as anybody reads; a wrong generated file could have one in each of its lines."""
 
 
-def schema_faults(
-    error: ValidationError, document: Document, schema: type[BaseModel]
-) -> list[Fault]:
+def schema_faults(error: ValidationError, document: Document, schema: AnySection) -> list[Fault]:
     """Return one fault for each thing in the document that does not follow the schema.
 
     A field that is missing while another one beside it has nearly its name is reported once, as
@@ -36,13 +37,13 @@ def schema_faults(
     ]
 
 
-def known_fields(schema: type[BaseModel], loc: Sequence[Key]) -> dict[str, FieldInfo]:
+def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldInfo]:
     """Return the fields that the schema knows at pydantic's path ``loc``."""
     kind: Any = schema
     for key in loc:
         kind = _step(kind, key)
     section = _section_in(kind)
-    return section.model_fields if section else {}
+    return fields_of(section) if section else {}
 
 
 def _step(kind: Any, key: Key) -> Any:
@@ -53,8 +54,8 @@ def _step(kind: Any, key: Key) -> Any:
     if branch is not None:
         return branch
     section = _section_in(kind)
-    info = section.model_fields.get(str(key)) if section else None
-    return kind if info is None else info.annotation
+    info = fields_of(section).get(str(key)) if section else None
+    return kind if info is None else info.rebuild_annotation()
 
 
 def _branch(kind: Any, label: Key) -> Any:
@@ -65,22 +66,24 @@ def _branch(kind: Any, label: Key) -> Any:
     return next((found for part in parts if (found := _branch(part, label)) is not None), None)
 
 
-def _section_in(kind: Any) -> type[BaseModel] | None:
-    if isinstance(kind, type) and issubclass(kind, BaseModel):
+def _section_in(kind: Any) -> AnySection | None:
+    if isinstance(kind, ReadAs):
+        return kind.section
+    if isinstance(kind, type) and issubclass(kind, Section | FileValue):
         return kind
     return next((found for part in get_args(kind) if (found := _section_in(part))), None)
 
 
 def _misspelt_fields(
-    details: Sequence[ErrorDetails], schema: type[BaseModel]
+    details: Sequence[ErrorDetails], schema: AnySection
 ) -> Iterator[tuple[Key, ...]]:
     for one in details:
-        nearest = _nearest_field(one["loc"], schema) if one["type"] == "extra_forbidden" else None
+        nearest = _nearest_field(one["loc"], schema) if one["type"] in _UNKNOWN else None
         if nearest is not None:
             yield (*one["loc"][:-1], nearest)
 
 
-def _nearest_field(loc: Sequence[Key], schema: type[BaseModel]) -> str | None:
+def _nearest_field(loc: Sequence[Key], schema: AnySection) -> str | None:
     names = difflib.get_close_matches(str(loc[-1]), known_fields(schema, loc[:-1]), n=1)
     return names[0] if names else None
 
@@ -100,30 +103,32 @@ def _document_path(detail: ErrorDetails, document: Document) -> list[Key]:
     return [*keys, detail["loc"][-1]] if detail["type"] == "missing" else keys
 
 
-def _words(detail: ErrorDetails, schema: type[BaseModel]) -> tuple[str, str]:
+def _words(detail: ErrorDetails, schema: AnySection) -> tuple[str, str]:
     """Return the problem and what was expected."""
     loc, context = detail["loc"], detail.get("ctx", {})
     if detail["type"] == "fault":
         return context["problem"], context["expected"]
     if detail["type"] == "missing":
         return "is missing", known_fields(schema, loc[:-1])[str(loc[-1])].description or ""
-    if detail["type"] == "extra_forbidden":
+    if detail["type"] in _UNKNOWN:
         return _unknown_field(loc, schema)
+    needed = _one_of(known_fields(schema, loc), "a mapping with ")
     verdict, expected = {
         "literal_error": ("is not known", context.get("expected", "")),
         "bool_type": ("is not a truth value", "true or false"),
-        "model_type": ("is not a mapping", _one_of(known_fields(schema, loc), "a mapping with ")),
+        "model_type": ("is not a mapping", needed),
+        "dataclass_type": ("is not a mapping", needed),
         "dict_type": ("is not a mapping", "a mapping such as {}"),
     }.get(detail["type"], ("is not valid here", ""))
     return f"{describe(detail['input'])} {verdict}", expected
 
 
-def _unknown_field(loc: Sequence[Key], schema: type[BaseModel]) -> tuple[str, str]:
+def _unknown_field(loc: Sequence[Key], schema: AnySection) -> tuple[str, str]:
     nearest = _nearest_field(loc, schema)
     hint = f"; did you mean '{nearest}'?" if nearest else ""
     expected = _one_of(known_fields(schema, loc[:-1]), "one of ") + hint
     return f"unknown field '{printable(str(loc[-1]))}'", expected
 
 
-def _one_of(names: dict[str, FieldInfo], lead: str) -> str:
+def _one_of(names: Collection[str], lead: str) -> str:
     return lead + ", ".join(names) if names else ""

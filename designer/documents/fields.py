@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, GetCoreSchemaHandler
@@ -11,6 +12,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from designer.documents.bounds import BOUNDS
 from designer.documents.formats import why_unreadable
 from designer.documents.node import printable
+from designer.documents.section import Section
 from designer.units import (
     NUMBER,
     Dimension,
@@ -28,8 +30,22 @@ def refusal(problem: str, expected: str) -> PydanticCustomError:
     return PydanticCustomError("fault", "{problem}", {"problem": problem, "expected": expected})
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
+class Reader:
+    """Base of an annotation by whose `read` alone pydantic reads a value."""
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the value by `read`."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> Any:
+        """Return the value, or refuse it."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class QuantityField(Reader):
     """Annotation of a float that the file gives as a quantity.
 
     Parameters
@@ -49,12 +65,6 @@ class Quantity:
     at_least: float | None = None
     at_most: float | None = None
     reason: str = ""
-
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """Let pydantic read the value by `read` alone."""
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, given: object) -> float:
         """Return the SI value, or refuse it."""
@@ -90,18 +100,12 @@ class Quantity:
         return ""
 
 
-@dataclass(frozen=True, slots=True)
-class WholeNumber:
+@dataclass(frozen=True)
+class WholeNumber(Reader):
     """Annotation of an int between two limits."""
 
     least: int
     most: int
-
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """Let pydantic read the value by `read` alone."""
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, given: object) -> int:
         """Return the number, or refuse it."""
@@ -117,17 +121,11 @@ class WholeNumber:
         return int(value)
 
 
-@dataclass(frozen=True, slots=True)
-class FormatOf:
+@dataclass(frozen=True)
+class FormatOf(Reader):
     """Annotation of the number of a file's format, up to the newest that is read."""
 
     newest: int
-
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """Let pydantic read the value by `read` alone."""
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, given: object) -> int:
         """Return the number, or refuse it."""
@@ -138,35 +136,48 @@ class FormatOf:
 
 
 @dataclass(frozen=True, slots=True)
-class ListOf:
-    """Check of a list's length, before its items are read."""
+class ReadAs:
+    """Annotation of a value that the file gives as a section of another form.
 
-    least: int
-    most: int
-    expected: str
+    Parameters
+    ----------
+    section : type of Section
+        The form; its method ``value`` makes the value.
+    """
 
-    def __call__(self, given: object) -> object:
-        """Return the list unchanged, or refuse it."""
+    section: type[Section]
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the section and make the value of it."""
+        schema = handler.generate_schema(self.section)
+        return core_schema.no_info_after_validator_function(lambda read: read.value(), schema)
+
+
+def list_of(least: int, most: int, expected: str) -> BeforeValidator:
+    """Return the check of a list's length, before its items are read."""
+
+    def check(given: object) -> object:
         if not isinstance(given, list | tuple):
-            raise refusal(f"{describe(given)} is not a list", self.expected + in_brackets(given))
-        if not self.least <= len(given) <= self.most:
+            raise refusal(f"{describe(given)} is not a list", expected + in_brackets(given))
+        if not least <= len(given) <= most:
             count = f"{len(given)} value" + "s" * (len(given) != 1)
-            raise refusal(f"the list has {count}", self.expected)
+            raise refusal(f"the list has {count}", expected)
         return given
 
+    return BeforeValidator(check)
 
-@dataclass(frozen=True, slots=True)
-class OnlyWord:
-    """Check that a text is the one word that may stand in place of a list."""
 
-    word: str
-    expected: str
+def only_word(word: str, expected: str) -> BeforeValidator:
+    """Return the check that a text is the one word that may stand in place of a list."""
 
-    def __call__(self, given: object) -> object:
-        """Return the word, or refuse what is given."""
-        if given != self.word:
-            raise refusal(f"{describe(given)} is not known", self.expected + in_brackets(given))
+    def check(given: object) -> object:
+        if given != word:
+            raise refusal(f"{describe(given)} is not known", expected + in_brackets(given))
         return given
+
+    return BeforeValidator(check)
 
 
 def in_brackets(given: object) -> str:
@@ -190,10 +201,6 @@ def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
         problem = f"the lower end {lower:g} {unit} is not below the upper {upper:g} {unit}"
         raise refusal(problem, _INTERVAL)
     return ends
-
-
-def _rising_angles(ends: tuple[float, float]) -> tuple[float, float]:
-    return _rising(ends, "rad")
 
 
 def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -224,10 +231,10 @@ def not_empty(given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
-def bounded(name: str) -> Quantity:
+def bounded(name: str) -> QuantityField:
     """Return the annotation of a number of this name in `designer.documents.bounds`."""
     bound = BOUNDS[name]
-    return Quantity(
+    return QuantityField(
         bound.dimension,
         above=0.0 if bound.least > 0.0 else None,
         at_least=bound.least,
@@ -268,28 +275,22 @@ RopeDiameter = Annotated[float, bounded("rope diameter")]
 Efficiency = Annotated[float, bounded("efficiency")]
 Temperature = Annotated[float, bounded("temperature")]
 
-Interval = Annotated[
-    tuple[Length, Length], BeforeValidator(ListOf(2, 2, _INTERVAL)), AfterValidator(_rising)
-]
+Interval = Annotated[tuple[Length, Length], list_of(2, 2, _INTERVAL), AfterValidator(_rising)]
 Turn = Annotated[
     tuple[HalfTurn, HalfTurn],
-    BeforeValidator(ListOf(2, 2, _INTERVAL)),
-    AfterValidator(_rising_angles),
+    list_of(2, 2, _INTERVAL),
+    AfterValidator(partial(_rising, unit="rad")),
 ]
-Corner = Annotated[tuple[Length, Length], BeforeValidator(ListOf(2, 2, "two lengths [x, y]"))]
-Point = Annotated[tuple[Length, Length, Length], BeforeValidator(ListOf(3, 3, _POINT))]
-Rotation = Annotated[
-    tuple[Angle, Angle, Angle], BeforeValidator(ListOf(3, 3, "three angles [rx, ry, rz]"))
-]
-Forces = Annotated[
-    tuple[ForcePart, ForcePart, ForcePart], BeforeValidator(ListOf(3, 3, "three forces [x, y, z]"))
-]
+Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]
+Point = Annotated[tuple[Length, Length, Length], list_of(3, 3, _POINT)]
+Rotation = Annotated[tuple[Angle, Angle, Angle], list_of(3, 3, "three angles [rx, ry, rz]")]
+Forces = Annotated[tuple[ForcePart, ForcePart, ForcePart], list_of(3, 3, "three forces [x, y, z]")]
 Moments = Annotated[
     tuple[MomentPart, MomentPart, MomentPart],
-    BeforeValidator(ListOf(3, 3, "three moments [x, y, z]")),
+    list_of(3, 3, "three moments [x, y, z]"),
 ]
 Direction = Annotated[
     tuple[Share, Share, Share],
-    BeforeValidator(ListOf(3, 3, _DIRECTION)),
+    list_of(3, 3, _DIRECTION),
     AfterValidator(_not_zero),
 ]

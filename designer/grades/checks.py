@@ -15,15 +15,9 @@ from typing import get_args
 
 from designer.documents.bounds import BOUNDS, Bound
 from designer.grades.flaw import Flaw, Keys, within
-from designer.grades.grade import (
-    ComputedColumn,
-    Grade,
-    ReferenceArea,
-    RopeMaterial,
-    Trust,
-)
+from designer.grades.grade import Grade, RopeMaterial, Trust
+from designer.grades.parts import Basis, ComputedColumn, ReferenceArea
 from designer.grades.proportions import proportion_flaws
-from designer.grades.stiffness import Basis
 
 _ID = re.compile(r"[a-z0-9][a-z0-9._-]{0,79}")
 _LONGEST_TEXT = 1000
@@ -69,7 +63,7 @@ def _texts(value: object, keys: Keys) -> Iterator[tuple[Keys, str]]:
             yield from _texts(item, (*keys, index))
     elif dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
-            if field.name not in ("origin", "file"):
+            if field.name not in ("origin", "file", "units"):
                 yield from _texts(getattr(value, field.name), (*keys, field.name))
 
 

@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, fields
 from itertools import islice
 from pathlib import Path
-from typing import get_args
+from typing import Any
 
 from pydantic import ValidationError
 
-from designer.documents.document import GRADE, Document, read_document
+from designer.documents.document import GRADE, read_document
 from designer.documents.faults import schema_faults
+from designer.documents.section import reader_of
 from designer.errors import Fault, InputError
 from designer.grades.checks import find_flaws
-from designer.grades.grade import (
-    AreaFactor,
-    ComputedColumn,
-    ComputedFigure,
-    Grade,
-    Limits,
-    Modulus,
-    Reference,
-    SheaveRatio,
-    Size,
-    ThermalExpansion,
-)
-from designer.grades.schema import (
-    GradeSection,
-    ModulusSection,
-    SizeSection,
-    StiffnessSection,
-)
-from designer.grades.stiffness import RelativeStiffness
+from designer.grades.grade import Grade, GradeSheet
+from designer.grades.parts import Units
 
 MOST_FILES = 1000
 MOST_ENTRIES = 20_000
@@ -58,16 +43,39 @@ def read_grade(path: Path) -> Grade:
     """
     document = read_document(path, GRADE)
     faults = list(document.faults)
-    grade = None
     try:
-        grade = _grade(GradeSection.model_validate(document.root.data()), path.name)
+        sheet = reader_of(GradeSheet).validate_python(_with_units(document.root.data()))
     except ValidationError as error:
-        faults += schema_faults(error, document, GradeSection)
-    if grade is not None:
-        faults += _flaws(grade, document)
-    if grade is None or faults:
+        faults += schema_faults(error, document, GradeSheet)
+    else:
+        given = {one.name: getattr(sheet, one.name) for one in fields(sheet)}
+        grade = Grade(**given, file=path.name)
+        faults += [document.fault(one.keys, one.problem, one.expected) for one in find_flaws(grade)]
+    if faults:
         raise InputError(sorted(faults, key=lambda fault: fault.line or 0))
     return grade
+
+
+def _with_units(given: Any) -> Any:
+    """Return a grade whose table has, on each bare number, the unit that ``units`` declares."""
+    if not isinstance(given, dict) or not isinstance(given.get("sizes"), list):
+        return given
+    try:
+        units = asdict(reader_of(Units).validate_python(given.get("units")))
+    except ValidationError:  # is reported once, not in every row
+        return given
+    return {**given, "sizes": [_with_unit(row, units) for row in given["sizes"]]}
+
+
+def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
+    if not isinstance(row, dict):
+        return row
+    row = dict(row)
+    for name, value in row.items():
+        is_bare = isinstance(value, int | float) and not isinstance(value, bool)
+        if is_bare and units.get(name) and math.isfinite(value):
+            row[name] = f"{value!r} {units[name]}"
+    return row
 
 
 def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
@@ -143,75 +151,3 @@ def _is_grade_file(path: Path) -> bool:
         return path.is_file() or not path.exists()
     except OSError:  # no right to look
         return True
-
-
-def _flaws(grade: Grade, document: Document) -> list[Fault]:
-    return [document.fault(one.keys, one.problem, one.expected) for one in find_flaws(grade)]
-
-
-def _grade(section: GradeSection, file: str) -> Grade:
-    expansion, factor, ratio = section.thermal_expansion, section.area_factor, section.sheave_ratio
-    return Grade(
-        id=section.id,
-        manufacturer=section.manufacturer,
-        product=section.product,
-        construction=section.construction,
-        core=section.core,
-        finish=section.finish,
-        sizes=tuple(_size(size) for size in section.sizes),
-        source=Reference(**section.source.model_dump()),
-        trust=section.trust,
-        modulus=_modulus(section.modulus) if section.modulus else None,
-        stiffness=_stiffness(section.stiffness) if section.stiffness else None,
-        material=section.material,
-        standard=section.standard,
-        wire_grade=section.wire_grade,
-        area_factor=AreaFactor(**factor.model_dump()) if factor else None,
-        thermal_expansion=(
-            ThermalExpansion(expansion.value, expansion.basis, expansion.source)
-            if expansion
-            else None
-        ),
-        sheave_ratio=SheaveRatio(**ratio.model_dump()) if ratio else None,
-        limits=Limits(**section.limits.model_dump()) if section.limits else None,
-        currency=section.currency,
-        computed=tuple(
-            ComputedFigure(figure, how)
-            for figure in get_args(ComputedColumn)
-            if (how := getattr(section.computed, figure)) is not None
-        ),
-        notes=section.notes,
-        file=file,
-    )
-
-
-def _modulus(section: ModulusSection) -> Modulus:
-    return Modulus(
-        section.value,
-        section.reference_area,
-        section.basis,
-        section.source,
-        section.uncertainty,
-    )
-
-
-def _stiffness(section: StiffnessSection) -> RelativeStiffness:
-    if section.by_load_fraction is not None:
-        loads, ratios = zip(*section.by_load_fraction, strict=True)
-    else:
-        assert section.ea_over_breaking_load is not None  # the schema sees to it
-        ratios = (section.ea_over_breaking_load,)
-        loads = () if section.at_load_fraction is None else (section.at_load_fraction,)
-    return RelativeStiffness(ratios, loads, section.basis, section.source, section.uncertainty)
-
-
-def _size(section: SizeSection) -> Size:
-    return Size(
-        id=section.id,
-        diameter_m=section.diameter,
-        minimum_breaking_load_N=section.minimum_breaking_load,
-        linear_density_kg_per_m=section.linear_mass,
-        metallic_area_m2=section.metallic_area,
-        doubt=section.doubt,
-        price_per_m=section.price_per_m,
-    )

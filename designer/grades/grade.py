@@ -1,4 +1,8 @@
-"""Frozen values of a rope grade: one construction, one wire grade, the sizes it is sold in.
+"""Rope grades: one construction, one wire grade, the sizes it is sold in.
+
+Each field is described once, here: what it is, how a file calls it and what it may hold there
+(its annotation), and what it is when a file leaves it out. What figures may be beside each other
+is checked in `designer.grades.checks`.
 
 Two reference areas occur in rope data and must not be mixed: the circle of the nominal diameter,
 π d²/4, and the metallic area, the sum of the wires' sections. `Modulus` says which one it refers
@@ -12,12 +16,30 @@ import math
 import re
 from dataclasses import dataclass
 from statistics import median
-from typing import Literal
+from typing import Annotated, Literal
 
-from designer.grades.stiffness import Basis, RelativeStiffness
+from pydantic import Field
+
+from designer.documents.fields import FormatOf, ReadAs, bounded, list_of
+from designer.documents.formats import GRADE_FORMAT
+from designer.documents.section import FileValue
+from designer.grades.parts import (
+    AreaFactor,
+    ComputedFigure,
+    ComputedSection,
+    Limits,
+    Line,
+    Lines,
+    Modulus,
+    SheaveRatio,
+    ThermalExpansion,
+    Units,
+    figure,
+)
+from designer.grades.parts import Reference as Reference  # noqa: PLC0414  # plugins take it from here
+from designer.grades.stiffness import RelativeStiffness, StiffnessSection
 from designer.model.cable import Cable, Material
 
-ReferenceArea = Literal["nominal", "metallic"]
 Trust = Literal["A", "B", "C"]
 RopeMaterial = Literal[
     "steel",
@@ -32,8 +54,8 @@ RopeMaterial = Literal[
     "polypropylene",
     "other",
 ]
-ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"]
 
+MOST_SIZES = 500
 TYPICAL_LOAD_FRACTION = 0.2
 """Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
 
@@ -47,7 +69,7 @@ TRUST_MEANING = {
 
 
 @dataclass(frozen=True, slots=True)
-class Size:
+class Size(FileValue):
     """One size of a grade.
 
     Parameters
@@ -55,27 +77,36 @@ class Size:
     id : str
         The size as its source names it, such as ``6 mm`` or ``1/4 in``.
     diameter_m : float
-        Nominal diameter [m].
-    minimum_breaking_load_N : float
-        Minimum breaking load [N].
-    linear_density_kg_per_m : float
-        Mass per length [kg/m].
+        Nominal diameter.
+    minimum_breaking_load_N, linear_density_kg_per_m : float
     metallic_area_m2 : float or None
-        Sum of the wires' sections [m²]; None where the source gives none.
+        Sum of the wires' sections; None where the source gives none.
+    price_per_m : float or None
+        Price of one metre in the grade's currency; None where it is not known.
     doubt : str or None
         Why the figures of this size may be wrong. A doubtful size may still be chosen, and
         whoever shows it shows the doubt with it.
-    price_per_m : float or None
-        Price of one metre in the grade's currency; None where it is not known.
     """
 
-    id: str
-    diameter_m: float
-    minimum_breaking_load_N: float
-    linear_density_kg_per_m: float
-    metallic_area_m2: float | None = None
-    doubt: str | None = None
-    price_per_m: float | None = None
+    id: Annotated[Line, Field(description="the size as its source names it, such as '6 mm'")]
+    diameter_m: Annotated[
+        float, figure("diameter"), Field(alias="diameter", description="a length such as '6 mm'")
+    ]
+    minimum_breaking_load_N: Annotated[
+        float,
+        figure("minimum_breaking_load"),
+        Field(alias="minimum_breaking_load", description="a force such as '25 kN'"),
+    ]
+    linear_density_kg_per_m: Annotated[
+        float,
+        figure("linear_mass"),
+        Field(alias="linear_mass", description="a mass per length such as '0.137 kg/m'"),
+    ]
+    metallic_area_m2: Annotated[
+        Annotated[float, figure("metallic_area")] | None, Field(alias="metallic_area")
+    ] = None
+    price_per_m: Annotated[float, bounded("price")] | None = None
+    doubt: Line | None = None
 
     @property
     def nominal_area_m2(self) -> float:
@@ -91,116 +122,6 @@ class Size:
     def density_kg_per_m3(self) -> float:
         """Mass per length over the nominal circle [kg/m³]."""
         return self.linear_density_kg_per_m / self.nominal_area_m2
-
-
-@dataclass(frozen=True, slots=True)
-class Modulus:
-    """Effective modulus of elasticity of a rope.
-
-    Parameters
-    ----------
-    value_Pa : float
-        Axial stiffness EA over the reference area [Pa].
-    reference_area : str
-        ``nominal`` (the circle of the nominal diameter) or ``metallic``.
-    basis : str
-        ``printed`` for this grade, ``computed`` from other figures of this grade, or
-        ``borrowed`` from a rope of the same construction.
-    source : str
-        Where the figure comes from; for a borrowed one, the lender.
-    uncertainty : float
-        Relative half-width of the range the true value may lie in.
-    """
-
-    value_Pa: float
-    reference_area: ReferenceArea
-    basis: Basis
-    source: str
-    uncertainty: float
-
-    @property
-    def figure(self) -> str:
-        """The modulus in words."""
-        area = {"nominal": "nominal circle", "metallic": "metallic area"}[self.reference_area]
-        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}"
-
-
-@dataclass(frozen=True, slots=True)
-class ThermalExpansion:
-    """Axial thermal expansion: coefficient [1/K], how it was got, and its source."""
-
-    coefficient_per_K: float
-    basis: Basis
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class AreaFactor:
-    """Metallic area over d², for sizes whose metallic area is not given; basis and source."""
-
-    value: float
-    basis: Basis
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class SheaveRatio:
-    """Sheave over rope diameter, D/d: what is suggested, the minimum, and their source."""
-
-    suggested: float
-    minimum: float
-    source: str
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What a rope bears beside load.
-
-    Parameters
-    ----------
-    source : str
-        Where the limits come from.
-    temperature_C : tuple of float or None
-        Lowest and highest temperature of use [°C].
-    creep : str or None
-        What is known of its creep.
-    """
-
-    source: str
-    temperature_C: tuple[float, float] | None = None
-    creep: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ComputedFigure:
-    """A column of the table of sizes that the source does not print, and how it was computed."""
-
-    figure: ComputedColumn
-    how: str
-
-
-@dataclass(frozen=True, slots=True)
-class Reference:
-    """Where a grade's table was read.
-
-    Parameters
-    ----------
-    publisher, document : str
-        Who published what.
-    url : str or None
-        Address of the document.
-    date : str or None
-        Date or edition of the copy that was read.
-    """
-
-    publisher: str
-    document: str
-    url: str | None = None
-    date: str | None = None
-
-    def __str__(self) -> str:
-        parts = (self.publisher, self.document, self.date, self.url)
-        return ", ".join(part for part in parts if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,9 +146,9 @@ class FamilyFit:
     breaking_load_spread: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Grade:
-    """A rope of one construction and one wire grade or fibre, in the sizes it is sold in.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GradeSheet(FileValue):
+    """A grade as its file has it.
 
     Parameters
     ----------
@@ -237,31 +158,70 @@ class Grade:
         Who makes it, and under which name it is sold.
     construction, core, finish : str
         Such as ``6x36 WS``, ``IWRC``, ``galvanised``.
-    sizes : tuple of Size
-        Ascending in diameter.
-    source : Reference
-        Where the table was read.
+    standard, wire_grade : str or None
+        Standard, and tensile grade of the wires, where stated.
     trust : str
         How far to trust it: a key of `TRUST_MEANING`.
+    source : Reference
+        Where the table was read.
+    material : str or None
+        What bears the load; None where it is not known.
     modulus : Modulus or None
         Effective modulus of elasticity.
     stiffness : RelativeStiffness or None
         Stiffness over breaking load, for a rope that is described so. A grade has either this or
         a modulus.
-    material : str or None
-        What bears the load; None where it is not known.
-    standard, wire_grade : str or None
-        Standard, and tensile grade of the wires, where stated.
-    area_factor : AreaFactor or None
-    thermal_expansion : ThermalExpansion or None
-    sheave_ratio : SheaveRatio or None
-    limits : Limits or None
+    area_factor, thermal_expansion, sheave_ratio, limits
+        None where they are not known.
     currency : str or None
         Of the prices of the sizes, such as ``EUR``.
     computed : tuple of ComputedFigure
         Columns of the table that the source does not print.
     notes : tuple of str
         What a user of the figures should know.
+    units : Units or None
+        For the reading of the file alone; the sizes are in SI.
+    sizes : tuple of Size
+        Ascending in diameter.
+    format : int
+        Of the file.
+    """
+
+    id: Annotated[Line, Field(description="a unique name such as 'maker-7x19-galvanised'")]
+    manufacturer: Annotated[Line, Field(description="who makes the rope")]
+    product: Annotated[Line, Field(description="the name it is sold under")]
+    construction: Annotated[Line, Field(description="such as '7x19'")]
+    core: Annotated[Line, Field(description="such as 'WSC', 'IWRC' or 'FC'")]
+    finish: Annotated[Line, Field(description="such as 'galvanised'")]
+    standard: Line | None = None
+    wire_grade: Line | None = None
+    trust: Annotated[Trust, Field(description="'A', 'B' or 'C'")]
+    source: Annotated[Reference, Field(description="a mapping with publisher and document")]
+    material: RopeMaterial | None = None
+    modulus: Modulus | None = None
+    stiffness: Annotated[RelativeStiffness, ReadAs(StiffnessSection)] | None = None
+    area_factor: AreaFactor | None = None
+    thermal_expansion: ThermalExpansion | None = None
+    sheave_ratio: SheaveRatio | None = None
+    limits: Limits | None = None
+    currency: Line | None = None
+    computed: Annotated[tuple[ComputedFigure, ...], ReadAs(ComputedSection)] = ()
+    notes: Lines = ()
+    units: Units | None = None
+    sizes: Annotated[
+        tuple[Size, ...],
+        list_of(1, MOST_SIZES, f"1 to {MOST_SIZES} sizes"),
+        Field(description="a list of sizes"),
+    ]
+    format: Annotated[int, FormatOf(GRADE_FORMAT)] = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Grade(GradeSheet):
+    """A rope of one construction and one wire grade or fibre, in the sizes it is sold in.
+
+    Parameters
+    ----------
     is_nominal : bool
         True for a grade computed from the factors of a standard. It is no product: a selection
         among all grades leaves it out, and takes it where a study names it.
@@ -269,29 +229,10 @@ class Grade:
         Name of the plugin or folder the grade came in by; set by the registry.
     file : str
         File it was read from; empty for a grade made in Python.
+    **fields
+        What a file says: see `GradeSheet`.
     """
 
-    id: str
-    manufacturer: str
-    product: str
-    construction: str
-    core: str
-    finish: str
-    sizes: tuple[Size, ...]
-    source: Reference
-    trust: Trust
-    modulus: Modulus | None = None
-    stiffness: RelativeStiffness | None = None
-    material: RopeMaterial | None = None
-    standard: str | None = None
-    wire_grade: str | None = None
-    area_factor: AreaFactor | None = None
-    thermal_expansion: ThermalExpansion | None = None
-    sheave_ratio: SheaveRatio | None = None
-    limits: Limits | None = None
-    currency: str | None = None
-    computed: tuple[ComputedFigure, ...] = ()
-    notes: tuple[str, ...] = ()
     is_nominal: bool = False
     origin: str = ""
     file: str = ""

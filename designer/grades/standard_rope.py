@@ -15,14 +15,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from designer.grades.grade import (
+from designer.grades.grade import Grade, Size
+from designer.grades.parts import (
     AreaFactor,
     ComputedFigure,
-    Grade,
     Modulus,
     Reference,
     SheaveRatio,
-    Size,
     ThermalExpansion,
 )
 

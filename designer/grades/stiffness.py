@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Self
 
-Basis = Literal["printed", "computed", "borrowed"]
-"""How a figure was got: printed for this grade, computed from others of it, or another rope's."""
+from pydantic import Field, model_validator
+
+from designer.documents.fields import list_of, refusal
+from designer.documents.section import Section
+from designer.grades.parts import (
+    Basis,
+    LoadFraction,
+    Origin,
+    OverBreakingLoad,
+    StatedBasis,
+    Uncertainty,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +34,8 @@ class RelativeStiffness:
         EA / MBL, slope of load fraction over strain; one figure, or one for each load.
     load_fraction : tuple of float
         Loads over MBL at which they hold, ascending; empty where one figure is for all loads.
-    basis : str
-        ``printed``, ``computed`` or ``borrowed``, as for a modulus.
-    source : str
-        Where the figures come from; for borrowed ones, the lender.
-    uncertainty : float
-        Relative half-width of the range the true value may lie in.
+    basis, source, uncertainty
+        As for a `designer.grades.parts.Modulus`.
     """
 
     ea_over_breaking_load: tuple[float, ...]
@@ -54,3 +60,45 @@ class RelativeStiffness:
             return ratios[0] if above == 0 else ratios[-1]
         share = (load_fraction - loads[above - 1]) / (loads[above] - loads[above - 1])
         return ratios[above - 1] + share * (ratios[above] - ratios[above - 1])
+
+
+class StiffnessSection(Section):
+    """A relative stiffness as a file has it: one figure, or a table by load fraction."""
+
+    ea_over_breaking_load: OverBreakingLoad | None = None
+    at_load_fraction: LoadFraction | None = None
+    by_load_fraction: (
+        Annotated[
+            tuple[
+                Annotated[
+                    tuple[LoadFraction, OverBreakingLoad],
+                    list_of(2, 2, "[load fraction, EA over breaking load]"),
+                ],
+                ...,
+            ],
+            list_of(2, 20, "a list of [load fraction, EA over breaking load]"),
+        ]
+        | None
+    ) = None
+    basis: StatedBasis
+    source: Origin
+    uncertainty: Uncertainty = Field(description="a fraction such as 0.3")
+
+    @model_validator(mode="after")
+    def _is_one_figure_or_a_table(self) -> Self:
+        if (self.ea_over_breaking_load is None) == (self.by_load_fraction is None):
+            expected = "ea_over_breaking_load or by_load_fraction"
+            raise refusal("needs one figure or a table", expected)
+        if self.by_load_fraction is not None and self.at_load_fraction is not None:
+            raise refusal("a table has its loads in it", "no at_load_fraction")
+        return self
+
+    def value(self) -> RelativeStiffness:
+        """Return the stiffness."""
+        if self.by_load_fraction is not None:
+            loads, ratios = zip(*self.by_load_fraction, strict=True)
+        else:
+            assert self.ea_over_breaking_load is not None  # see above
+            ratios = (self.ea_over_breaking_load,)
+            loads = () if self.at_load_fraction is None else (self.at_load_fraction,)
+        return RelativeStiffness(ratios, loads, self.basis, self.source, self.uncertainty)

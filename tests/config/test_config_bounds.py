@@ -12,14 +12,14 @@ from typing import Any, get_args
 
 import pytest
 from benchmarks.mutants import NUMBERS, no_longer_than, spoilt
-from pydantic import BaseModel
 
 from designer.analysis.selection_json import finite
 from designer.documents.bounds import BOUNDS
-from designer.documents.fields import Quantity
+from designer.documents.fields import QuantityField, ReadAs
+from designer.documents.section import AnySection, FileValue, Section, fields_of
 from designer.errors import Fault, InputError
 from designer.grades.files import read_grade
-from designer.grades.schema import GradeSection
+from designer.grades.grade import GradeSheet
 from designer.io.config import read_study
 from designer.io.config.schema import StudySection
 from designer.resources import data_folder, example_file, example_names
@@ -29,29 +29,29 @@ StudyOf = Callable[[str], Study]
 FaultsOf = Callable[[str], list[Fault]]
 
 
-def quantities(kind: Any, seen: set[Any]) -> Iterator[Quantity]:
+def quantities(kind: Any, seen: set[Any]) -> Iterator[QuantityField]:
     """Yield the annotation of every number in a schema."""
-    if isinstance(kind, Quantity):
+    if isinstance(kind, QuantityField):
         yield kind
-    elif isinstance(kind, type) and issubclass(kind, BaseModel):
+    elif isinstance(kind, ReadAs):
+        yield from quantities(kind.section, seen)
+    elif isinstance(kind, type) and issubclass(kind, Section | FileValue):
         if kind not in seen:
             seen.add(kind)
-            for info in kind.model_fields.values():
-                yield from quantities(info.annotation, seen)
-                for part in info.metadata:
-                    yield from quantities(part, seen)
+            for info in fields_of(kind).values():
+                yield from quantities(info.rebuild_annotation(), seen)
     else:
         for part in get_args(kind):
             yield from quantities(part, seen)
 
 
-@pytest.mark.parametrize("schema", [StudySection, GradeSection])
-def test_every_number_has_two_ends_and_a_reason(schema: type[BaseModel]) -> None:
+@pytest.mark.parametrize("schema", [StudySection, GradeSheet])
+def test_every_number_has_two_ends_and_a_reason(schema: AnySection) -> None:
     found = list(quantities(schema, set()))
     assert len(found) > 5
     # the figures of a size are looked at by designer.grades.checks, by the same table
-    sizes = [one for one in found if one == Quantity(one.dimension, above=0.0)]
-    assert len(sizes) == (4 if schema is GradeSection else 0)
+    sizes = [one for one in found if one == QuantityField(one.dimension, above=0.0)]
+    assert len(sizes) == (4 if schema is GradeSheet else 0)
     for one in found:
         if one not in sizes:
             assert one.at_least is not None and one.at_most is not None

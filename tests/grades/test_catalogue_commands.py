@@ -33,6 +33,30 @@ def test_the_list_has_products_by_publisher_and_only_counts_nominal_grades():
     assert re.search(r"^\d+ nominal grades, computed", result.stdout, re.MULTILINE)
 
 
+def _rows(*arguments: str) -> dict[str, list[str]]:
+    """Return the cells of each row of a table, by the first of them."""
+    lines = _run(*arguments).stdout.splitlines()
+    cells = [[cell.strip() for cell in line.strip("│").split("│")] for line in lines]
+    return {row[0]: row[1:] for row in cells}
+
+
+def test_each_grade_is_one_row_with_its_ranges(user_folder):
+    write_grade(user_folder / "acme.yaml")
+
+    rows = _rows("list")
+
+    figures = ["4", "4–10", "11.2–68.6", "A", "user folder"]
+    assert rows["acme-7x19"] == ["7x19, WSC", "galvanised", *figures]
+    assert rows["unirope-7x19-galvanised"][2].endswith("(3?)")
+
+
+def test_the_table_of_a_grade_has_stiffness_and_doubts():
+    rows = _rows("show", "unirope-6x36-iwrc-1960", "--no-plugins")
+
+    assert "misprint" in rows["12 mm"][-1]
+    assert rows["10 mm"] == ["10", "69.8", "0.42", "4.791", ""]  # 61 GPa on the circle
+
+
 def test_nominal_grades_are_listed_when_asked_for():
     result = _run("list", "--nominal", "--construction", "34x7", "--no-plugins")
 

@@ -7,39 +7,10 @@ from designer.grades.listing import (
     Wanted,
     check_path,
     facts,
-    list_rows,
-    materials,
-    size_rows,
     split_nominal,
     summary,
 )
 from designer.grades.registry import load_catalogue
-
-
-def test_each_grade_is_one_row_with_its_ranges(tmp_path):
-    catalogue = load_catalogue([write_grade(tmp_path / "acme.yaml")])
-
-    rows = {row.id: row for row in list_rows(catalogue.grades)}
-    row = rows["acme-7x19"]
-
-    assert len(rows) == len(catalogue.grades)
-    assert (row.manufacturer, row.construction, row.trust) == ("Acme", "7x19", "A")
-    assert (row.n_sizes, row.n_doubtful, row.origin) == (4, 0, "acme.yaml")
-    assert row.diameter_m == pytest.approx((0.004, 0.010))
-    assert row.minimum_breaking_load_N == pytest.approx((11.2e3, 68.6e3))
-    assert row.youngs_modulus_Pa == pytest.approx(60e9)
-    assert rows["unirope-7x19-galvanised"].n_doubtful == 3
-
-
-def test_the_table_of_a_grade_has_stiffness_and_doubts():
-    grade = load_catalogue().grade("unirope-6x36-iwrc-1960")
-
-    rows = {row.id: row for row in size_rows(grade)}
-
-    assert len(rows) == 17
-    assert "misprint" in rows["12 mm"].doubt
-    assert rows["10 mm"].doubt == ""
-    assert rows["10 mm"].axial_stiffness_N == pytest.approx(61.0e9 * 7.853982e-5, rel=1e-6)
 
 
 def test_facts_name_the_lender_of_a_borrowed_figure_and_the_gaps():
@@ -129,4 +100,4 @@ def test_products_and_nominal_grades_are_told_apart_and_counted():
     assert summary(catalogue).startswith(
         f"{len(products)} grades of products and {len(nominal)} nominal ones from "
     )
-    assert {"steel", "HMPE", "PBO"} <= set(materials(products))
+    assert {"steel", "HMPE", "PBO"} <= {grade.material for grade in products}

@@ -11,7 +11,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import groups_dict
-from designer.cli import terminal
+from designer.cli import tables
 from designer.report.design.first_page import first_page
 from designer.report.design.groups import groups_section
 from designer.report.figures.groups_plan import groups_plan
@@ -121,7 +121,7 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
     assert page.card is not None and page.card.heading == "Ropes for groups of cables"
-    rows = [*terminal._summary(without)]
+    rows = [*tables.summary_rows(without)]
     labels = [label for label, _ in rows]
     assert labels.index("cables") < labels.index("one for all")
 

@@ -11,7 +11,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.arrays import frozen_array
-from designer.cli import terminal
+from designer.cli import tables
 from designer.io.config import read_study
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
@@ -121,7 +121,7 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
     assert "It lies outside the region. There, " in flagged.text
     assert flagged.tone in ("doubt", "bad")
     assert context.pose is not None and context.pose.outside == flagged
-    assert ("", "[bold red]lies outside the region[/]") in [*terminal._summary(moved)]
+    assert ("", "[bold red]lies outside the region[/]") in [*tables.summary_rows(moved)]
     assert build_context(inside, Pictures()).pose.outside is None
 
 

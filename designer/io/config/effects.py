@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pydantic_core import PydanticCustomError
 
 from designer.documents.bounds import parameter_bound
-from designer.documents.fields import Quantity, WholeNumber
+from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Data, Key, Node, path_text, printable
 from designer.effects.effect import Effect, Parameter
 from designer.spelling import did_you_mean, nearest_name
@@ -42,7 +42,7 @@ class Found:
         """Add something that is wrong."""
         self.refusals.append(Refusal(place, problem, expected))
 
-    def read(self, place: Place, kind: Quantity | WholeNumber, given: Data) -> float | None:
+    def read(self, place: Place, kind: QuantityField | WholeNumber, given: Data) -> float | None:
         """Return a value; None, and a refusal, for one that is none of its kind."""
         try:
             return kind.read(given)
@@ -160,7 +160,7 @@ def _value(found: Found, place: Place, given: Mapping[str, Data], parameter: Par
         return parameter.neutral
     bound = parameter_bound(parameter.dimension)
     least = bound.least if parameter.at_least is None else parameter.at_least
-    quantity = Quantity(parameter.dimension, parameter.above, least, bound.most, bound.reason)
+    quantity = QuantityField(parameter.dimension, parameter.above, least, bound.most, bound.reason)
     return found.read(place, quantity, given[parameter.name]) or 0.0
 
 

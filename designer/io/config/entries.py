@@ -8,7 +8,7 @@ from typing import Any, get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from designer.documents.fields import Quantity
+from designer.documents.fields import QuantityField
 from designer.documents.node import Key, Node, path_text
 from designer.io.config.columns import ColumnSection
 from designer.study import Entry
@@ -96,9 +96,9 @@ def _dimension(info: FieldInfo) -> Dimension:
     return NUMBER if quantity is None else quantity.dimension
 
 
-def _quantity_in(parts: tuple[Any, ...]) -> Quantity | None:
+def _quantity_in(parts: tuple[Any, ...]) -> QuantityField | None:
     for part in parts:
-        found = part if isinstance(part, Quantity) else _quantity_in(get_args(part))
+        found = part if isinstance(part, QuantityField) else _quantity_in(get_args(part))
         if found is not None:
             return found
     return None

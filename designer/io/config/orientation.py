@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from scipy.spatial.transform import Rotation as SpatialRotation
 
 from designer.arrays import FloatArray
-from designer.documents.fields import ListOf, Rotation, Turn, bounded, refusal
+from designer.documents.fields import Rotation, Turn, bounded, list_of, refusal
 from designer.documents.section import Section
 from designer.units import describe
 
@@ -51,7 +51,7 @@ def only_one_of(given: object, names: tuple[str, ...], owner: str) -> object:
 _Number = Annotated[float, bounded("part of a quaternion")]
 Quaternion = Annotated[
     tuple[_Number, _Number, _Number, _Number],
-    BeforeValidator(ListOf(4, 4, "four numbers [w, x, y, z]")),
+    list_of(4, 4, "four numbers [w, x, y, z]"),
     AfterValidator(_of_unit_length),
 ]
 Convention = Annotated[str, BeforeValidator(_convention)]

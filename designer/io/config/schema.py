@@ -36,11 +36,9 @@ from designer.documents.fields import (
     Length,
     LengthNoise,
     LinearDensity,
-    ListOf,
     Mass,
     Modulus,
     Moments,
-    OnlyWord,
     Point,
     RopeDiameter,
     Rotation,
@@ -55,8 +53,10 @@ from designer.documents.fields import (
     WholeNumber,
     different,
     in_brackets,
+    list_of,
     mapping,
     not_empty,
+    only_word,
     refusal,
 )
 from designer.documents.formats import CONFIG_FORMAT
@@ -79,33 +79,33 @@ _GRADES = "'all' or a list of grade ids"
 _ENDS = "'anchors' or two corners [[x, y], [x, y]]"
 _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
-_points = ListOf(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
-_names = ListOf(0, 1000, "a list")
-_corners = ListOf(3, 1000, _CORNERS)
-_positions = ListOf(1, 50_000, "1 to 50000 positions [x, y, z]")
-_ends = ListOf(2, 2, _ENDS)
-_box = ListOf(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+_points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
+_names = list_of(0, 1000, "a list")
+_corners = list_of(3, 1000, _CORNERS)
+_positions = list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
+_ends = list_of(2, 2, _ENDS)
+_box = list_of(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
 
-Anchors = Annotated[tuple[Point, ...], BeforeValidator(_points)]
-Attachments = Annotated[tuple[Point, ...], BeforeValidator(_points)]
-Corners = Annotated[tuple[Corner, ...], BeforeValidator(_corners)]
-Ends = Annotated[tuple[Corner, Corner], BeforeValidator(_ends)]
-Positions = Annotated[tuple[Point, ...], BeforeValidator(_positions)]
-Box = Annotated[tuple[Interval, Interval, Interval], BeforeValidator(_box)]
+Anchors = Annotated[tuple[Point, ...], _points]
+Attachments = Annotated[tuple[Point, ...], _points]
+Corners = Annotated[tuple[Corner, ...], _corners]
+Ends = Annotated[tuple[Corner, Corner], _ends]
+Positions = Annotated[tuple[Point, ...], _positions]
+Box = Annotated[tuple[Interval, Interval, Interval], _box]
 Objectives = Annotated[
     tuple[Objective, ...],
-    BeforeValidator(ListOf(1, 5, "a list of objectives such as [mass, drum_diameter]")),
+    list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
     AfterValidator(different),
 ]
 Readings = Annotated[
     tuple[Reading, ...],
-    BeforeValidator(ListOf(0, 2, "a list of readings: length, tension or both")),
+    list_of(0, 2, "a list of readings: length, tension or both"),
     AfterValidator(different),
 ]
-Names = Annotated[tuple[Text, ...], BeforeValidator(_names)]
+Names = Annotated[tuple[Text, ...], _names]
 CableNumbers = Annotated[
     tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
-    BeforeValidator(ListOf(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]")),
+    list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
 ]
 Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
@@ -117,21 +117,21 @@ def _word_or_list(given: object) -> str:
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
 TurnList = Annotated[
     tuple[OrientationSection, ...],
-    BeforeValidator(ListOf(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]")),
+    list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
 ]
 PrismBase = Annotated[
-    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _CORNERS)), Tag("a word")]
+    Annotated[Literal["anchors"], only_word("anchors", _CORNERS), Tag("a word")]
     | Annotated[Corners, Tag("a list")],
     Discriminator(_word_or_list),
 ]
 RectangleBase = Annotated[
-    Annotated[Literal["anchors"], BeforeValidator(OnlyWord("anchors", _ENDS)), Tag("a word")]
+    Annotated[Literal["anchors"], only_word("anchors", _ENDS), Tag("a word")]
     | Annotated[Ends, Tag("a list")],
     Discriminator(_word_or_list),
 ]
 GradeIds = Annotated[
-    Annotated[Literal["all"], BeforeValidator(OnlyWord("all", _GRADES)), Tag("a word")]
-    | Annotated[tuple[Text, ...], BeforeValidator(ListOf(1, 1000, _GRADES)), Tag("a list")],
+    Annotated[Literal["all"], only_word("all", _GRADES), Tag("a word")]
+    | Annotated[tuple[Text, ...], list_of(1, 1000, _GRADES), Tag("a list")],
     Discriminator(_word_or_list),
 ]
 

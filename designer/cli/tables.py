@@ -1,0 +1,396 @@
+"""The tables that the commands print at their end, and the lines below them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.markup import escape
+
+from designer.cli.terminal import bare_table, show
+from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
+from designer.grades.listing import facts
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import Analysis, PoseAnalysis
+    from designer.diagnosis.check import Check
+    from designer.diagnosis.result import Diagnosis
+    from designer.selection.groups.result import GroupChoice
+    from designer.selection.result import SelectionResult
+    from designer.study import Selection, Study
+    from designer.workspace.interference import Interference
+    from designer.workspace.result import Census, Extreme, WorkspaceMap
+
+_SMALLEST_SAVING_KG = 1e-6
+_MOST_TURNS = 12
+"""Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
+_WIDEST = 1e9
+_MEASURED = (("length", 1e3, "mm"), ("tension", 1.0, "N"))
+"""What is measured: its name, and the unit that its errors are shown in."""
+_bad = "[bold red]{}[/]".format
+
+Row = tuple[str, ...]
+
+
+def _print_rows(title: str, rows: Iterable[Row]) -> None:
+    table = bare_table(title=title)
+    for row in rows:
+        table.add_row(*row)
+    show(table)
+
+
+def _print_written(folder: Path, written: Sequence[str]) -> None:
+    show(f"{folder}: {', '.join(written)}", markup=False)
+
+
+def print_summary(analysis: Analysis, folder: Path, written: Sequence[str]) -> None:
+    """Print the short table at the end of ``designer report``."""
+    _print_rows(analysis.study.name, summary_rows(analysis))
+    _print_written(folder, written)
+
+
+def summary_rows(analysis: Analysis) -> Iterator[Row]:
+    """Yield label and text of each line of that table."""
+    if analysis.pose is not None:
+        sizing = analysis.pose.sizing
+        yield "pose", _extreme(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
+        if analysis.study.pose_outside:
+            yield "", _bad(analysis.study.pose_outside)
+    if analysis.workspace is not None:
+        yield from _summary_of_workspace(analysis.workspace)
+    if analysis.groups is not None:
+        yield from _summary_of_groups(analysis.groups)
+    for label, text in analysis.hanging.notes():
+        yield label, _bad(text)
+    if analysis.selection is not None:
+        label = "cable" if analysis.groups is None else "one for all"
+        yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
+    interference = None if analysis.qualities is None else analysis.qualities.interference
+    if interference is not None:
+        yield "clearance", _clearance(interference)
+
+
+def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
+    census = workspace.census
+    if not workspace.is_feasible:
+        yield "worst pose", _bad(f"none: {_why_none(census)}")
+    for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
+        if extreme is not None:
+            yield label, _placed(extreme)
+    for name, count in census.statuses.items():
+        if count > 0:
+            text = f"{count} of {census.samples} ({census.fraction(name):.1%})"
+            yield f"  {name.replace('_', ' ')}", text
+
+
+def _why_none(census: Census) -> str:
+    if census.excluded == census.samples:
+        return "every pose is left out"
+    return f"no cable serves {'all' if census.statuses['solved'] else 'any'} of it"
+
+
+def _placed(extreme: Extreme) -> str:
+    at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
+    text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
+    turn_deg = np.degrees(extreme.rotation_vector_rad)
+    if turn_deg.any():
+        text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
+    return text
+
+
+def _extreme(diameter_m: float, tension_N: float) -> str:
+    if not np.isfinite(diameter_m):
+        return "no cable"
+    force = f"{tension_N:.4g} N" if tension_N < 1e3 else f"{_figure(tension_N / 1e3, 2)} kN"
+    return f"{_figure(1e3 * diameter_m, 3)} mm, {force}"
+
+
+def _summary_of_selection(
+    selection: SelectionResult, label: str, asked: Selection | None
+) -> Iterator[Row]:
+    chosen = selection.chosen
+    if chosen is None:
+        yield label, f"{_bad('none')}: {escape(selection.reason or '')}"
+        return
+    assert asked is not None
+    yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
+    losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
+    terms = f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
+    yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
+    mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
+    yield "  mass", mass
+
+
+def _clearance(found: Interference) -> str:
+    worst = found.worst
+    if worst is None:
+        return "nothing to compare: " + (
+            "all cables meet at the platform" if found.samples else "no pose is solved"
+        )
+    nearest = f"{1e3 * worst.distance_m:.4g} mm between {escape(' and '.join(worst.names))}"
+    if not found.is_violated:
+        return f"kept, {nearest}"
+    return f"{_bad('not kept')}: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
+
+
+def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
+    if choice.chosen is None:
+        yield "groups", f"{_bad('none')}: {escape(choice.proof_sentence)}"
+        return
+    found = zip(choice.groups, choice.chosen.products, strict=True)
+    n_products = len({*choice.chosen.products})
+    yield "cables", f"[bold]{n_products} product{'' if n_products == 1 else 's'} for the groups[/]"
+    for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
+        yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
+    saving = "" if choice.saving_kg is None else _saving(choice.saving_kg)
+    gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
+    yield "  groups' mass", f"{choice.chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
+
+
+def _saving(saving_kg: float) -> str:
+    """Return what the groups save over one product for all, as it ends a sentence."""
+    if abs(saving_kg) < _SMALLEST_SAVING_KG:
+        return ", as with one product for all"
+    return f", {abs(saving_kg):.4g} kg {'less' if saving_kg > 0.0 else 'more'}"
+
+
+def print_pose(study: Study, pose: PoseAnalysis) -> None:
+    """Print the sizing of the configured pose."""
+    from designer.model.verdict import Verdict
+
+    statics = pose.sizing.statics
+    show(f"{study.name}: {Verdict(int(statics.verdict)).sentence}", markup=False)
+    table = bare_table("", "diameter [mm]", "largest tension [N]", title="Sizing")
+    for row in _sizing_rows(pose):
+        table.add_row(*row)
+    show(table)
+    if pose.loop.iterates and not pose.loop.has_converged:
+        show(f"loop: {pose.loop.outcome}")
+    if statics.is_solved:
+        _print_cables(pose)
+    outside = f"The configured pose {study.pose_outside}." if study.pose_outside else ""
+    for remark in (outside, pose.caution, pose.rest.sentence if pose.rest else ""):
+        if remark:
+            show(remark, markup=False, soft_wrap=True)
+
+
+def _sizing_rows(pose: PoseAnalysis) -> Iterator[Row]:
+    def figures(diameter_m: float, tension_N: float) -> Row:
+        return _figure(1e3 * diameter_m, 5), _figure(tension_N, 2)
+
+    sizing = pose.sizing
+    yield "massless", *figures(float(sizing.massless_diameter_m), float(sizing.massless_tension_N))
+    turns = [
+        (f"loop {turn}", *figures(iterate.diameter_m, iterate.max_tension_N))
+        for turn, iterate in enumerate(pose.loop.iterates[1:], 1)
+    ]
+    yield from turns if len(turns) <= _MOST_TURNS else [*turns[:_MOST_TURNS], ("…",), turns[-1]]
+    best = figures(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
+    name = "thinnest" if sizing.is_thinnest else "thinnest found"
+    yield tuple(f"[bold]{text}[/]" for text in (name, *best))
+
+
+def _print_cables(pose: PoseAnalysis) -> None:
+    statics = pose.sizing.statics
+    table = bare_table(
+        "cable", "length [m]", "F_x [N]", "F_z [N]", "tension at exit [N]", "at platform [N]",
+        title="Cables at the optimum",
+    )  # fmt: skip
+    columns = (
+        statics.length_m, statics.force_x_N, statics.force_z_N,
+        statics.exit_tension_N, statics.platform_tension_N,
+    )  # fmt: skip
+    for index, (length, *forces) in enumerate(zip(*columns, strict=True), 1):
+        table.add_row(str(index), _figure(length, 8), *(_figure(force, 3) for force in forces))
+    show(table)
+    closure = float(pose.sizing.closure_residual_m)
+    balance = float(pose.sizing.equilibrium_residual_N)
+    show(f"residuals: closure {closure:.1e} m, equilibrium {balance:.1e} N")
+
+
+def _figure(value: float, decimals: int) -> str:
+    """Return a figure as wide as a column can take; "none" where there is none."""
+    if not np.isfinite(value):
+        return "none"
+    is_plain = value == 0.0 or 10.0**-decimals <= abs(value) < _WIDEST
+    return f"{value:.{decimals}f}" if is_plain else f"{value:.6g}"
+
+
+def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) -> None:
+    """Print the short table at the end of ``designer diagnose``."""
+    _print_rows(diagnosis.study.name, [*_found(diagnosis), *_bettered(diagnosis)])
+    _print_written(folder, written)
+
+
+def _found(diagnosis: Diagnosis) -> Iterator[Row]:
+    """Yield the effects, what speaks against the model, and what was withdrawn."""
+    from designer.diagnosis.trends import in_runs
+
+    for finding in diagnosis.findings:
+        values = ", ".join(
+            f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
+        )
+        yield f"[bold]{escape(finding.effect.key)}[/]", escape(values)
+        if finding.rivals:
+            yield "  or", escape(", ".join(finding.rivals))
+    if not diagnosis.findings:
+        yield "effects", "none found"
+    for what in diagnosis.not_tried:
+        yield _bad("no time for"), escape(what)
+    for event in diagnosis.structure_after.events:
+        yield _bad("unexplained"), escape(f"goes with {event.text}")
+    for carrier in diagnosis.structure_after.present[:1]:
+        share = f"{carrier.fraction_of_variance:.0%} of its variance"
+        yield _bad("unexplained"), escape(f"goes with {carrier.name}, {share}")
+        if place := diagnosis.left_in:
+            yield "  most in", escape(f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
+    if diagnosis.is_scattered:
+        times = max(diagnosis.scatter.values())
+        yield _bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
+    for doubt in diagnosis.doubts:
+        yield _bad("not plausible"), escape(doubt)
+    for gone in diagnosis.withdrawn:
+        yield "withdrawn", escape(f"{gone.effect}: {gone.reason.value}")
+
+
+def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
+    """Yield the errors and the cables before and after."""
+    for kind, scale, unit in _MEASURED:
+        before, after = (
+            stage.length_m if kind == "length" else stage.tension_N
+            for stage in (diagnosis.stages[0], diagnosis.final)
+        )
+        if before is not None and after is not None:
+            was, now = scale * before.heldout.value, scale * after.heldout.value
+            yield f"{kind} error", f"{was:.3g} → {now:.3g} {unit} on unseen rows"
+    choices = (("cable before", diagnosis.design_before), ("after", diagnosis.design_after))
+    for label, choice in choices:
+        if choice is not None:
+            named = f"{choice.grade}, {choice.size_id}, {choice.utilisation:.1%} used"
+            yield label, escape(named) if choice.grade else "none"
+    uses = (("  the one before", diagnosis.kept), ("on the machine", diagnosis.mounted_after))
+    for label, use in uses:
+        if use is not None:
+            too_much = "" if use.utilisation <= 1.0 else f": {_bad('too much')}"
+            yield label, f"{use.utilisation:.1%} used{too_much}"
+
+
+def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
+    """Print what is left without and with the declared effects, and what to make of it."""
+    table = bare_table("error", "model", "rms", "95 %", "median", title=check.study.name)
+    for row in _left(check):
+        table.add_row(*row)
+    show(table)
+    for line in _remarks(check):
+        show(line, markup=False)
+    _print_written(folder, written)
+
+
+def _left(check: Check) -> Iterator[Row]:
+    models = [("without effects", check.without)]
+    if check.fitted is not None:
+        unknown = ", ".join(dict.fromkeys(s.effect.id for s in check.fitted.settings))
+        models.append((f"without, {unknown} fitted to these rows", check.fitted))
+    models.append(("with the effects, nothing fitted", check.declared))
+    for name, scale, unit in _MEASURED:
+        for label, model in models:
+            left = model.length_m if name == "length" else model.tension_N
+            if left is not None:
+                found = (left.rms.value, left.rms.low, left.rms.high, left.median)
+                value, low, high, median = (f"{scale * x:.4g}" for x in found)
+                yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
+    for label, model in models:
+        if model.foretold is not None and model.foretold.n_solved:
+            place = model.foretold.position_m
+            value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, place.low, place.high))
+            yield r"pose by lengths \[mm]", label, value, f"{low} to {high}", ""
+
+
+def _remarks(check: Check) -> Iterator[str]:
+    yield f"{check.n_compared} of {check.measured.n_rows} rows compared, outliers and all."
+    if not check.study.effects:
+        yield "The config declares no effects."
+    elif not check.helps:
+        yield "The declared effects do not help on these data."
+    for key, reason in check.idle:
+        yield f"{key} is declared and does not act here: {reason}."
+    if check.declared.n_not_held:
+        yield f"With the effects the robot cannot hold {check.declared.n_not_held} rows."
+    carriers = check.structure.carriers
+    if check.structure.is_present:
+        share = f"{carriers[0].fraction_of_variance:.0%} of its variance"
+        yield f"What is left goes with {carriers[0].name}, {share}."
+    elif carriers:
+        yield "What is left goes with nothing that was recorded."
+    if check.outliers:
+        yield f"{len(check.outliers)} readings stand off by more than five times the spread."
+
+
+def print_grades(grades: Sequence[Grade]) -> None:
+    """Print the list of grades, those of one publisher together."""
+    table = bare_table(
+        "grade", "construction", "material", "sizes", "d [mm]", "MBL [kN]", "trust", "from"
+    )
+    for publisher in sorted({grade.source.publisher for grade in grades}, key=str.casefold):
+        table.add_section()
+        table.add_row(f"[bold]{escape(publisher)}[/]")
+        for grade in grades:
+            if grade.source.publisher == publisher:
+                table.add_row(*map(escape, _grade_cells(grade)))
+    show(table)
+    show(
+        "trust: A maker's or standard's table, B seller's transcript, C third hand; (n?) doubtful "
+        "sizes; for document and address: designer catalog show GRADE"
+    )
+
+
+def _grade_cells(grade: Grade) -> Row:
+    n_doubtful = sum(size.doubt is not None for size in grade.sizes)
+    loads_kN = [1e-3 * size.minimum_breaking_load_N for size in grade.sizes]
+    return (
+        f"  {grade.id}",
+        _known(grade.construction, grade.core),
+        _known(grade.material or "", grade.finish.removeprefix("stainless, ")),
+        f"{len(grade.sizes)}" + (f" ({n_doubtful}?)" if n_doubtful else ""),
+        _range(1e3 * grade.sizes[0].diameter_m, 1e3 * grade.thickest.diameter_m),
+        _range(min(loads_kN), max(loads_kN)),
+        grade.trust,
+        grade.origin,
+    )
+
+
+def _known(*texts: str) -> str:
+    """Join what a source states; catalogue files say "not stated" where it does not."""
+    return ", ".join(text for text in texts if text not in ("", "not stated")) or "not stated"
+
+
+def _range(first: float, last: float) -> str:
+    ends = (f"{first:.4g}", f"{last:.4g}")
+    return "–".join(dict.fromkeys(ends))
+
+
+def print_grade(grade: Grade) -> None:
+    """Print all that is known of one grade; a column that is empty is left out."""
+    _print_rows(grade.id, ((name, escape(text)) for name, text in facts(grade)))
+    price = f"price [{grade.currency}/m]"
+    sizes = bare_table(
+        *("size", "d [mm]", "MBL [kN]", "mass [kg/m]", "A [mm²]", "EA [MN]", price, "doubt")
+    )
+    for size in grade.sizes:
+        area_m2 = grade.metallic_area_m2(size)
+        sizes.add_row(
+            escape(size.id),
+            f"{1e3 * size.diameter_m:.4g}",
+            f"{size.minimum_breaking_load_N / 1e3:.4g}",
+            f"{size.linear_density_kg_per_m:.4g}",
+            "" if area_m2 is None else f"{1e6 * area_m2:.4g}",
+            f"{grade.axial_stiffness_N(size) / 1e6:.4g}",
+            "" if size.price_per_m is None else f"{size.price_per_m:.4g}",
+            escape(size.doubt or ""),
+        )
+    sizes.columns = [column for column in sizes.columns if any(column.cells)]
+    show(sizes)
+    if grade.stiffness is not None and len(grade.stiffness.load_fraction) > 1:
+        show(f"EA at {TYPICAL_LOAD_FRACTION:g} of the breaking load")

@@ -1,0 +1,184 @@
+"""Parts of a grade beside its sizes, and the kinds of values that its fields hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, get_args
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from designer.documents.fields import QuantityField, Temperature, Text, bounded, list_of, refusal
+from designer.documents.section import FileValue, Section
+from designer.units import (
+    AREA,
+    FORCE,
+    LENGTH,
+    LINEAR_DENSITY,
+    QuantityError,
+    describe,
+    read_quantity,
+)
+
+DIMENSIONS = {
+    "diameter": LENGTH,
+    "minimum_breaking_load": FORCE,
+    "linear_mass": LINEAR_DENSITY,
+    "metallic_area": AREA,
+}
+"""The figures of a size, each with what it is."""
+
+
+def unit_of(figure: str) -> BeforeValidator:
+    """Return the check that a text is a unit of a size's figure."""
+    dimension = DIMENSIONS[figure]
+
+    def check(given: object) -> str:
+        if not isinstance(given, str):
+            raise refusal(f"{describe(given)} is not a unit", f"a unit of {dimension.noun}")
+        try:
+            read_quantity(f"1 {given}", dimension)
+        except QuantityError:
+            expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
+            raise refusal(f"{describe(given)} does not fit", expected) from None
+        return given
+
+    return BeforeValidator(check)
+
+
+def figure(name: str) -> QuantityField:
+    """Return the annotation of a size's figure, which `designer.grades.checks` looks at."""
+    return QuantityField(DIMENSIONS[name], above=0.0)
+
+
+Line = Annotated[Text, AfterValidator(lambda text: " ".join(text.split()))]
+Lines = Annotated[tuple[Line, ...], list_of(0, 100, "a list of texts")]
+Origin = Annotated[Line, Field(description="where the figure comes from")]
+Basis = Literal["printed", "computed", "borrowed"]
+"""How a figure was got: printed for this grade, computed from others of it, or another rope's."""
+StatedBasis = Annotated[Basis, Field(description="'printed', 'computed' or 'borrowed'")]
+Uncertainty = Annotated[float, bounded("uncertainty")]
+Ratio = Annotated[float, bounded("sheave ratio")]
+LoadFraction = Annotated[float, bounded("load fraction")]
+OverBreakingLoad = Annotated[float, bounded("stiffness over breaking load")]
+TemperatureRange = Annotated[tuple[Temperature, Temperature], list_of(2, 2, "[lowest, highest]")]
+ReferenceArea = Literal["nominal", "metallic"]
+ComputedColumn = Literal["minimum_breaking_load", "linear_mass", "metallic_area"]
+
+
+@dataclass(frozen=True, slots=True)
+class Modulus(FileValue):
+    """Effective modulus of elasticity of a rope.
+
+    Parameters
+    ----------
+    value_Pa : float
+        Axial stiffness EA over the reference area.
+    reference_area : str
+        ``nominal`` (the circle of the nominal diameter) or ``metallic``.
+    basis : str
+        ``printed`` for this grade, ``computed`` from other figures of this grade, or
+        ``borrowed`` from a rope of the same construction.
+    source : str
+        Where the figure comes from; for a borrowed one, the lender.
+    uncertainty : float
+        Relative half-width of the range the true value may lie in.
+    """
+
+    value_Pa: Annotated[
+        float, bounded("modulus"), Field(alias="value", description="a modulus such as '62.7 GPa'")
+    ]
+    reference_area: Annotated[ReferenceArea, Field(description="'nominal' or 'metallic'")]
+    basis: StatedBasis
+    source: Origin
+    uncertainty: Annotated[Uncertainty, Field(description="a fraction such as 0.15")]
+
+    @property
+    def figure(self) -> str:
+        """The modulus in words."""
+        area = {"nominal": "nominal circle", "metallic": "metallic area"}[self.reference_area]
+        return f"{self.value_Pa / 1e9:.4g} GPa on the {area}"
+
+
+@dataclass(frozen=True, slots=True)
+class ThermalExpansion(FileValue):
+    """Axial thermal expansion, how it was got, and its source."""
+
+    coefficient_per_K: Annotated[
+        float,
+        bounded("expansion"),
+        Field(alias="value", description="a coefficient such as '12.5e-6 /K'"),
+    ]
+    basis: StatedBasis
+    source: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class AreaFactor(FileValue):
+    """Metallic area over d², for sizes whose metallic area is not given; basis and source."""
+
+    value: Annotated[float, bounded("area factor"), Field(description="a number such as 0.449")]
+    basis: StatedBasis
+    source: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SheaveRatio(FileValue):
+    """Sheave over rope diameter, D/d: what is suggested, the minimum, and their source."""
+
+    suggested: Annotated[Ratio, Field(description="a number such as 35")]
+    minimum: Annotated[Ratio, Field(description="a number such as 23")]
+    source: Annotated[Line, Field(description="where the figures come from")]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits(FileValue):
+    """What a rope bears beside load: lowest and highest temperature of use [°C], and its creep."""
+
+    source: Annotated[Line, Field(description="where the limits come from")]
+    temperature_C: TemperatureRange | None = None
+    creep: Line | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ComputedFigure:
+    """A column of the table of sizes that the source does not print, and how it was computed."""
+
+    figure: ComputedColumn
+    how: str
+
+
+class ComputedSection(Section):
+    """Columns of the table that the source does not print, as a file has them."""
+
+    minimum_breaking_load: Line | None = None
+    linear_mass: Line | None = None
+    metallic_area: Line | None = None
+
+    def value(self) -> tuple[ComputedFigure, ...]:
+        """Return those that are given."""
+        given = ((column, getattr(self, column)) for column in get_args(ComputedColumn))
+        return tuple(ComputedFigure(column, how) for column, how in given if how is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Reference(FileValue):
+    """Where a grade's table was read: who published what, its address, its date or edition."""
+
+    publisher: Annotated[Line, Field(description="who published the table")]
+    document: Annotated[Line, Field(description="the name of the sheet, page or standard")]
+    url: Line | None = None
+    date: Line | None = None
+
+    def __str__(self) -> str:
+        parts = (self.publisher, self.document, self.date, self.url)
+        return ", ".join(part for part in parts if part)
+
+
+@dataclass(frozen=True, slots=True)
+class Units(FileValue):
+    """Units of the bare numbers in a file's table of sizes."""
+
+    diameter: Annotated[str | None, unit_of("diameter")] = None
+    minimum_breaking_load: Annotated[str | None, unit_of("minimum_breaking_load")] = None
+    linear_mass: Annotated[str | None, unit_of("linear_mass")] = None
+    metallic_area: Annotated[str | None, unit_of("metallic_area")] = None
