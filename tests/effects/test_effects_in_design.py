@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from designer.report.design.appendix import assumptions_section
 
 from designer.analysis.analyse import Analysis, analyse, analyse_pose
 from designer.analysis.result_json import result_dict
@@ -27,7 +28,6 @@ from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.robot import Poses
 from designer.progress import Silent
-from designer.report.design.appendix import assumptions_section
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, as_built_by

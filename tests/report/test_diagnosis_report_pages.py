@@ -9,6 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from designer.report.diagnosis.appendix import internal_forces
+from designer.report.diagnosis.context import (
+    DiagnosisContext,
+    build_diagnosis_context,
+    write_diagnosis,
+)
+from designer.report.diagnosis.drawings import draw
 
 from designer.analysis.analyse import Provenance
 from designer.arrays import frozen_array
@@ -21,14 +28,7 @@ from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
 from designer.io.config import read_study
 from designer.measured.read import read_measured
-from designer.report.diagnosis.appendix import internal_forces
-from designer.report.diagnosis.context import (
-    DiagnosisContext,
-    build_diagnosis_context,
-    write_diagnosis,
-)
 from designer.report.diagnosis.design import design_section
-from designer.report.diagnosis.drawings import draw
 from designer.report.diagnosis.search import search_section
 from designer.report.render import DIAGNOSIS, render_html
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from designer.report.design.drawings import draw
 
 from designer.analysis.analyse import Analysis, Provenance, analyse_pose
 from designer.arrays import frozen_array
@@ -15,7 +16,6 @@ from designer.io.config import read_study
 from designer.model.region import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
-from designer.report.design.drawings import draw
 from designer.report.design.scope import describe_orientations
 from designer.report.design.workspace import describe_region
 from designer.report.figures.maps import WorkspaceMaps, workspace_maps

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from designer.report.design.drawings import draw
 from figures_cases import maps_of
 
 from designer.analysis.analyse import Analysis
 from designer.report.design import captions
-from designer.report.design.drawings import draw
 from designer.report.figures.maps import Served
 
 pytestmark = pytest.mark.slow

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable
 
 import pytest
+from designer.report.design.context import ReportContext, build_context
 from report_cases import DEFAULTS, FAST
 from test_report_groups import YARD
 from test_report_qualities import PRISM, SELECTION, SIX
@@ -13,7 +14,6 @@ from test_report_qualities import PRISM, SELECTION, SIX
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
 from designer.report.design.candidates import front_sentence
-from designer.report.design.context import ReportContext, build_context
 from designer.report.figures.charts_pareto import pareto_chart
 from designer.report.material_class import class_of
 from designer.report.pictures import Pictures

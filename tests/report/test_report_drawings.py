@@ -8,11 +8,11 @@ import re
 
 import pypdf
 import pytest
+from designer.report.design.context import build_context
+from designer.report.design.drawings import draw
 
 from designer.analysis.analyse import Analysis
 from designer.report.design.candidates import thin_table
-from designer.report.design.context import build_context
-from designer.report.design.drawings import draw
 from designer.report.pictures import Pictures
 from designer.report.render import render_html, render_pdf
 

@@ -122,6 +122,7 @@ def test_hanging_share_is_that_of_the_chosen_rope(
 
 def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
     from designer.report.design.appendix import assumptions_section
+
     from designer.resources import example_file
 
     text = example_file("yard").read_text(encoding="utf-8")

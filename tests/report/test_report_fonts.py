@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pypdf
 import pytest
+from designer.report.design.context import ReportContext, build_context
 from fontTools.ttLib import TTFont
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import ReportContext, build_context
 from designer.report.fonts import FACES, with_fonts
 from designer.report.pictures import Pictures
 from designer.report.render import render_html

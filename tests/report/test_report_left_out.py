@@ -6,10 +6,10 @@ import dataclasses
 import json
 
 import pytest
+from designer.report.design.appendix import left_out_section
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.report.design.appendix import left_out_section
 from designer.resources import data_folder
 
 pytestmark = pytest.mark.slow

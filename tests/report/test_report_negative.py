@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from designer.report.design.context import build_context
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import build_context
 from designer.report.design.first_page import FirstPage
 from designer.report.pictures import Pictures
 

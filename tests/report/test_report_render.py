@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pypdf
 import pytest
+from designer.report.design.context import ReportContext, build_context
 from jinja2 import UndefinedError
 from test_report_context import PICTURES
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import ReportContext, build_context
 from designer.report.render import render_html, render_pdf, write_report
 
 pytestmark = pytest.mark.slow

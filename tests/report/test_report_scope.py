@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from designer.report.design.context import build_context
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
@@ -16,7 +17,6 @@ from designer.io.config import read_study
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
-from designer.report.design.context import build_context
 from designer.report.design.first_page import first_page
 from designer.report.design.scope import orientation_statement, strength_statement
 from designer.report.pictures import Pictures

@@ -9,15 +9,16 @@ from designer.analysis.findings import Findings
 from designer.grades.grade import TRUST_MEANING, Grade, Size
 from designer.model.region import PointList
 from designer.report import format as fmt
-from designer.report.design.hanging import hanging_statements
+from designer.report.blocks import Statement
 from designer.report.design.scope import (
     orientation_statement,
     pose_statement,
     strength_statement,
 )
 from designer.report.material_class import class_of
-from designer.report.parts import Statement
 from designer.selection.result import Candidate
+from designer.statics.task import LONG
+from designer.workspace.hanging import Hanging
 
 _NEAR_BOUNDARY = 0.9
 
@@ -32,7 +33,7 @@ def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
         *_sampling(analysis),
         *orientation_statement(analysis.study),
         *_hanging(analysis, findings),
-        *hanging_statements(analysis),
+        *_slack(analysis),
         *strength_statement(analysis.study.selection, ropes),
     ]
     if analysis.has_groups:
@@ -42,7 +43,9 @@ def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
     for grade in {grade.id: grade for grade, _ in ropes}.values():
         statements += _limits(grade)
     for grade, size in ropes:
-        statements += _doubt(grade, size)
+        if size.doubt:
+            title = f"Doubt about {size.id} of {grade.id}"
+            statements.append(Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt"))
     return tuple(statements)
 
 
@@ -116,6 +119,42 @@ def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield Statement("Poses left out", text, "doubt")
 
 
+def _slack(analysis: Analysis) -> Iterator[Statement]:
+    """Yield in how many samples cables hang as none should, where, and what could be done."""
+    found, workspace = analysis.hanging, analysis.study.workspace
+    whose = "the design" if analysis.qualities is not None else "what each sample needs"
+    if found.long is not None:
+        text = (
+            f"With {whose}, a cable is longer than {fmt.trimmed(LONG)} times its chord in "
+            f"{fmt.share(found.long.samples, found.samples)} of the samples: it hangs all but "
+            f"slack. {_worst(found.long)} has {fmt.trimmed(found.long.extreme, 3)} times its chord."
+        )
+        yield Statement("Cables far longer than their chord", f"{text} {_advice(analysis)}", "bad")
+    if found.below_floor is not None and workspace is not None and workspace.floor_m is not None:
+        below = found.below_floor
+        text = (
+            f"With {whose}, a cable hangs below the floor at {fmt.metres(workspace.floor_m)} in "
+            f"{fmt.share(below.samples, found.samples)} of the samples. {_worst(below)} reaches "
+            f"down to {fmt.metres(below.extreme)}."
+        )
+        yield Statement("Cables below the floor", f"{text} {_advice(analysis)}", "bad")
+
+
+def _worst(found: Hanging) -> str:
+    return f"Cable {found.cable} at {fmt.position(found.place)}"
+
+
+def _advice(analysis: Analysis) -> str:
+    robot = analysis.built.robot
+    least = (
+        "A least tension (robot.tension_min) keeps cables from hanging so, where they can; or "
+        if robot.is_redundant
+        else ""
+    )
+    advice = f"{least}make the region smaller, or leave out poses with a cable below the platform."
+    return fmt.capital(advice)
+
+
 def _trust(grade: Grade, title: str = "Figures of the rope") -> Statement:
     letter = grade.trust
     text = f"Trust {letter}: {TRUST_MEANING[letter]}. Ask the maker for a certificate."
@@ -127,8 +166,8 @@ def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]
     for grade in grades.values():
         yield _trust(grade, f"Figures of {grade.id}")
     known = [
-        f"{grade.id}: {grade.elasticity.basis}, known to ±\u00a0"
-        f"{fmt.trimmed(100 * grade.elasticity.uncertainty)}\u00a0%"
+        f"{grade.id}: {grade.elasticity.basis}, known to "
+        f"{fmt.plus_minus(grade.elasticity.uncertainty)}"
         for grade in grades.values()
     ]
     yield Statement("Modulus", f"{'; '.join(known)}.")
@@ -136,19 +175,16 @@ def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:
     elasticity = chosen.grade.elasticity
-    doubt = f"±\u00a0{fmt.trimmed(100 * elasticity.uncertainty)}\u00a0%"
-    text = f"The modulus is {elasticity.basis}, known to {doubt}."
+    known = fmt.plus_minus(elasticity.uncertainty)
+    text = f"The modulus is {elasticity.basis}, known to {known}."
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
-        text += f" Over that range the utilisation at the worst pose is {_range(low, high)}."
+        ends = dict.fromkeys((fmt.utilisation(low), fmt.utilisation(high)))
+        shown = " to ".join(ends) if len(ends) > 1 else f"{fmt.utilisation(low)} throughout"
+        text += f" Over that range the utilisation at the worst pose is {shown}."
         if high > 1.0 >= chosen.verification.utilisation:
             return Statement("Modulus", f"{text} So it may exceed what is allowed.", "bad")
     return Statement("Modulus", text)
-
-
-def _range(low: float, high: float) -> str:
-    first, last = fmt.utilisation(low), fmt.utilisation(high)
-    return f"{first} throughout" if first == last else f"{first} to {last}"
 
 
 def _limits(grade: Grade) -> Iterator[Statement]:
@@ -170,9 +206,3 @@ def _limits(grade: Grade) -> Iterator[Statement]:
             "is not part of the study."
         )
         yield Statement("Temperature", text, "doubt")
-
-
-def _doubt(grade: Grade, size: Size) -> Iterator[Statement]:
-    if size.doubt:
-        title = f"Doubt about {size.id} of {grade.id}"
-        yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")

@@ -8,10 +8,10 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, Unserved
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
+from designer.report.blocks import Statement
 from designer.report.design.clearance import clearance_statement
 from designer.report.design.groups import groups_statement
 from designer.report.design.stiffness import stiffness_statement
-from designer.report.parts import Statement
 from designer.workspace.result import WorkspaceMap
 
 _MOST_NAMES = 4
@@ -99,8 +99,7 @@ def _selection_reason(analysis: Analysis) -> Iterator[Statement]:
         yield groups_statement(analysis.groups)
     if not selection.reason:
         return
-    text = f"{selection.reason[0].upper()}{selection.reason[1:]}."
-    yield Statement("The ropes", text, "bad")
+    yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", "bad")
 
 
 def actions(analysis: Analysis, findings: Findings) -> tuple[str, ...]:

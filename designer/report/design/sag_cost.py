@@ -2,66 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, MasslessChoice
 from designer.report import format as fmt
-from designer.report.parts import Column, Row, Table
+from designer.report.blocks import Block, Column, Table
 
 
-@dataclass(frozen=True, slots=True)
-class SagCost:
-    """With and without sag.
+def sag_cost(analysis: Analysis, findings: Findings) -> tuple[Block, ...]:
+    """Compare with and without sag at the worst pose, or at the configured pose.
 
-    Parameters
-    ----------
-    table : Table
-        Diameter and tension in the configured family, and the factor between the two.
-    consequence : str
-        What a design without sag would have bought, and how it would fare; may be empty.
+    Also what a design without sag would have bought, and how it would fare; empty where there is
+    nothing to compare.
     """
-
-    table: Table
-    consequence: str
-
-
-def sag_cost(analysis: Analysis, findings: Findings) -> SagCost | None:
-    """Compare with and without sag at the worst pose, or at the configured pose."""
     pairs = _workspace_pairs(analysis) or _pose_pairs(analysis)
     if pairs is None:
-        return None
+        return ()
     (diameter_m, massless_diameter_m), (tension_N, massless_tension_N), place = pairs
-    columns = (
-        Column("", is_number=False),
-        Column("Without sag"),
-        Column("With sag"),
-        Column("Factor"),
+    diameters = fmt.millimetres(massless_diameter_m), fmt.millimetres(diameter_m)
+    tensions = fmt.newtons_alike(massless_tension_N, tension_N)
+    table = Table.of(
+        f"Configured cable family, {place}.",
+        ("", Column("Without sag"), Column("With sag"), Column("Factor")),
+        ("Diameter", *diameters, fmt.factor(diameter_m / massless_diameter_m)),
+        ("Tension", *tensions, fmt.factor(tension_N / massless_tension_N)),
+        kind="small",
     )
-    rows = (
-        Row(
-            (
-                "Diameter",
-                fmt.millimetres(massless_diameter_m),
-                fmt.millimetres(diameter_m),
-                fmt.factor(diameter_m / massless_diameter_m),
-            )
-        ),
-        Row(
-            (
-                "Tension",
-                *fmt.newtons_alike(massless_tension_N, tension_N),
-                fmt.factor(tension_N / massless_tension_N),
-            )
-        ),
-    )
-    caption = f"Configured cable family, {place}."
     choice = findings.massless_choice
-    return SagCost(
-        Table.of(caption, columns, *rows), _consequence(analysis, choice) if choice else ""
-    )
+    return (table, _consequence(analysis, choice)) if choice else (table,)
 
 
 Pairs = tuple[tuple[float, float], tuple[float, float], str]

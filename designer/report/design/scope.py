@@ -10,7 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.grades.grade import Grade, Size
 from designer.model.space import Orientations
 from designer.report import format as fmt
-from designer.report.parts import Fact, Statement, Tone
+from designer.report.blocks import Fact, Statement, Tone
 from designer.selection.efficiency import Allowance
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study
@@ -50,8 +50,17 @@ def _how_tried(orientations: Orientations) -> str:
 def orientation_statement(study: Study) -> Iterator[Statement]:
     """Yield the same for the first page."""
     for fact in orientation_fact(study):
-        text = f"{fact.value[0].upper()}{fact.value[1:]}{fact.note and ': '}{fact.note}."
+        text = f"{fmt.capital(fact.value)}{fact.note and ': '}{fact.note}."
         yield Statement("Orientations checked", text)
+
+
+def in_first_orientation(study: Study) -> str:
+    """Return in which orientation a map over positions is drawn; empty where there is one only."""
+    if study.workspace is None or study.workspace.orientations.is_level:
+        return ""
+    if study.workspace.orientations.range_rad is not None:
+        return ", in the middle of the range of orientations"
+    return ", in the first of the orientations" if study.workspace.orientations.count > 1 else ""
 
 
 def strength_statement(

@@ -5,58 +5,47 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from markupsafe import Markup
 
 from designer.diagnosis.result import Choice, Diagnosis
 from designer.report import format as fmt
-from designer.report.diagnosis import words
-from designer.report.parts import Column, Row, Table
+from designer.report.blocks import Column, Heads, Listing, Row, Section, Table
 
 
-@dataclass(frozen=True, slots=True)
-class DesignSection:
-    """What the better model does to the design.
-
-    Parameters
-    ----------
-    sentence : str
-        What it means for the cable.
-    numbers : str
-        Utilisation, tension and diameter before and after, in sentences; may be empty.
-    mounted : str
-        What it means for the cable that hangs on the machine; may be empty.
-    table : Table or None
-        The choice before and after; None where the study does not ask for one.
-    remarks : tuple of str
-        Which effects do not reach the design.
-    effects : str
-        The block ``effects`` as it stands in the config that was written; may be empty.
-    config : str
-        Name of that config.
-    """
-
-    sentence: str
-    numbers: str
-    mounted: str
-    table: Table | None
-    remarks: tuple[str, ...]
-    effects: str
-    config: str
-
-
-def design_section(diagnosis: Diagnosis) -> DesignSection:
-    """Return what the better model does to the design."""
-    before, after = diagnosis.design_before, diagnosis.design_after
-    has_both = before is not None and after is not None
-    return DesignSection(
-        sentence=_sentence(diagnosis),
-        numbers=_numbers(diagnosis),
-        mounted=_mounted(diagnosis),
-        table=_design_table(diagnosis),
-        remarks=_remarks(diagnosis) if has_both else (),
-        effects=effects_text(diagnosis),
-        config=f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
+def section(diagnosis: Diagnosis) -> Section:
+    """Return what the better model does to the design, and the effects for the config."""
+    effects = effects_text(diagnosis)
+    config = Markup('<span class="id">{}</span>').format(config_name(diagnosis))
+    if effects:
+        how = Markup(
+            "The config {}, beside this report, holds the whole model: what was declared, fitted "
+            "and found. A design report made from it uses it everywhere; "
+            '<span class="id">designer diagnose --check</span> holds it against later data, with '
+            "nothing fitted anew."
+        ).format(config)
+    else:
+        how = Markup("The config {}, beside this report, holds no effects.").format(config)
+    return Section.of(
+        "design",
+        "What it means for the design",
+        consequence(diagnosis),
+        _table(diagnosis),
+        how,
+        _mounted(diagnosis) if effects else None,
+        Listing(effects) if effects else None,
     )
+
+
+def on_first_page(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return what it means for the cable, and in numbers."""
+    numbers = f"{_numbers(diagnosis)} {_mounted(diagnosis)}".strip()
+    return tuple(text for text in (consequence(diagnosis), numbers) if text)
+
+
+def config_name(diagnosis: Diagnosis) -> str:
+    """Return the name of the config that is written."""
+    return f"{diagnosis.study.source.path.stem}.diagnosed.yaml"
 
 
 def effects_text(diagnosis: Diagnosis) -> str:
@@ -76,21 +65,21 @@ def effects_text(diagnosis: Diagnosis) -> str:
     return stream.getvalue()
 
 
-def _sentence(diagnosis: Diagnosis) -> str:
+def consequence(diagnosis: Diagnosis) -> str:
+    """Return what the better model means for the cable, and which effects do not reach it."""
     before, after = diagnosis.design_before, diagnosis.design_after
     if before is None or after is None:
         return _why_not(diagnosis)
-    if not _reaches(diagnosis):
-        if not diagnosis.findings:
-            return f"Nothing was found, so the design stays as it is: {_named(before)}."
-        return f"Nothing that was found reaches the design, which stays as it is: {_named(before)}."
-    if (before.grade, before.size_id) == (after.grade, after.size_id):
-        return f"The choice stays: {_named(after)}."
-    return f"The choice changes from {_named(before)} to {_named(after)}."
-
-
-def _reaches(diagnosis: Diagnosis) -> bool:
-    return any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings))
+    if not any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings)):
+        what = "Nothing was found, so the design stays as it is"
+        if diagnosis.findings:
+            what = "Nothing that was found reaches the design, which stays as it is"
+        text = f"{what}: {_named(before)}."
+    elif (before.grade, before.size_id) == (after.grade, after.size_id):
+        text = f"The choice stays: {_named(after)}."
+    else:
+        text = f"The choice changes from {_named(before)} to {_named(after)}."
+    return " ".join((text, *_remarks(diagnosis)))
 
 
 def _numbers(diagnosis: Diagnosis) -> str:
@@ -166,33 +155,25 @@ def _named(choice: Choice) -> str:
     return f"{choice.grade}, {choice.size_id}" if choice.grade else "no product holds"
 
 
-def _remarks(diagnosis: Diagnosis) -> tuple[str, ...]:
+def _remarks(diagnosis: Diagnosis) -> Iterator[str]:
     idle = [s.effect.key for s in diagnosis.settings if not s.effect.reaches_design]
-    remarks = []
     if idle:
         verb, it = ("does", "it changes") if len(idle) == 1 else ("do", "they change")
-        remarks.append(
-            f"{words.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
+        yield (
+            f"{fmt.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
             "the sizing counts."
         )
     if diagnosis.is_unexplained:
-        remarks.append("What is unexplained is not in the design.")
-    return tuple(remarks)
+        yield "What is unexplained is not in the design."
 
 
-def _design_table(diagnosis: Diagnosis) -> Table | None:
+def _table(diagnosis: Diagnosis) -> Table | None:
     before, after = diagnosis.design_before, diagnosis.design_after
     if before is None or after is None:
         return None
-    columns = (
-        Column("", is_number=False),
-        Column("Product", is_number=False),
-        Column("Its diameter"),
-        Column("Its largest tension"),
-        Column("Utilisation"),
-        Column("Optimum of the configured family"),
-        Column("Its largest tension"),
-    )
+    numbers = ("Its diameter", "Its largest tension", "Utilisation")
+    optimum = ("Optimum of the configured family", "Its largest tension")
+    columns: Heads = ("", "Product", *map(Column, (*numbers, *optimum)))
     if after is before:
         caption = "The chosen cable and the largest tension in the workspace."
         return Table.of(caption, columns, _row("As declared", before), *_other_rows(diagnosis))

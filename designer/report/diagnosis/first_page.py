@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from designer.diagnosis.result import Diagnosis, Error, Finding, Verdict
 from designer.diagnosis.whereabouts import in_runs
 from designer.report import format as fmt
+from designer.report.blocks import Column, Picture, Statement, Table
 from designer.report.diagnosis import words
-from designer.report.diagnosis.design import DesignSection, design_section
+from designer.report.diagnosis.carriers import strongest
+from designer.report.diagnosis.design import on_first_page
 from designer.report.diagnosis.quantity import Quantity, quantities
 from designer.report.diagnosis.sureness import sureness
-from designer.report.parts import Column, Picture, Row, Statement, Table
 
 _ABOUT_AS_FAR = 0.9
 _MOST_STATEMENTS = 7
@@ -34,8 +35,8 @@ class FirstPage:
         Error on held-out rows before and after.
     picture : Picture or None
         The residual against what it goes with most.
-    design : DesignSection
-        What it means for the cable.
+    design : tuple of str
+        What it means for the cable, in paragraphs.
     """
 
     verdict: Statement
@@ -43,7 +44,7 @@ class FirstPage:
     sureness: tuple[Statement, ...]
     errors: Table
     picture: Picture | None
-    design: DesignSection
+    design: tuple[str, ...]
 
     @property
     def is_full(self) -> bool:
@@ -51,15 +52,15 @@ class FirstPage:
         return len(self.findings) + len(self.sureness) > _MOST_STATEMENTS
 
 
-def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
+def first_page(diagnosis: Diagnosis) -> FirstPage:
     """Return the first page."""
     return FirstPage(
         verdict=verdict(diagnosis),
         findings=tuple(_finding(group) for group in words.grouped(diagnosis.findings)),
         sureness=sureness(diagnosis),
         errors=_errors(diagnosis),
-        picture=picture,
-        design=design_section(diagnosis),
+        picture=strongest(diagnosis),
+        design=on_first_page(diagnosis),
     )
 
 
@@ -69,7 +70,7 @@ def verdict(diagnosis: Diagnosis) -> Statement:
     against = f"{_left(diagnosis)}{_scatter(diagnosis)}{_doubts(diagnosis)}".strip()
     answer = diagnosis.verdict
     if found:
-        text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
+        text = f"{fmt.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
         if answer is Verdict.IN_PART:
             return Statement("Found in part", f"{text} {against}", "doubt")
         doubtful = any(f.rivals or f.warnings for f in diagnosis.findings)
@@ -155,7 +156,7 @@ def _foretold(diagnosis: Diagnosis) -> str:
 
 
 def _finding(group: Sequence[Finding]) -> Statement:
-    title = words.capital(words.plain_group(group))
+    title = fmt.capital(words.plain_group(group))
     if len(group) == 1:
         text = f"{words.values(group[0].effect, group[0].parameters)}."
     else:
@@ -180,25 +181,22 @@ def _of_one_cable(finding: Finding) -> str:
 
 def _errors(diagnosis: Diagnosis) -> Table:
     has_change = bool(diagnosis.findings)
-    ends = ("Before", "After") if has_change else ("Error",)
-    columns = [Column("Reading", is_number=False)]
-    for end in ends:
-        columns += [Column(end), Column("95 %")]
-    columns += [Column("Noise"), Column("In units of noise")]
-    rows = []
-    for quantity, before, after in quantities(diagnosis):
-        errors = (before, after) if has_change else (after,)
-        rows.append(Row(tuple(_cells(quantity, errors))))
+    stages = ("Before", "95 %", "After", "95 %") if has_change else ("Error", "95 %")
+    rows = (
+        tuple(_cells(quantity, (before, after) if has_change else (after,)))
+        for quantity, before, after in quantities(diagnosis)
+    )
     when = ", before and after," if has_change else ""
     return Table.of(
         f"Root mean square error on held-out rows{when} with 95 % intervals.",
-        tuple(columns),
+        ("Reading", *map(Column, (*stages, "Noise", "In units of noise"))),
         *rows,
+        kind="small",
     )
 
 
 def _cells(quantity: Quantity, errors: Sequence[Error]) -> Iterator[str]:
-    yield f"{words.capital(quantity.name)}\u00a0[{quantity.unit}]"
+    yield f"{fmt.capital(quantity.name)}\u00a0[{quantity.unit}]"
     for error in errors:
         held = error.heldout
         yield quantity.shown(held.value)

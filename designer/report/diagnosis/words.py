@@ -174,11 +174,6 @@ def chance(value: float) -> str:
     return fmt.power_of_ten(value) if value < 1e-4 else fmt.percent(value, 2)
 
 
-def capital(text: str) -> str:
-    """Return a text with a capital first letter."""
-    return text[:1].upper() + text[1:]
-
-
 def _with_std(value: float, std: float) -> str:
     if not math.isfinite(std) or std <= 0.0:
         return fmt.number(value)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.report.blocks import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.material_class import CLASSES, MaterialClass, class_of
-from designer.report.parts import MOST_ROWS
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
 from designer.study import Objective
