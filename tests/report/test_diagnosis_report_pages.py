@@ -23,6 +23,11 @@ from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
 from designer.io.config import read_study
 from designer.measured.read import read_measured
+from designer.report.blocks import Listing, Report
+from designer.report.diagnosis import assumptions, search
+from designer.report.diagnosis.design import config_name, consequence
+from designer.report.diagnosis.first_page import FirstPage
+from designer.report.diagnosis.report import diagnosis_report, write_diagnosis
 from designer.report.render import render_html
 
 pytestmark = pytest.mark.slow
