@@ -16,36 +16,48 @@ from designer.study import Selection
 
 def section(source: Source) -> Section:
     """Return what the results rest on."""
-    items = tuple(item for item in _items(source.analysis) if item)
-    return Section.of("assumptions", "Assumptions and limits", Bullets(items))
+    analysis = source.analysis
+    robot, selection, found = analysis.built.robot, analysis.study.selection, analysis.qualities
+    kind = "point mass" if robot.is_point_mass else "rigid platform that can turn"
+    where = ", guided in a vertical plane" if robot.is_planar else ""
+    exits = "Exit points are fixed points, without pulleys."
+    if robot.pulley_radius_m != 0.0:
+        radius = fmt.trimmed(1e3 * robot.pulley_radius_m)
+        exits = (
+            f"The cables leave over swivelling pulleys of {radius}\u00a0mm radius at the exit "
+            "points."
+        )
+    safety = ""
+    if selection is not None:
+        safety = (
+            f"The safety factor of {fmt.trimmed(selection.safety_factor)} applies to the minimum "
+            "breaking load. Breaking load, mass and modulus are those of the rope's table."
+        )
+    crossing = "Cables may cross each other, the ground or the platform; this is not checked."
+    if found is not None and found.interference is not None:
+        crossing = (
+            "Cables are checked against each other and the platform, but may touch the ground."
+        )
+    items = (
+        f"Static equilibrium only: a {kind} of {fmt.kilograms(robot.platform.mass_kg)} on "
+        f"{robot.n_cables} cables{where}. No motion, no wind, no ice.",
+        "All cables are equal. Each is elastic, carries no bending and no compression.",
+        _loads(robot),
+        f"{exits} {_losses(selection)}",
+        _thinnest(robot),
+        _effects(analysis),
+        safety,
+        "Temperature, creep and wear are not counted. Gravity is "
+        f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s².",
+        crossing,
+    )
+    shown = Bullets(tuple(item for item in items if item))
+    return Section.of("assumptions", "Assumptions and limits", shown)
 
 
 def nomenclature(_: Source) -> Section:
     """Return the names of quantities, which stand in a template of their own."""
     return Section("nomenclature", "Names of quantities")
-
-
-def _items(analysis: Analysis) -> tuple[str, ...]:
-    """Return each assumption; empty where it does not concern the study."""
-    robot, selection, found = analysis.built.robot, analysis.study.selection, analysis.qualities
-    is_checked = found is not None and found.interference is not None
-    return (
-        f"Static equilibrium only: a {_platform(robot)}. No motion, no wind, no ice.",
-        "All cables are equal. Each is elastic, carries no bending and no compression.",
-        _loads(robot),
-        f"{_exits(robot.pulley_radius_m)} {_losses(selection)}",
-        _thinnest(robot),
-        _effects(analysis),
-        f"The safety factor of {fmt.trimmed(selection.safety_factor)} applies to the minimum "
-        "breaking load. Breaking load, mass and modulus are those of the rope's table."
-        if selection is not None
-        else "",
-        "Temperature, creep and wear are not counted. Gravity is "
-        f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s².",
-        "Cables are checked against each other and the platform, but may touch the ground."
-        if is_checked
-        else "Cables may cross each other, the ground or the platform; this is not checked.",
-    )
 
 
 def _effects(analysis: Analysis) -> str:
@@ -81,12 +93,6 @@ def _thinnest(robot: Robot) -> str:
         "each cable hanging in turn, all cables with half their pull, and random pulls. A needed "
         "diameter is the thinnest that was found; it is not proved that there is no thinner one."
     )
-
-
-def _platform(robot: Robot) -> str:
-    kind = "point mass" if robot.is_point_mass else "rigid platform that can turn"
-    where = ", guided in a vertical plane" if robot.is_planar else ""
-    return f"{kind} of {fmt.kilograms(robot.platform.mass_kg)} on {robot.n_cables} cables{where}"
 
 
 def _loads(robot: Robot) -> str:
@@ -132,12 +138,3 @@ def _losses(selection: Selection | None) -> str:
         )
     text = f"{' and '.join(parts)}{'; the smaller share counts' if len(parts) > 1 else ''}"
     return f"{fmt.capital(text)}. Fatigue of a rope that runs over sheaves is not counted."
-
-
-def _exits(pulley_radius_m: float) -> str:
-    if pulley_radius_m == 0.0:
-        return "Exit points are fixed points, without pulleys."
-    radius = fmt.trimmed(1e3 * pulley_radius_m)
-    return (
-        f"The cables leave over swivelling pulleys of {radius}\u00a0mm radius at the exit points."
-    )

@@ -152,21 +152,18 @@ def main_dominators(selection: SelectionResult) -> str:
         return ""
     beaten = Counter(c.reason.split(";")[0].removeprefix("dominated by ") for c in dominated)
     searched = sum(c.verification.is_refined for c in selection.candidates)
+    if len(beaten) > 1:
+        parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
+        who = f"Of the {fmt.plural(len(dominated), 'dominated size')}, {fmt.listing(parts)}."
+    else:
+        all_of_them = f"all {fmt.count(len(dominated))} dominated sizes"
+        what = all_of_them if len(dominated) > 1 else "the one dominated size"
+        who = f"{next(iter(beaten))} beats {what}."
     return (
-        f"{_who_beats(beaten)} "
-        f"{fmt.plural(searched, 'size')} were searched between the samples: those that no other "
-        "beats, the best of each grade, and those above 90\u00a0% of their allowable tension. For "
-        "the others the samples are enough, since a search can only find more tension."
+        f"{who} {fmt.plural(searched, 'size')} were searched between the samples: those that no "
+        "other beats, the best of each grade, and those above 90\u00a0% of their allowable "
+        "tension. For the others the samples are enough, since a search can only find more tension."
     )
-
-
-def _who_beats(beaten: Counter[str]) -> str:
-    total = beaten.total()
-    if len(beaten) == 1:
-        what = f"all {fmt.count(total)} dominated sizes" if total > 1 else "the one dominated size"
-        return f"{next(iter(beaten))} beats {what}."
-    parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
-    return f"Of the {fmt.plural(total, 'dominated size')}, {fmt.listing(parts)}."
 
 
 _MEANINGS: dict[Standing, str] = {

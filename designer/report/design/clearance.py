@@ -7,7 +7,7 @@ from designer.report.blocks import Column, Fact, Facts, Picture, Row, Section, S
 from designer.report.design.scope import in_first_orientation
 from designer.report.design.source import Source
 from designer.report.pictures import chart
-from designer.workspace.interference import Interference, Nearest
+from designer.workspace.interference import Interference
 
 
 def section(source: Source) -> Section | None:
@@ -61,7 +61,21 @@ def clearance_statement(found: Interference) -> Statement:
 
 def _table(found: Interference) -> Table | None:
     named = (("Two cables", found.among_cables), ("A cable and the platform", found.to_platform))
-    rows = [_row(name, nearest, found) for name, nearest in named if nearest is not None]
+    rows = [
+        Row(
+            (
+                name,
+                fmt.listing(nearest.names),
+                fmt.millimetres(nearest.distance_m),
+                fmt.millimetres(nearest.error_m),
+                fmt.position(nearest.place[:3]),
+                fmt.position(nearest.point_m),
+            ),
+            "bad" if nearest.distance_m < found.clearance_m else "",
+        )
+        for name, nearest in named
+        if nearest is not None
+    ]
     if not rows:
         return None
     return Table.of(
@@ -73,18 +87,6 @@ def _table(found: Interference) -> Table | None:
         ),
         *rows,
     )
-
-
-def _row(name: str, nearest: Nearest, found: Interference) -> Row:
-    cells = (
-        name,
-        fmt.listing(nearest.names),
-        fmt.millimetres(nearest.distance_m),
-        fmt.millimetres(nearest.error_m),
-        fmt.position(nearest.place[:3]),
-        fmt.position(nearest.point_m),
-    )
-    return Row(cells, "bad" if nearest.distance_m < found.clearance_m else "")
 
 
 def _map(source: Source) -> Picture | None:

@@ -10,7 +10,6 @@ from designer.model.cable import Material
 from designer.report import format as fmt
 from designer.report.blocks import Block, Box, Column, Fact, Facts, Subheading, Table
 from designer.selection.result import Candidate, GradeOutcome
-from designer.study import GradeFamily
 
 
 def compared(analysis: Analysis, outcome: GradeOutcome) -> tuple[Block, ...]:
@@ -59,7 +58,10 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
         ("Density", (fmt.kilograms_per_cubic_metre(f.density_kg_per_m3) for f in families)),
         ("Modulus of elasticity", (fmt.pascals(f.youngs_modulus_Pa) for f in families)),
         ("Allowable stress", (fmt.pascals(f.allowable_stress_Pa) for f in families)),
-        ("Self-supporting length", (_whole_metres(f.strength_length_m) for f in families)),
+        (
+            "Self-supporting length",
+            (f"{fmt.count(round(f.strength_length_m))}\u00a0m" for f in families),
+        ),
         ("Diameter", (fmt.millimetres(d) for d in diameters)),
         ("Mass per length", (fmt.kilograms_per_metre(mass) for mass in masses)),
         ("Largest tension", fmt.newtons_alike(*tensions)),
@@ -77,10 +79,6 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
     return Table.of(caption, columns, *((name, *cells) for name, cells in lines))
 
 
-def _whole_metres(length_m: float) -> str:
-    return f"{fmt.count(round(length_m))}\u00a0m"
-
-
 def _material_of(candidate: Candidate) -> Material:
     area_m2 = candidate.size.nominal_area_m2
     return Material(
@@ -90,39 +88,31 @@ def _material_of(candidate: Candidate) -> Material:
     )
 
 
-def _whose(family: GradeFamily | None) -> str:
-    if family is None:
-        return "The configured family is an assumption about a cable."
-    return (
-        f"The configured family is that of the grade {family.grade}, as if it were sold in every "
-        f"diameter, at a safety factor of {fmt.trimmed(family.safety_factor)}."
-    )
-
-
 def _reasons(analysis: Analysis, real: Material, best: Candidate) -> tuple[str, ...]:
     assert analysis.study.selection is not None
-    ideal = analysis.built.material(analysis.study.material)
-    safety = fmt.trimmed(analysis.study.selection.safety_factor)
+    ideal, family = analysis.built.material(analysis.study.material), analysis.study.family
     stress = real.allowable_stress_Pa / ideal.allowable_stress_Pa
     density = real.density_kg_per_m3 / ideal.density_kg_per_m3
     stiffness = real.youngs_modulus_Pa / ideal.youngs_modulus_Pa
+    whose = "The configured family is an assumption about a cable."
+    if family is not None:
+        whose = (
+            f"The configured family is that of the grade {family.grade}, as if it were sold in "
+            f"every diameter, at a safety factor of {fmt.trimmed(family.safety_factor)}."
+        )
+    share = fmt.trimmed(best.efficiency, 3)
+    lost = f", times the {share} that end fittings and bending leave of it"
     return (
-        f"{_whose(analysis.study.family)} The figures of the chosen grade come from its table. "
+        f"{whose} The figures of the chosen grade come from its table. "
         "They ask for different diameters.",
         f"On the same circle the rope carries {fmt.factor(stress)} times the allowable stress, "
         f"weighs {fmt.factor(density)} times as much and is {fmt.factor(stiffness)} times as "
         f"stiff. Sag depends on strength over weight, where the rope has "
         f"{fmt.factor(stress / density)} times the configured value.",
         "The allowable stress of the rope is its breaking load over the nominal circle"
-        f"{_efficiency(best)}, divided by the safety factor of {safety}.",
+        f"{lost if best.efficiency != 1.0 else ''}, divided by the safety factor of "
+        f"{fmt.trimmed(analysis.study.selection.safety_factor)}.",
     )
-
-
-def _efficiency(best: Candidate) -> str:
-    if best.efficiency == 1.0:
-        return ""
-    share = fmt.trimmed(best.efficiency, 3)
-    return f", times the {share} that end fittings and bending leave of it"
 
 
 def _snap(outcome: GradeOutcome, best: Candidate) -> Facts:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
-from designer.grades.grade import TRUST_MEANING, Grade, Size
+from designer.grades.grade import TRUST_MEANING, Grade
 from designer.model.region import PointList
 from designer.report import format as fmt
 from designer.report.blocks import Statement
@@ -23,41 +23,37 @@ from designer.workspace.hanging import Hanging
 _NEAR_BOUNDARY = 0.9
 
 
-def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
-    """Return what a reviewer should know before relying on the answer."""
+def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
+    """Yield what a reviewer should know before relying on the answer."""
     chosen = analysis.selection.chosen if analysis.selection else None
-    ropes = [*_ropes(analysis)]
-    statements = [
-        *pose_statement(analysis),
-        *_margin(analysis, findings),
-        *_sampling(analysis),
-        *orientation_statement(analysis.study),
-        *_hanging(analysis, findings),
-        *_slack(analysis),
-        *strength_statement(analysis.study.selection, ropes),
-    ]
+    found = analysis.groups.chosen if analysis.groups else None
+    used = found.products if found is not None else [chosen] if chosen is not None else []
+    ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
+    grades = {grade.id: grade for grade, _ in ropes}.values()
+    yield from pose_statement(analysis)
+    yield from _margin(analysis, findings)
+    yield from _sampling(analysis)
+    yield from orientation_statement(analysis.study)
+    yield from _hanging(analysis, findings)
+    yield from _slack(analysis)
+    yield from strength_statement(analysis.study.selection, ropes)
     if analysis.has_groups:
-        statements += _trust_of_groups(ropes)
+        for grade in grades:
+            yield _trust(grade, f"Figures of {grade.id}")
+        known = (
+            f"{g.id}: {g.elasticity.basis}, known to {fmt.plus_minus(g.elasticity.uncertainty)}"
+            for g in grades
+        )
+        yield Statement("Modulus", f"{'; '.join(known)}.")
     elif chosen is not None:
-        statements += [_trust(chosen.grade), _modulus(chosen, findings)]
-    for grade in {grade.id: grade for grade, _ in ropes}.values():
-        statements += _limits(grade)
+        yield _trust(chosen.grade, "Figures of the rope")
+        yield _modulus(chosen, findings)
+    for grade in grades:
+        yield from _limits(grade)
     for grade, size in ropes:
         if size.doubt:
             title = f"Doubt about {size.id} of {grade.id}"
-            statements.append(Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt"))
-    return tuple(statements)
-
-
-def _ropes(analysis: Analysis) -> Iterator[tuple[Grade, Size]]:
-    """Yield the ropes of the groups, else the chosen one, each grade and size once."""
-    chosen = analysis.selection.chosen if analysis.selection else None
-    found = analysis.groups.chosen if analysis.groups else None
-    if found is not None:
-        ropes = [(one.grade, one.size) for one in found.products]
-    else:
-        ropes = [] if chosen is None else [(chosen.grade, chosen.size)]
-    yield from {(grade.id, size.id): (grade, size) for grade, size in ropes}.values()
+            yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
@@ -123,54 +119,36 @@ def _slack(analysis: Analysis) -> Iterator[Statement]:
     """Yield in how many samples cables hang as none should, where, and what could be done."""
     found, workspace = analysis.hanging, analysis.study.workspace
     whose = "the design" if analysis.qualities is not None else "what each sample needs"
+    advice = "make the region smaller, or leave out poses with a cable below the platform."
+    if analysis.built.robot.is_redundant:
+        advice = (
+            "a least tension (robot.tension_min) keeps cables from hanging so, where they can; or "
+            f"{advice}"
+        )
+
+    def told(title: str, what: str, so: str, where: Hanging, how_far: str) -> Statement:
+        text = (
+            f"With {whose}, a cable {what} in {fmt.share(where.samples, found.samples)} of the "
+            f"samples{so}. Cable {where.cable} at {fmt.position(where.place)} {how_far}. "
+            f"{fmt.capital(advice)}"
+        )
+        return Statement(title, text, "bad")
+
     if found.long is not None:
-        text = (
-            f"With {whose}, a cable is longer than {fmt.trimmed(LONG)} times its chord in "
-            f"{fmt.share(found.long.samples, found.samples)} of the samples: it hangs all but "
-            f"slack. {_worst(found.long)} has {fmt.trimmed(found.long.extreme, 3)} times its chord."
-        )
-        yield Statement("Cables far longer than their chord", f"{text} {_advice(analysis)}", "bad")
+        what = f"is longer than {fmt.trimmed(LONG)} times its chord"
+        how_far = f"has {fmt.trimmed(found.long.extreme, 3)} times its chord"
+        title = "Cables far longer than their chord"
+        yield told(title, what, ": it hangs all but slack", found.long, how_far)
     if found.below_floor is not None and workspace is not None and workspace.floor_m is not None:
-        below = found.below_floor
-        text = (
-            f"With {whose}, a cable hangs below the floor at {fmt.metres(workspace.floor_m)} in "
-            f"{fmt.share(below.samples, found.samples)} of the samples. {_worst(below)} reaches "
-            f"down to {fmt.metres(below.extreme)}."
-        )
-        yield Statement("Cables below the floor", f"{text} {_advice(analysis)}", "bad")
+        what = f"hangs below the floor at {fmt.metres(workspace.floor_m)}"
+        how_far = f"reaches down to {fmt.metres(found.below_floor.extreme)}"
+        yield told("Cables below the floor", what, "", found.below_floor, how_far)
 
 
-def _worst(found: Hanging) -> str:
-    return f"Cable {found.cable} at {fmt.position(found.place)}"
-
-
-def _advice(analysis: Analysis) -> str:
-    robot = analysis.built.robot
-    least = (
-        "A least tension (robot.tension_min) keeps cables from hanging so, where they can; or "
-        if robot.is_redundant
-        else ""
-    )
-    advice = f"{least}make the region smaller, or leave out poses with a cable below the platform."
-    return fmt.capital(advice)
-
-
-def _trust(grade: Grade, title: str = "Figures of the rope") -> Statement:
+def _trust(grade: Grade, title: str) -> Statement:
     letter = grade.trust
     text = f"Trust {letter}: {TRUST_MEANING[letter]}. Ask the maker for a certificate."
     return Statement(title, text, "" if letter == "A" else "doubt")
-
-
-def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]:
-    grades = {grade.id: grade for grade, _ in ropes}
-    for grade in grades.values():
-        yield _trust(grade, f"Figures of {grade.id}")
-    known = [
-        f"{grade.id}: {grade.elasticity.basis}, known to "
-        f"{fmt.plus_minus(grade.elasticity.uncertainty)}"
-        for grade in grades.values()
-    ]
-    yield Statement("Modulus", f"{'; '.join(known)}.")
 
 
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:

@@ -26,6 +26,7 @@ from designer.sizing.newton import size_poses
 from designer.study import CableGroup
 
 _MOST_SIZES = 2
+_TIGHT = 0.97
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +84,11 @@ def first_page(source: Source) -> FirstPage:
     return FirstPage(
         verdict=_verdict(analysis, findings),
         card=_card(analysis),
-        reasons=reasons(analysis, findings),
-        actions=actions(analysis, findings),
+        reasons=tuple(reasons(analysis, findings)),
+        actions=tuple(actions(analysis, findings)),
         sag=sag_cost(analysis, findings),
         groups=groups_statement(analysis.groups) if analysis.groups else None,
-        confidence=confidence(analysis, findings),
+        confidence=tuple(confidence(analysis, findings)),
         picture=_picture(source),
     )
 
@@ -101,9 +102,12 @@ def _picture(source: Source) -> Picture | None:
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
     found = analysis.groups if analysis.has_groups else None
-    against = [*_open_points(analysis), *objections(analysis)]
     if analysis.has_cable:
-        text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
+        text = _positive(analysis, chosen)
+        workspace = analysis.study.workspace
+        if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
+            share = fmt.percent(findings.hanging)
+            text += f" {share} of the volume is left out, as configured."
     elif found is not None:
         text = groups_hold(found)
     elif chosen is not None and analysis.has_products:
@@ -111,9 +115,18 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     else:
         return Statement("No", _negative(analysis), "bad")
     text += "" if found is not None else _of_metal(analysis.selection, chosen)
+    against = [*_open_points(analysis), *objections(analysis)]
     if against:
         return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
     return Statement("Yes", text, "good")
+
+
+def _open_points(analysis: Analysis) -> Iterator[str]:
+    pose, workspace = analysis.pose, analysis.workspace
+    if pose is not None and not pose.sizing.statics.is_solved:
+        yield "no cable of the configured family can hold the configured pose"
+    elif workspace is not None and not workspace.is_feasible:
+        yield "no cable of the configured family can serve the whole workspace"
 
 
 def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
@@ -139,53 +152,32 @@ def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> st
 
 
 def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
-    workspace, pose = analysis.workspace, analysis.pose
     if analysis.groups is not None:
         return groups_hold(analysis.groups)
     if chosen is not None:
-        return f"{_holds(chosen)} {_load(chosen)}"
-    if workspace is not None and workspace.sagging is not None:
-        worst = workspace.sagging
+        found = chosen.verification
+        tight = " There is hardly any reserve beyond it." if found.utilisation > _TIGHT else ""
         return (
-            f"A cable of {fmt.millimetres(worst.diameter_m)} of the configured family holds every "
-            f"pose of the workspace. Its largest tension is {fmt.newtons(worst.max_tension_N)}."
+            f"{_holds(chosen)} Its largest tension is {fmt.newtons(found.max_tension_N)}, "
+            f"{fmt.utilisation(found.utilisation)} of what the safety factor allows.{tight}"
         )
-    assert pose is not None
+    workspace, pose = analysis.workspace, analysis.pose
+    if workspace is not None and workspace.sagging is not None:
+        worst, what = workspace.sagging, "every pose of the workspace"
+        diameter_m, tension_N = worst.diameter_m, worst.max_tension_N
+    else:
+        assert pose is not None
+        sizing, what = pose.sizing, "the configured pose"
+        diameter_m, tension_N = float(sizing.diameter_m), float(sizing.statics.largest_tension_N)
     return (
-        f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} of the configured family "
-        "holds the configured pose. Its largest tension is "
-        f"{fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
+        f"A cable of {fmt.millimetres(diameter_m)} of the configured family holds {what}. "
+        f"Its largest tension is {fmt.newtons(tension_N)}."
     )
-
-
-def _exception(analysis: Analysis, findings: Findings) -> str:
-    """Say on the first line how much of the volume does not count."""
-    workspace = analysis.study.workspace
-    if workspace is None or workspace.hangs_below == "include" or not findings.hanging:
-        return ""
-    return f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
 
 
 def _holds(chosen: Candidate) -> str:
     name = f"{chosen.grade.product} ({chosen.grade.id})"
     return f"The {chosen.size.id} size of {name} holds every pose of the workspace."
-
-
-def _load(chosen: Candidate) -> str:
-    found = chosen.verification
-    text = (
-        f"Its largest tension is {fmt.newtons(found.max_tension_N)}, "
-        f"{fmt.utilisation(found.utilisation)} of what the safety factor allows."
-    )
-    return f"{text} There is hardly any reserve beyond it." if found.utilisation > 0.97 else text
-
-
-def _open_points(analysis: Analysis) -> Iterator[str]:
-    pose, workspace = analysis.pose, analysis.workspace
-    if pose is not None and not pose.sizing.statics.is_solved:
-        yield "no cable of the configured family can hold the configured pose"
-    elif workspace is not None and not workspace.is_feasible:
-        yield "no cable of the configured family can serve the whole workspace"
 
 
 def _negative(analysis: Analysis) -> str:

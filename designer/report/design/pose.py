@@ -49,7 +49,21 @@ def section(source: Source) -> Section | None:
         _methods(pose),
         replace(source.robot, kind="space") if source.robot else None,
         _cables(pose) if pose.sizing.statics.is_solved else None,
-        *(_loop(source, pose) if pose.loop.iterates else ()),
+        *(
+            (
+                Box.of(
+                    "keep",
+                    Subheading("loop", "The loop, turn by turn"),
+                    "Each turn solves the pose with the last diameter, takes the largest tension, "
+                    "and asks for the diameter that carries it at the allowable stress. A thicker "
+                    "cable is heavier, so the tension rises from turn to turn.",
+                    _loop_chart(pose) if source.draws else None,
+                ),
+                turns_table(pose.loop),
+            )
+            if pose.loop.iterates
+            else ()
+        ),
     )
 
 
@@ -67,10 +81,14 @@ def _statement(pose: PoseAnalysis) -> Statement:
 
 
 def _facts(pose: PoseAnalysis) -> Facts:
+    from scipy.spatial.transform import Rotation
+
     statics = pose.sizing.statics
     facts = [Fact("Position", fmt.position(statics.poses.position_m))]
     if not statics.robot.is_point_mass:
-        facts.append(Fact("Rotation vector", _rotation(statics.poses.rotation)))
+        turn = np.degrees(Rotation.from_matrix(statics.poses.rotation).as_rotvec())
+        row = ", ".join(fmt.fixed(float(x), 2) for x in turn)
+        facts.append(Fact("Rotation vector", f"({row}) deg"))
     if np.isfinite(pose.limit_ratio):
         meaning = (
             "stress of a cable of unlimited thickness over the allowable stress; "
@@ -87,13 +105,6 @@ def _facts(pose: PoseAnalysis) -> Facts:
         unit = "N" if statics.robot.is_point_mass else "N or N·m"
         facts.append(Fact("Largest balance residual", fmt.power_of_ten(balance, unit), scale))
     return Facts(tuple(facts))
-
-
-def _rotation(matrix: np.ndarray) -> str:
-    from scipy.spatial.transform import Rotation
-
-    degrees = np.degrees(Rotation.from_matrix(matrix).as_rotvec())
-    return f"({', '.join(fmt.fixed(float(x), 2) for x in degrees)}) deg"
 
 
 def _methods(pose: PoseAnalysis) -> Table | None:
@@ -158,17 +169,6 @@ def _cables(pose: PoseAnalysis) -> Table:
         "the platform: the horizontal one away from the exit point, the vertical one upward."
     )
     return Table.of(caption, columns, *rows)
-
-
-def _loop(source: Source, pose: PoseAnalysis) -> tuple[Box, Table]:
-    how = (
-        "Each turn solves the pose with the last diameter, takes the largest tension, and asks for "
-        "the diameter that carries it at the allowable stress. A thicker cable is heavier, so the "
-        "tension rises from turn to turn."
-    )
-    picture = _loop_chart(pose) if source.draws else None
-    heading = Subheading("loop", "The loop, turn by turn")
-    return Box.of("keep", heading, how, picture), turns_table(pose.loop)
 
 
 def _loop_chart(pose: PoseAnalysis) -> Picture | None:

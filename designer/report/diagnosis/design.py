@@ -69,7 +69,12 @@ def consequence(diagnosis: Diagnosis) -> str:
     """Return what the better model means for the cable, and which effects do not reach it."""
     before, after = diagnosis.design_before, diagnosis.design_after
     if before is None or after is None:
-        return _why_not(diagnosis)
+        if diagnosis.study.robot.has_enough_cables:
+            return "The study has no workspace or no selection, so no cable was chosen."
+        return (
+            "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
+            "pose that one chooses, so none was chosen."
+        )
     if not any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings)):
         what = "Nothing was found, so the design stays as it is"
         if diagnosis.findings:
@@ -104,22 +109,18 @@ def _numbers(diagnosis: Diagnosis) -> str:
 
 def _utilisation(diagnosis: Diagnosis, before: Choice, after: Choice) -> Iterator[str]:
     """Yield how far the cable is used, and how far the one chosen before would be."""
-    if after.grade and before.grade == after.grade and before.size_id == after.size_id:
-        yield _use(
-            "Its utilisation", before.utilisation, after.utilisation, changes=after is not before
-        )
-    elif after.grade:
-        yield _use("Its utilisation", after.utilisation, after.utilisation, changes=False)
+    if after.grade:
+        is_same = before.grade == after.grade and before.size_id == after.size_id
+        was = before.utilisation if is_same else after.utilisation
+        yield _use("Its utilisation", was, after.utilisation)
     if diagnosis.kept is not None:
         used = fmt.utilisation(diagnosis.kept.utilisation)
         yield f"The one chosen before would be used to {used}."
 
 
-def _use(what: str, before: float, after: float, *, changes: bool) -> str:
+def _use(what: str, before: float, after: float) -> str:
     was, now = fmt.utilisation(before), fmt.utilisation(after)
-    if not changes or was == now:
-        return f"{what} is {now}."
-    return f"{what} goes from {was} to {now}."
+    return f"{what} is {now}." if was == now else f"{what} goes from {was} to {now}."
 
 
 def _mounted(diagnosis: Diagnosis) -> str:
@@ -132,23 +133,9 @@ def _mounted(diagnosis: Diagnosis) -> str:
             "Whether the rope on the machine holds is not said: "
             "measurements.cable gives no minimum_breaking_load."
         )
-    text = _use(
-        "The utilisation of the rope on the machine",
-        before.utilisation,
-        after.utilisation,
-        changes=True,
-    )
+    what = "The utilisation of the rope on the machine"
+    text = _use(what, before.utilisation, after.utilisation)
     return text if after.utilisation <= 1.0 else f"{text} That rope is overloaded."
-
-
-def _why_not(diagnosis: Diagnosis) -> str:
-    robot = diagnosis.study.robot
-    if not robot.has_enough_cables:
-        return (
-            "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
-            "pose that one chooses, so none was chosen."
-        )
-    return "The study has no workspace or no selection, so no cable was chosen."
 
 
 def _named(choice: Choice) -> str:
@@ -173,48 +160,32 @@ def _table(diagnosis: Diagnosis) -> Table | None:
         return None
     numbers = ("Its diameter", "Its largest tension", "Utilisation")
     optimum = ("Optimum of the configured family", "Its largest tension")
-    columns: Heads = ("", "Product", *map(Column, (*numbers, *optimum)))
-    if after is before:
-        caption = "The chosen cable and the largest tension in the workspace."
-        return Table.of(caption, columns, _row("As declared", before), *_other_rows(diagnosis))
-    return Table.of(
-        "The chosen cable and the largest tension in the workspace, before and after.",
-        columns,
-        _row("Before", before),
-        _row("After", after),
-        Row(("Change", "", *_changes(before, after)), "muted"),
-        *_other_rows(diagnosis),
+    when, rows = "", [_row("As declared", before)]
+    if after is not before:
+        when, names = ", before and after", ("diameter_m", "max_tension_N", "utilisation")
+        ratios = (
+            getattr(after, name) / getattr(before, name)
+            for name in (*names, "optimum_m", "optimum_tension_N")
+        )
+        changes = (fmt.signed_percent(r - 1.0) if math.isfinite(r) else fmt.MISSING for r in ratios)
+        rows = [_row("Before", before), _row("After", after)]
+        rows.append(Row(("Change", "", *changes), "muted"))
+    others = (
+        ("After", "the one chosen before", diagnosis.kept),
+        ("Before", "on the machine", diagnosis.mounted_before),
+        ("After", "on the machine", diagnosis.mounted_after),
     )
+    for title, name, use in others:  # these have no optimum
+        if use is not None:
+            figures = fmt.newtons(use.max_tension_N), fmt.utilisation(use.utilisation)
+            rows.append(Row((title, name, "", *figures, "", "")))
+    columns: Heads = ("", "Product", *map(Column, (*numbers, *optimum)))
+    caption = f"The chosen cable and the largest tension in the workspace{when}."
+    return Table.of(caption, columns, *rows)
 
 
 def _row(title: str, choice: Choice) -> Row:
     chosen, optimum = fmt.newtons_alike(choice.max_tension_N, choice.optimum_tension_N)
-    return Row(
-        (
-            title,
-            _named(choice),
-            fmt.millimetres(choice.diameter_m),
-            chosen,
-            fmt.utilisation(choice.utilisation),
-            fmt.millimetres(choice.optimum_m),
-            optimum,
-        )
-    )
-
-
-def _other_rows(diagnosis: Diagnosis) -> Iterator[Row]:
-    """Yield the cable chosen before and the one on the machine, which have no optimum."""
-    for title, name, use in (
-        ("After", "the one chosen before", diagnosis.kept),
-        ("Before", "on the machine", diagnosis.mounted_before),
-        ("After", "on the machine", diagnosis.mounted_after),
-    ):
-        if use is not None:
-            figures = fmt.newtons(use.max_tension_N), fmt.utilisation(use.utilisation)
-            yield Row((title, name, "", *figures, "", ""))
-
-
-def _changes(before: Choice, after: Choice) -> Iterator[str]:
-    for name in ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N"):
-        was, now = getattr(before, name), getattr(after, name)
-        yield fmt.signed_percent(now / was - 1.0) if math.isfinite(now / was) else fmt.MISSING
+    diameter, optimum_diameter = map(fmt.millimetres, (choice.diameter_m, choice.optimum_m))
+    used = fmt.utilisation(choice.utilisation)
+    return Row((title, _named(choice), diameter, chosen, used, optimum_diameter, optimum))

@@ -46,7 +46,7 @@ def _group(diagnosis: Diagnosis, quantity: Quantity) -> Group:
                 stage.label,
                 quantity.shown(error.rms),
                 quantity.shown(error.heldout.value),
-                f"{quantity.shown(error.heldout.low)} to {quantity.shown(error.heldout.high)}",
+                quantity.interval(error.heldout),
                 quantity.in_noise(error.heldout.value),
             )
         )

@@ -57,7 +57,7 @@ def first_page(diagnosis: Diagnosis) -> FirstPage:
     return FirstPage(
         verdict=verdict(diagnosis),
         findings=tuple(_finding(group) for group in words.grouped(diagnosis.findings)),
-        sureness=sureness(diagnosis),
+        sureness=tuple(sureness(diagnosis)),
         errors=_errors(diagnosis),
         picture=strongest(diagnosis),
         design=on_first_page(diagnosis),
@@ -67,8 +67,7 @@ def first_page(diagnosis: Diagnosis) -> FirstPage:
 def verdict(diagnosis: Diagnosis) -> Statement:
     """Return the answer: what was found, that there is nothing to find, or what is unexplained."""
     found = [words.plain_group(group) for group in words.grouped(diagnosis.findings)]
-    against = f"{_left(diagnosis)}{_scatter(diagnosis)}{_doubts(diagnosis)}".strip()
-    answer = diagnosis.verdict
+    against, answer = _against(diagnosis), diagnosis.verdict
     if found:
         text = f"{fmt.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
         if answer is Verdict.IN_PART:
@@ -107,23 +106,21 @@ def _left(diagnosis: Diagnosis) -> str:
     )
 
 
-def _scatter(diagnosis: Diagnosis) -> str:
-    if not diagnosis.is_scattered:
-        return ""
-    kind, times = max(diagnosis.scatter.items(), key=lambda item: item[1])
-    return (
-        f" The {kind}s scatter by {fmt.number(times, 2)} times their declared noise, more than "
-        "their sensors explain."
-    )
-
-
-def _doubts(diagnosis: Diagnosis) -> str:
-    if not diagnosis.doubts:
-        return ""
-    return (
-        f" What was unknown came out where it cannot be: {fmt.listing(diagnosis.doubts)}. Check "
-        "units, scales and numbers of cables in the config."
-    )
+def _against(diagnosis: Diagnosis) -> str:
+    """Say what speaks against the model as it is now; empty where nothing does."""
+    text = _left(diagnosis)
+    if diagnosis.is_scattered:
+        kind, times = max(diagnosis.scatter.items(), key=lambda item: item[1])
+        text += (
+            f" The {kind}s scatter by {fmt.number(times, 2)} times their declared noise, more than "
+            "their sensors explain."
+        )
+    if diagnosis.doubts:
+        text += (
+            f" What was unknown came out where it cannot be: {fmt.listing(diagnosis.doubts)}. "
+            "Check units, scales and numbers of cables in the config."
+        )
+    return text.strip()
 
 
 def _drop(diagnosis: Diagnosis) -> str:
@@ -132,17 +129,12 @@ def _drop(diagnosis: Diagnosis) -> str:
     for quantity, before, after in quantities(diagnosis):
         last = quantity.with_unit(after.heldout.value)
         first = quantity.with_unit(before.heldout.value)
-        change = _moves(first, last, before, after) if diagnosis.findings else f"is {last}"
+        verb = "falls" if after.heldout.value < before.heldout.value else "rises"
+        change = f"stays {last}" if first == last else f"{verb} from {first} to {last}"
+        change = change if diagnosis.findings else f"is {last}"
         noise = f"{quantity.in_noise(after.heldout.value)} times the noise"
         parts.append(f"of {quantity.name} {change} ({noise})")
     return f"On rows that no fit has seen, the error {fmt.listing(parts, 'and that')}."
-
-
-def _moves(first: str, last: str, before: Error, after: Error) -> str:
-    if first == last:
-        return f"stays {last}"
-    verb = "falls" if after.heldout.value < before.heldout.value else "rises"
-    return f"{verb} from {first} to {last}"
 
 
 def _foretold(diagnosis: Diagnosis) -> str:
@@ -198,8 +190,7 @@ def _errors(diagnosis: Diagnosis) -> Table:
 def _cells(quantity: Quantity, errors: Sequence[Error]) -> Iterator[str]:
     yield f"{fmt.capital(quantity.name)}\u00a0[{quantity.unit}]"
     for error in errors:
-        held = error.heldout
-        yield quantity.shown(held.value)
-        yield f"{quantity.shown(held.low)} to {quantity.shown(held.high)}"
+        yield quantity.shown(error.heldout.value)
+        yield quantity.interval(error.heldout)
     yield quantity.shown(quantity.noise)
     yield " → ".join(quantity.in_noise(error.heldout.value) for error in errors)

@@ -15,11 +15,6 @@ from designer.report.diagnosis.quantity import quantities
 _MUCH = 1.5
 
 
-def sureness(diagnosis: Diagnosis) -> tuple[Statement, ...]:
-    """Return statements on significance, rivals, warnings, what was withdrawn, and noise."""
-    return tuple(_statements(diagnosis))
-
-
 def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
     """Return the trial in which an effect was found; None where it came by exchange."""
     key = finding.effect.key
@@ -29,7 +24,8 @@ def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
     return None
 
 
-def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
+def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
+    """Yield statements on significance, rivals, warnings, what was withdrawn, and noise."""
     if diagnosis.not_tried:
         left_out = "; ".join(diagnosis.not_tried)
         yield Statement("Out of time", f"The search ended early. Not tried: {left_out}.", "bad")
