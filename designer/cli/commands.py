@@ -234,7 +234,7 @@ def diagnose(
     from designer.diagnosis.design import with_design
     from designer.diagnosis.diagnose import diagnose_study
     from designer.io.diagnosis_files import diagnosed_config
-    from designer.report.diagnosis.context import write_diagnosis
+    from designer.report.diagnosis.report import write_diagnosis
 
     with output_folder(folder) as building, Spinner("searching") as spinner:
         diagnosis = diagnose_study(study, measurements, measured, spinner)

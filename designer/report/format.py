@@ -99,6 +99,11 @@ def newtons_alike(*values: float) -> tuple[str, ...]:
     return tuple(_scaled(value, ((unit, scale, math.inf),)) for value in values)
 
 
+def force_unit(typical_N: float) -> tuple[str, float]:
+    """Return the unit for a column of forces, and how many newtons it has."""
+    return ("kN", 1e3) if typical_N >= 1e3 else ("N", 1.0)
+
+
 def pascals(value: float) -> str:
     """Return a stress in MPa or GPa, such as ``180 MPa``."""
     return _scaled(value, (("MPa", 1e6, 1e10), ("GPa", 1e9, math.inf)), trimmed)
@@ -124,7 +129,7 @@ def percent(fraction: float, digits: int = 3) -> str:
     return _with_unit(number(100.0 * fraction, digits), "%")
 
 
-def share(part: int, whole: int) -> str:
+def share(part: float, whole: float = 1.0) -> str:
     """Return a share such as ``4.05 %``; never ``100 %`` for what is not all."""
     nearly_all = part < whole and round(part / whole, 3) == 1.0
     return f"over{_BEFORE_UNIT}{percent(0.999)}" if nearly_all else percent(part / whole)
@@ -134,6 +139,11 @@ def signed_percent(fraction: float) -> str:
     """Return a change such as ``+12.3 %``."""
     text = fixed(100.0 * fraction, 1)
     return _with_unit(text if text.startswith(("−", MISSING)) else f"+{text}", "%")
+
+
+def plus_minus(fraction: float) -> str:
+    """Return a relative uncertainty such as ``± 5 %``."""
+    return f"±{_BEFORE_UNIT}{_with_unit(trimmed(100.0 * fraction), '%')}"
 
 
 def utilisation(fraction: float) -> str:
@@ -197,9 +207,19 @@ def shorter(text: str) -> str:
     return re.sub(r"\d+\.\d{6,}(?!\d*e)", lambda found: f"{float(found[0]):.6g}", text)
 
 
+def capital(text: str) -> str:
+    """Return a text with a capital first letter."""
+    return text[:1].upper() + text[1:]
+
+
 def sentence(text: str) -> str:
     """Return a note of a table as it begins a sentence."""
-    return printed(f"{text[0].upper()}{text[1:]}")
+    return printed(capital(text))
+
+
+def doubtful(doubt: str | None) -> str:
+    """Return the remark on figures of a size that are in doubt; empty where none are."""
+    return f"Doubtful figures: {printed(doubt)}" if doubt else ""
 
 
 def listing(words: Iterable[str], last: str = "and") -> str:

@@ -12,39 +12,50 @@ if TYPE_CHECKING:
     from pypdf import PdfReader, PdfWriter
     from pypdf.generic import IndirectObject
 
-_LEVELS = {"h1": 1, "h2": 2, "h3": 3}
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class PageHeading:
     """A heading of the page: level from 1, the id that links point to, and its text."""
 
     level: int
     id: str
-    text: str
+    text: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class PageSummary:
-    """What a page says about itself: title, generator, date of creation (ISO 8601), headings."""
+class PageSummary(HTMLParser):
+    """What a page says about itself: its title, its named metadata, its headings with an id."""
 
-    title: str
-    generator: str
-    created: str
-    headings: tuple[PageHeading, ...]
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.title = ""
+        self.meta: dict[str, str] = {}
+        self.headings: list[PageHeading] = []
+        self._open = ""
+        self.feed(html)
+        self.close()
 
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Begin a heading or the title, or note metadata."""
+        values = {name: value or "" for name, value in attrs}
+        if tag == "meta" and "name" in values:
+            self.meta[values["name"]] = values.get("content", "")
+        elif tag == "title" and not self.title:
+            self._open = tag
+        elif tag in ("h1", "h2", "h3") and "id" in values:
+            self._open = tag
+            self.headings.append(PageHeading(int(tag[1]), values["id"]))
 
-def summarise(html: str) -> PageSummary:
-    """Return what a page says about itself; only headings with an id count."""
-    reader = _Reader()
-    reader.feed(html)
-    reader.close()
-    return PageSummary(
-        title=reader.title.strip(),
-        generator=reader.meta.get("generator", ""),
-        created=reader.meta.get("dcterms.created", ""),
-        headings=tuple(PageHeading(k, name, " ".join(t.split())) for k, name, t in reader.headings),
-    )
+    def handle_endtag(self, tag: str) -> None:
+        """End what this tag began."""
+        if tag == self._open:
+            self._open = ""
+
+    def handle_data(self, data: str) -> None:
+        """Add to what is open."""
+        if self._open == "title":
+            self.title += data
+        elif self._open:
+            self.headings[-1].text += data
 
 
 def add_outline(pdf: bytes, html: str) -> bytes:
@@ -55,7 +66,7 @@ def add_outline(pdf: bytes, html: str) -> bytes:
     """
     from pypdf import PdfReader, PdfWriter
 
-    page = summarise(html)
+    page = PageSummary(html)
     reader = PdfReader(io.BytesIO(pdf))
     writer = PdfWriter(clone_from=reader)
     _add_items(writer, reader, page.headings)
@@ -66,7 +77,7 @@ def add_outline(pdf: bytes, html: str) -> bytes:
     return stream.getvalue()
 
 
-def _add_items(writer: PdfWriter, reader: PdfReader, headings: tuple[PageHeading, ...]) -> None:
+def _add_items(writer: PdfWriter, reader: PdfReader, headings: list[PageHeading]) -> None:
     from pypdf.generic import Fit
 
     places = reader.named_destinations
@@ -76,53 +87,21 @@ def _add_items(writer: PdfWriter, reader: PdfReader, headings: tuple[PageHeading
         number = None if place is None else reader.get_destination_page_number(place)
         if place is None or number is None:
             continue
-        above = [parents[level] for level in sorted(parents) if level < heading.level]
-        parents = {k: item for k, item in parents.items() if k < heading.level}
+        parents = {level: item for level, item in parents.items() if level < heading.level}
         parents[heading.level] = writer.add_outline_item(
-            title=heading.text,
+            title=" ".join(heading.text.split()),
             page_number=number,
-            parent=above[-1] if above else None,
+            parent=parents[max(parents)] if parents else None,
             fit=Fit.xyz(top=float(place.top or 0.0)),
         )
 
 
 def _metadata(page: PageSummary) -> dict[str, str]:
-    values = {"/Title": page.title, "/Author": page.generator, "/Creator": page.generator}
-    if page.created:
-        moment = datetime.fromisoformat(page.created)
+    author, created = page.meta.get("generator", ""), page.meta.get("dcterms.created", "")
+    values = {"/Title": page.title.strip(), "/Author": author, "/Creator": author}
+    if created:
+        moment = datetime.fromisoformat(created)
         offset = moment.strftime("%z")
         zone = f"{offset[:3]}'{offset[3:5]}'" if offset else ""
         values["/CreationDate"] = values["/ModDate"] = moment.strftime("D:%Y%m%d%H%M%S") + zone
     return values
-
-
-class _Reader(HTMLParser):
-    """Collects the title, the named metadata and the headings of a page."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.title = ""
-        self.meta: dict[str, str] = {}
-        self.headings: list[tuple[int, str, str]] = []
-        self._open = ""
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        values = {name: value or "" for name, value in attrs}
-        if tag == "meta" and "name" in values:
-            self.meta[values["name"]] = values.get("content", "")
-        elif tag == "title" and not self.title:
-            self._open = tag
-        elif tag in _LEVELS and "id" in values:
-            self._open = tag
-            self.headings.append((_LEVELS[tag], values["id"], ""))
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag == self._open:
-            self._open = ""
-
-    def handle_data(self, data: str) -> None:
-        if self._open == "title":
-            self.title += data
-        elif self._open:
-            level, name, text = self.headings[-1]
-            self.headings[-1] = (level, name, text + data)

@@ -1,15 +1,15 @@
-"""From the context to HTML and PDF, and into the folder: whole or not at all."""
+"""From a report to HTML and PDF, and into the folder: whole or not at all."""
 
 from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
-from designer.report.design.context import build_context
-from designer.report.design.drawings import draw
+from designer.report.blocks import Report
+from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
 from designer.resources import data_folder
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
 """What `designer report` writes; the last two only where the study asks for them."""
-REPORT, DIAGNOSIS = "report", "diagnosis"
-"""The pages that there are templates for."""
 
 
 def environment(user_folder: Path | None = None) -> Environment:
@@ -32,8 +30,8 @@ def environment(user_folder: Path | None = None) -> Environment:
     ----------
     user_folder : Path, optional
         Templates that come before the shipped ones of the same name; there, the shipped ones are
-        also known under ``default/``, so that ``report.html.j2`` can extend
-        ``default/report.html.j2``.
+        also known under ``default/``, so that ``page.html.j2`` can extend
+        ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
     """
     from jinja2 import (
         ChoiceLoader,
@@ -55,16 +53,14 @@ def environment(user_folder: Path | None = None) -> Environment:
 
 
 def render_html(
-    context: object, page: str = REPORT, *, paged: bool = False, user_folder: Path | None = None
+    report: Report[Any], *, paged: bool = False, user_folder: Path | None = None
 ) -> str:
     """Return a report as one self-contained HTML page.
 
     Parameters
     ----------
-    context : ReportContext or DiagnosisContext
-        What to show; the template knows it as ``report``.
-    page : str
-        Which page: `REPORT` or `DIAGNOSIS`.
+    report : Report
+        What to show; the templates know it by this name.
     paged : bool
         For paper: without scenes to turn.
     user_folder : Path, optional
@@ -75,8 +71,8 @@ def render_html(
     jinja2.TemplateError
         If a template of the user is faulty.
     """
-    template = environment(user_folder).get_template(f"{page}.html.j2")
-    return with_fonts(template.render(report=context, paged=paged))
+    template = environment(user_folder).get_template("page.html.j2")
+    return with_fonts(template.render(report=report, paged=paged))
 
 
 def render_pdf(html: str) -> bytes:
@@ -134,17 +130,17 @@ def write_report(analysis: Analysis, folder: Path | str) -> None:
 
 def write_report_pages(analysis: Analysis, folder: Path) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
-    write_pages(build_context(analysis, draw(analysis)), REPORT, folder)
+    write_pages(design_report(analysis), folder)
 
 
-def write_pages(context: object, page: str, folder: Path) -> None:
-    """Write a report as HTML and as PDF, named after the page, into an existing folder.
+def write_pages(report: Report[Any], folder: Path) -> None:
+    """Write a report as HTML and as PDF, named after it, into an existing folder.
 
     Both are made before either is written, and each takes its name only when it is whole.
     """
     files = {
-        f"{page}.html": render_html(context, page).encode(),
-        f"{page}.pdf": render_pdf(render_html(context, page, paged=True)),
+        f"{report.name}.html": render_html(report).encode(),
+        f"{report.name}.pdf": render_pdf(render_html(report, paged=True)),
     }
     for name, content in files.items():
         write_whole(folder / name, content)

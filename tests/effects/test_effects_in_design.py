@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import Analysis, analyse, analyse_pose
+from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import selection_dict
 from designer.effects.effect import Effect, Parameter, Size, Values
@@ -25,7 +26,8 @@ from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.robot import Poses
 from designer.progress import Silent
-from designer.report.design.appendix import assumptions_section
+from designer.report.design import assumptions
+from designer.report.design.source import Source
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, as_built_by
@@ -166,9 +168,10 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
 
 
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
-    words = assumptions_section(iced)
-    assert "do not act alike on all sections" in words.section
-    assert "20\u00a0°C" in words.surroundings
+    (items,) = assumptions.section(Source(iced, Findings())).blocks
+    (words,) = (text for text in items.items if "that the study declares" in text)
+    assert "do not act alike on all sections" in words
+    assert "20\u00a0°C" in words
     result = json.loads(json.dumps(result_dict(iced), allow_nan=False))
     assert result["workspace"]["section_m"] == iced.section_m
 

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from report_parts import pictures
 
 from designer.analysis.analyse import Analysis, Provenance, analyse_pose
+from designer.analysis.findings import Findings
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
@@ -16,9 +18,9 @@ from designer.io.config import read_study
 from designer.model.region import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
-from designer.report.design.drawings import draw
 from designer.report.design.scope import describe_orientations
-from designer.report.design.workspace import describe_region
+from designer.report.design.source import Source
+from designer.report.design.workspace import describe_region, section
 from designer.report.figures.scenes import edges_m
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
@@ -96,11 +98,11 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
     points = PointList(frozen_array([[-5.0, 0, 10], [0, 0, 12], [5, 0, 10]]))
     listed = analysed(replace(facade, workspace=replace(facade.workspace, region=points)), tmp_path)
     for analysis in (flat, listed):
-        pictures = draw(analysis)
-        assert pictures.pose_scene is not None
-        charts = [picture.svg for picture in pictures.workspace if picture.svg]
-        assert any("z [m]" in svg for svg in charts)
-        assert not any("above" in picture.caption for picture in pictures.workspace)
+        source = Source(analysis, Findings(), draws=True)
+        assert source.robot is not None
+        shown = pictures(section(source))
+        assert any("z [m]" in picture.svg for picture in shown)
+        assert not any("above" in picture.caption for picture in shown)
 
 
 def test_words(facade: Study) -> None:

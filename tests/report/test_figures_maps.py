@@ -18,7 +18,7 @@ from designer.io.config import read_study
 from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.report.design import captions
+from designer.report.design.workspace_figures import edge_caption
 from designer.report.figures.canvas import names_of
 from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
@@ -254,19 +254,19 @@ class TestEdge:
         assert profile.straight_distance_m == pytest.approx(0.32, abs=0.01)
         assert profile.limit_distance_m is not None
         assert profile.limit_distance_m < 0.1
-        text = captions.edge(replace(maps_of("served"), edge=profile))
+        text = edge_caption(replace(maps_of("served"), edge=profile))
         assert "within 0.3" in text and "counterweight" in text
 
     def test_only_a_proof_is_called_impossible(self) -> None:
         profile = maps_of("served").edge
         assert profile is not None
         assert profile.is_proved and not profile.holds_again
-        assert "no cable holds, however thick" in captions.edge(maps_of("served"))
+        assert "no cable holds, however thick" in edge_caption(maps_of("served"))
         verdict = profile.field.verdict.copy()
         verdict[-1] = Verdict.NOT_CONVERGED
         unsure = replace(profile, field=replace(profile.field, verdict=verdict))
         assert not unsure.is_proved
-        text = captions.edge(replace(maps_of("served"), edge=unsure))
+        text = edge_caption(replace(maps_of("served"), edge=unsure))
         assert "no cable was found that holds" in text
 
 

@@ -7,16 +7,18 @@ from collections.abc import Callable
 
 import pytest
 from report_cases import DEFAULTS, FAST
+from report_parts import cells
 from test_report_groups import YARD
 from test_report_qualities import PRISM, SELECTION, SIX
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
 from designer.report.design.candidates import front_sentence
-from designer.report.design.context import ReportContext, build_context
+from designer.report.design.first_page import FirstPage, first_page
+from designer.report.design.report import design_report
+from designer.report.design.source import source_of
 from designer.report.figures.charts_selection import pareto_chart
 from designer.report.material_class import class_of
-from designer.report.pictures import Pictures
 from designer.report.render import render_html
 
 pytestmark = pytest.mark.slow
@@ -24,8 +26,8 @@ pytestmark = pytest.mark.slow
 Solve = Callable[[str], Analysis]
 
 
-def context_of(analysis: Analysis) -> ReportContext:
-    return build_context(analysis, Pictures())
+def page_of(analysis: Analysis) -> FirstPage:
+    return first_page(source_of(analysis, draws=False))
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +45,7 @@ def test_a_fibre_rope_is_named_beside_the_best_of_steel(fibre: Analysis) -> None
     assert fibre.selection is not None
     steel = next(o.best for o in fibre.selection.outcomes if class_of(o.grade) == "steel")
     assert steel is not None
-    text = context_of(fibre).first_page.verdict.text
+    text = page_of(fibre).verdict.text
     assert "It is a rope of HMPE fibre." in text
     assert "20.5 mm of gost-6x19s-iwrc-1960" in text
     mass = f"{steel.total_mass_kg:,.0f}".replace(",", "\u202f")
@@ -51,14 +53,14 @@ def test_a_fibre_rope_is_named_beside_the_best_of_steel(fibre: Analysis) -> None
 
 
 def test_a_steel_rope_is_not_called_fibre(analyses: dict[str, Analysis]) -> None:
-    page = context_of(analyses["positive"]).first_page
+    page = page_of(analyses["positive"])
     assert "fibre" not in page.verdict.text
     assert not any("Creep" in statement.title for statement in page.confidence)
 
 
 def test_no_steel_rope_holds(solve: Solve) -> None:
     grades = "[unirope-7x19-galvanised, yale-ultrex-hmpe]"
-    text = context_of(solve(FAST.format(**{**DEFAULTS, "grades": grades}))).first_page.verdict.text
+    text = page_of(solve(FAST.format(**{**DEFAULTS, "grades": grades}))).verdict.text
     assert text.endswith("No rope of steel that the study allows holds.")
 
 
@@ -83,7 +85,7 @@ def test_limits_of_the_grade_are_cautions(
         for o in fibre.selection.outcomes
     )
     selection = dataclasses.replace(fibre.selection, chosen=other, outcomes=outcomes)
-    page = context_of(dataclasses.replace(fibre, selection=selection)).first_page
+    page = page_of(dataclasses.replace(fibre, selection=selection))
     found = {s.title: s for s in page.confidence}
     assert titles == {t for t in found if t.startswith("Creep") or t == "Temperature"}
     assert all(found[title].tone == "doubt" for title in titles)
@@ -96,7 +98,7 @@ def test_limits_of_the_grade_are_cautions(
 @pytest.mark.parametrize("selection", ["", SELECTION])
 def test_a_violated_clearance_is_on_the_first_page(solve: Solve, selection: str) -> None:
     analysis = solve(SIX.format(region=PRISM, clearance="2 m", selection=selection))
-    page = context_of(analysis).first_page
+    page = page_of(analysis)
     assert page.verdict.title == "In part"
     assert page.verdict.text.endswith("But the clearance is not kept.")
     assert [reason.title for reason in page.reasons] == ["The clearance is not kept"]
@@ -106,22 +108,24 @@ def test_a_violated_clearance_is_on_the_first_page(solve: Solve, selection: str)
 
 def test_a_kept_clearance_is_no_objection(solve: Solve) -> None:
     analysis = solve(SIX.format(region=PRISM, clearance="0.01 m", selection=SELECTION))
-    page = context_of(analysis).first_page
+    page = page_of(analysis)
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
 
 
 def test_ropes_of_groups_and_their_doubts_are_on_the_first_page(grouped: Analysis) -> None:
     assert grouped.groups is not None and grouped.groups.chosen is not None
-    page = context_of(grouped).first_page
+    page = page_of(grouped)
     products = grouped.groups.chosen.products
     assert page.groups is not None
     assert "less than the best single product" in page.groups.text
     assert page.card is not None
     assert page.card.heading == "Ropes for groups of cables"
-    assert [fact.value for fact in page.card.facts[:2]] == [product.label for product in products]
+    assert [fact.value for fact in page.card.facts.items[:2]] == [
+        product.label for product in products
+    ]
     assert all(f"{product.label} for " in page.verdict.text for product in products)
-    assert "cables 1 and 2, " in page.card.facts[0].note
+    assert "cables 1 and 2, " in page.card.facts.items[0].note
     doubtful = {product.size.id for product in products if product.size.doubt}
     titles = " ".join(statement.title for statement in page.confidence)
     assert all(f"Doubt about {name}" in titles for name in doubtful)
@@ -135,13 +139,12 @@ def test_the_programme_solver_is_among_the_libraries_where_it_is_used(
 
 
 def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
-    context = context_of(fibre)
-    assert context.inputs.defaults is not None
-    rows = context.inputs.defaults.groups[0].rows
-    named = [cell for row in rows for cell in row.cells[::2] if cell]
+    report = design_report(fibre, draws=False)
+    rows = cells(report.section("provenance"), "Fields that the configuration file leaves out")
+    named = [cell for row in rows for cell in row[::2] if cell]
     expected = [e.field for e in fibre.study.source.entries if e.given == "default"]
     assert sorted(named) == sorted(expected)
-    html = render_html(context)
+    html = render_html(report)
     assert html.index('id="provenance"') < html.index("workspace.sampling")
 
 

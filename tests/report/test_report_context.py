@@ -3,22 +3,39 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
-import pkgutil
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable
 
 import pytest
-from markupsafe import escape
+from markupsafe import Markup, escape
 from report_cases import CASES, DEFAULTS, FAST
+from report_parts import cells, facts, said, table, tables, texts
 
 from designer.analysis.analyse import Analysis
-from designer.report import design
 from designer.report import format as fmt
+from designer.report.blocks import (
+    MOST_ROWS,
+    Block,
+    Box,
+    Bullets,
+    Column,
+    Fact,
+    Facts,
+    Group,
+    Listing,
+    Picture,
+    Report,
+    Row,
+    Section,
+    Statement,
+    Subheading,
+    Table,
+)
+from designer.report.design import pose
 from designer.report.design.candidates import best_table, thin_table
-from designer.report.design.context import ReportContext, build_context
-from designer.report.design.pose import turns_table
-from designer.report.parts import MOST_ROWS, Picture, Table
-from designer.report.pictures import Pictures
+from designer.report.design.first_page import FirstPage
+from designer.report.design.report import design_report
+from designer.report.design.source import Source, source_of
 from designer.report.render import render_html
 from designer.sizing.loop import Iterate, LoopSizing
 
@@ -28,125 +45,107 @@ PICTURE = Picture("What it shows.", "For who cannot see it.", svg="<svg><path d=
 SCENE = Picture(
     "A scene.", "Also a scene.", bitmap="data:image/png;base64,AA==", scene="<p>3-D</p>"
 )
-PICTURES = Pictures(
-    robot=SCENE,
-    loop_chart=PICTURE,
-    pose_scene=SCENE,
-    workspace=(PICTURE, SCENE),
-    candidates=PICTURE,
-    pareto=PICTURE,
-    usable_chart=PICTURE,
-    usable_scene=SCENE,
+BLOCKS: tuple[Block, ...] = (
+    "A paragraph with <i>.",
+    Markup("One with a <a href='#top'>link</a>."),
+    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#top"))),
+    Statement("Title", "Text of it.", "bad"),
+    Bullets(("one thing", "another thing")),
+    Listing("effects:\n  creep: 1\n"),
+    Subheading("below", "A heading below"),
+    Table.of(
+        "Caption.", ("Words", Column("Number", "mm")), ("a cell", "1"), Row(("b", "2"), "bad")
+    ),
+    Table.grouped("Groups.", ("Words",), (Group((Row(("c",), "", "a note"),), "Ours", "remark"),)),
+    PICTURE,
+    Box.of("keep", SCENE, None, "", "In a box."),
 )
 
 
-def texts(part: object) -> Iterator[str]:
-    """Every text in the context, however deep."""
-    if isinstance(part, str):
-        yield part
-    elif isinstance(part, tuple):
-        for item in part:
-            yield from texts(item)
-    elif dataclasses.is_dataclass(part):
-        for field in dataclasses.fields(part):
-            if not (isinstance(part, Picture) and field.name in ("svg", "bitmap", "alternative")):
-                yield from texts(getattr(part, field.name))
-
-
-def tables(part: object) -> Iterator[Table]:
-    """Every table in the context."""
-    if isinstance(part, Table):
-        yield part
-    elif isinstance(part, tuple):
-        for item in part:
-            yield from tables(item)
-    elif dataclasses.is_dataclass(part):
-        for field in dataclasses.fields(part):
-            yield from tables(getattr(part, field.name))
+def with_pictures(report: Report[FirstPage]) -> Report[FirstPage]:
+    """The report with a figure on its first page and one more section that has every block."""
+    page = dataclasses.replace(report.first_page, picture=SCENE)
+    extra = Section.of("every", "Every kind of block", *BLOCKS)
+    return dataclasses.replace(report, first_page=page, sections=(*report.sections, extra))
 
 
 @pytest.fixture(scope="module")
-def contexts(
+def reports(
     analyses: dict[str, Analysis], pose_only: Analysis, yard: Analysis
-) -> dict[str, ReportContext]:
+) -> dict[str, Report[FirstPage]]:
     all_of_them = {**analyses, "pose_only": pose_only, "yard": yard}
-    return {name: build_context(a, PICTURES) for name, a in all_of_them.items()}
+    return {name: design_report(a, draws=False) for name, a in all_of_them.items()}
+
+
+@pytest.mark.parametrize("paged", [False, True])
+@pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
+def test_everything_in_the_report_is_shown(
+    reports: dict[str, Report[FirstPage]], case: str, paged: bool
+) -> None:
+    report = with_pictures(reports[case])
+    html = render_html(report, paged=paged)
+    missing = {text for text in texts(report) if str(escape(text)) not in html}
+    assert missing == ({SCENE.scene} if paged else set())  # nothing turns on paper
+
+
+def test_every_kind_of_block_has_its_macro(reports: dict[str, Report[FirstPage]]) -> None:
+    assert {type(block) for block in BLOCKS} >= set(Block.__args__)
+    html = render_html(with_pictures(reports["pose_only"]))
+    section = html[html.index('<h2 id="every">') :]
+    assert "<p>A paragraph with &lt;i&gt;.</p>" in section
+    assert "<a href='#top'>link</a>" in section
+    assert '<a href="#top">https://x.y</a>' in section
+    assert '<p class="statement bad"><strong>Title.</strong> Text of it.</p>' in section
+    assert re.search(r'<div class="keep">\s*<figure class="picture ">', section)
+    assert '<h3 id="below">' in section
 
 
 @pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
-def test_everything_in_the_context_is_shown(contexts: dict[str, ReportContext], case: str) -> None:
-    html = render_html(contexts[case])
-    missing = [text for text in texts(contexts[case]) if str(escape(text)) not in html]
-    assert missing == []
-
-
-@pytest.mark.parametrize("case", [*CASES, "pose_only", "yard"])
-def test_every_row_fills_its_table(contexts: dict[str, ReportContext], case: str) -> None:
-    found = list(tables(contexts[case]))
+def test_every_row_fills_its_table(reports: dict[str, Report[FirstPage]], case: str) -> None:
+    found = tables(reports[case])
     assert len(found) >= 4
-    for table in found:
-        widths = {len(row.cells) for group in table.groups for row in group.rows}
-        assert widths <= {len(table.columns)}
+    for one in found:
+        widths = {len(row.cells) for group in one.groups for row in group.rows}
+        assert widths <= {len(one.columns)}
 
 
-def test_no_raw_number_reaches_the_page(contexts: dict[str, ReportContext]) -> None:
-    words = {word.strip("(),.") for text in texts(contexts["positive"]) for word in text.split()}
+def test_no_raw_number_reaches_the_page(reports: dict[str, Report[FirstPage]]) -> None:
+    words = {word.strip("(),.") for text in texts(reports["positive"]) for word in text.split()}
     assert words.isdisjoint({"nan", "inf", "None", "array", "np.float64"})
 
 
-def documented_classes() -> list[type]:
-    """ReportContext and the dataclasses that its fields hold."""
-    found: list[type] = []
-
-    def add(kind: object) -> None:
-        if isinstance(kind, type) and dataclasses.is_dataclass(kind) and kind not in found:
-            found.append(kind)
-
-    add(ReportContext)
-    for info in pkgutil.iter_modules(design.__path__):
-        module = importlib.import_module(f"{design.__name__}.{info.name}")
-        for value in vars(module).values():
-            add(value)
-    return [
-        kind for kind in found if kind.__name__.endswith(("Section", "Page", "Context", "Card"))
-    ]
-
-
-@pytest.mark.parametrize("kind", documented_classes())
+@pytest.mark.parametrize("kind", [Report, FirstPage, Source, Picture])
 def test_every_field_is_documented(kind: type) -> None:
     names = {field.name for field in dataclasses.fields(kind)}
     assert {name for name in names if name not in (kind.__doc__ or "")} == set()
 
 
-def test_first_page_names_the_rope_and_its_margin(contexts: dict[str, ReportContext]) -> None:
-    page = contexts["positive"].first_page
+def test_first_page_names_the_rope_and_its_margin(reports: dict[str, Report[FirstPage]]) -> None:
+    page = reports["positive"].first_page
     assert page.verdict.tone == "good"
     assert page.card is not None
-    facts = {fact.label: fact.value for fact in page.card.facts}
+    found = {label: fact.value for label, fact in facts(page.card).items()}
     assert page.card.size == "20.5 mm"
-    assert facts["Grade"] == "gost-6x19s-iwrc-1960"
-    assert facts["Safety factor there"] == "2.00"
-    assert facts["Utilisation"] == "99.8\u00a0%"
+    assert found["Grade"] == "gost-6x19s-iwrc-1960"
+    assert found["Safety factor there"] == "2.00"
+    assert found["Utilisation"] == "99.8\u00a0%"
     assert page.reasons == ()
     assert page.actions == ()
 
 
-def test_sag_table_shows_the_papers_workspace_figures(contexts: dict[str, ReportContext]) -> None:
-    sag = contexts["positive"].first_page.sag
-    assert sag is not None
-    rows = [row.cells for row in sag.table.groups[0].rows]
+def test_sag_table_shows_the_papers_workspace_figures(
+    reports: dict[str, Report[FirstPage]],
+) -> None:
+    sag = reports["positive"].first_page.sag
+    rows = cells(sag, "Configured cable family")
     assert rows[0] == ("Diameter", "29.3\u00a0mm", "51.2\u00a0mm", "1.75")
     assert rows[1] == ("Tension", "121.4\u00a0kN", "371.0\u00a0kN", "3.06")
-    assert "19 mm" in sag.consequence
-    assert "1.80" in sag.consequence
+    assert "19 mm" in sag[1]
+    assert "1.80" in sag[1]
 
 
-def test_pose_section_shows_the_papers_loop(contexts: dict[str, ReportContext]) -> None:
-    pose = contexts["positive"].pose
-    assert pose is not None
-    assert pose.turns is not None
-    first = [row.cells for row in pose.turns.groups[0].rows[:3]]
-    assert first == [
+def test_pose_section_shows_the_papers_loop(reports: dict[str, Report[FirstPage]]) -> None:
+    assert cells(reports["positive"].section("pose"), "Turns of the loop")[:3] == [
         ("0", "86.39", "24.72"),
         ("1", "123.08", "29.51"),
         ("2", "138.69", "31.32"),
@@ -155,61 +154,52 @@ def test_pose_section_shows_the_papers_loop(contexts: dict[str, ReportContext]) 
 
 def test_a_loop_that_diverges_is_said_to(solve: Callable[[str], Analysis]) -> None:
     text = FAST.format(**{**DEFAULTS, "pose": "[250, 200, -1]"})
-    section = build_context(solve(text[: text.index("workspace:")]), Pictures()).pose
-    assert section is not None and section.turns is not None and section.methods is not None
-    assert "It diverges" in section.turns.caption
-    cells = [cell for row in section.turns.groups[0].rows for cell in row.cells]
-    assert max(map(len, cells)) <= 15
-    row = section.methods.groups[0].rows[-1].cells
+    section = pose.section(source_of(solve(text[: text.index("workspace:")]), draws=False))
+    assert "It diverges" in table(section, "Turns of the loop").caption
+    turns = cells(section, "Turns of the loop")
+    assert max(len(cell) for row in turns for cell in row) <= 15
+    row = cells(section, "The diameter of this pose by each way")[-1]
     assert row[1:3] == (fmt.MISSING, fmt.MISSING)
     assert row[3].startswith("diverges, given up after")
 
 
 def test_a_loop_that_does_not_settle_is_cut_short() -> None:
     turns_of_400 = tuple(Iterate(1e3 * k, 0.01) for k in range(401))
-    table = turns_table(LoopSizing(turns_of_400, has_converged=False))
-    turns = [row.cells[0] for row in table.groups[0].rows]
+    shown = pose.turns_table(LoopSizing(turns_of_400, has_converged=False))
+    turns = [row[0] for row in cells(shown, "Turns")]
     assert turns[:2] == ["0", "1"]
     assert turns[-4:] == ["…", "398", "399", "400"]
     assert len(turns) == 9
 
 
-def test_candidates_begin_with_the_chosen_one(contexts: dict[str, ReportContext]) -> None:
-    selection = contexts["positive"].selection
-    assert selection is not None
-    assert selection.pareto is not None
-    assert selection.pareto.groups[0].title == "gost-6x19s-iwrc-1960"
-    assert "best in mass of all cables" in selection.pareto.groups[0].remark
-    assert selection.pareto.groups[0].tone == "good"
-    assert selection.best is not None
-    assert selection.best.groups[0].rows[0].cells[:3] == (
-        "gost-6x19s-iwrc-1960",
-        "steel",
-        "20.5\u00a0mm",
-    )
-    assert selection.thin is not None
-    assert selection.thin.groups[0].rows[0].cells[:2] == ("unirope-7x19-galvanised", "3/8 in")
+def test_candidates_begin_with_the_chosen_one(reports: dict[str, Report[FirstPage]]) -> None:
+    section = reports["positive"].section("selection")
+    first = table(section, "Sizes that hold everywhere").groups[0]
+    assert first.title == "gost-6x19s-iwrc-1960"
+    assert "best in mass of all cables" in first.remark
+    assert first.tone == "good"
+    best = ("gost-6x19s-iwrc-1960", "steel", "20.5\u00a0mm")
+    assert cells(section, "The best size of each grade")[0][:3] == best
+    thin = ("unirope-7x19-galvanised", "3/8 in")
+    assert cells(section, "Grades of which no size holds")[0][:2] == thin
 
 
-def test_every_size_is_accounted_for(analyses, contexts: dict[str, ReportContext]) -> None:
+def test_every_size_is_accounted_for(analyses, reports: dict[str, Report[FirstPage]]) -> None:
     """Those that no other beats, and those that fell out, are all there are."""
     for case in ("positive", "too_thin", "no_finite_cable"):
-        found, section = analyses[case].selection, contexts[case].selection
+        found, section = analyses[case].selection, reports[case].section("selection")
         assert found is not None
-        assert section is not None
-        fallen = sum(int(row.cells[1]) for row in section.fallen.groups[0].rows)
+        fallen = sum(int(row[1]) for row in cells(section, "Why the other sizes fell out"))
         assert fallen + len(found.front) == len(found.candidates)
 
 
-def test_what_each_size_serves(contexts: dict[str, ReportContext]) -> None:
-    selection = contexts["positive"].selection
-    assert selection is not None
-    assert selection.usable is not None
-    shares = [row.cells[2] for row in selection.usable.table.groups[0].rows]
+def test_what_each_size_serves(reports: dict[str, Report[FirstPage]]) -> None:
+    section, start = reports["positive"].section("selection"), "How much of the workspace"
+    shares = [row[2] for row in cells(section, start)]
     assert shares[0] == "0\u00a0%"
     assert shares[-1] == "100\u00a0%"
     assert shares.count("100\u00a0%") == 1
-    assert "All thicker ones serve all of it" in selection.usable.table.caption
+    assert "All thicker ones serve all of it" in table(section, start).caption
 
 
 def test_losses_of_strength_are_said(solve) -> None:
@@ -217,15 +207,13 @@ def test_losses_of_strength_are_said(solve) -> None:
         "safety_factor: 2", "safety_factor: 2, termination_efficiency: 0.9, sheave_diameter: 1 m"
     )
     analysis = solve(config)
-    context = build_context(analysis, Pictures())
-    assert "the smaller share counts" in context.assumptions.losses
-    assert context.first_page.card is not None
-    facts = {fact.label: fact for fact in context.first_page.card.facts}
-    assert facts["Allowable tension"].note == "breaking load times 0.9 over 2"
-    assert context.selection is not None
-    assert context.selection.pareto is not None
-    columns = [column.title for column in context.selection.pareto.columns]
-    row = dict(zip(columns, context.selection.pareto.groups[0].rows[0].cells, strict=True))
+    report = design_report(analysis, draws=False)
+    assert "the smaller share counts" in said(report.section("assumptions"))
+    card = report.first_page.card
+    assert facts(card)["Allowable tension"].note == "breaking load times 0.9 over 2"
+    pareto = table(report.section("selection"), "Sizes that hold everywhere")
+    columns = [column.title for column in pareto.columns]
+    row = dict(zip(columns, pareto.groups[0].rows[0].cells, strict=True))
     load, allowable = (
         float(row[name].replace("\u202f", "")) for name in ("Breaking load", "Allowable")
     )
@@ -246,16 +234,15 @@ def test_doubtful_figures_carry_their_doubt(analyses: dict[str, Analysis]) -> No
         chosen=changed,
         outcomes=(dataclasses.replace(outcome, candidates=tuple(candidates), best=changed),),
     )
-    context = build_context(dataclasses.replace(analysis, selection=selection), Pictures())
-    assert context.selection is not None
-    assert context.selection.pareto is not None
-    rows = context.selection.pareto.groups[0].rows
-    assert [row.note for row in rows] == ["Doubtful figures: looks misprinted"]
+    report = design_report(dataclasses.replace(analysis, selection=selection), draws=False)
+    (row,) = table(report.section("selection"), "Sizes that hold everywhere").groups[0].rows
+    assert row.note == "Doubtful figures: looks misprinted"
 
 
-def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> None:
-    assert [h.number for h in contexts["pose_only"].headings] == [1, 2, 3, 4, 5, 6]
-    assert [h.id for h in contexts["positive"].headings] == [
+def test_numbers_of_sections_count_up(reports: dict[str, Report[FirstPage]]) -> None:
+    numbers = re.findall(r'<h2 .*?<span class="number">(\d+)', render_html(reports["pose_only"]))
+    assert numbers == ["1", "2", "3", "4", "5", "6"]
+    assert [section.id for section in reports["positive"].sections] == [
         "answer",
         "inputs",
         "pose",
@@ -269,10 +256,10 @@ def test_numbers_of_sections_count_up(contexts: dict[str, ReportContext]) -> Non
     ]
 
 
-def test_first_page_says_how_much_is_left_out(contexts: dict[str, ReportContext]) -> None:
-    assert "of the volume is left out, as configured" in contexts["exclude"].first_page.verdict.text
-    assert "left out" not in contexts["positive"].first_page.verdict.text
-    titles = {case: [s.title for s in contexts[case].first_page.confidence] for case in contexts}
+def test_first_page_says_how_much_is_left_out(reports: dict[str, Report[FirstPage]]) -> None:
+    assert "of the volume is left out, as configured" in reports["exclude"].first_page.verdict.text
+    assert "left out" not in reports["positive"].first_page.verdict.text
+    titles = {case: [s.title for s in reports[case].first_page.confidence] for case in reports}
     assert "Poses left out" in titles["exclude"]
     assert "Cables below the platform" in titles["positive"]
     assert {"Poses left out", "Cables below the platform"}.isdisjoint(titles["yard"])
@@ -285,9 +272,9 @@ def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     assert selection is not None
     outcome = next(o for o in selection.outcomes if o.best is not None)
     many = dataclasses.replace(selection, outcomes=(outcome,) * (MOST_ROWS + 3))
-    table = best_table(many)
-    assert len(table.groups[0].rows) == MOST_ROWS
-    assert "3\u00a0more grades are in candidates.csv." in table.caption
+    best = best_table(many)
+    assert len(best.groups[0].rows) == MOST_ROWS
+    assert "3\u00a0more grades are in candidates.csv." in best.caption
     thin = thin_table([dataclasses.replace(outcome, outcome="too_thin", best=None)] * 9)
     assert thin is not None
     assert len(thin.groups[0].rows) == MOST_ROWS

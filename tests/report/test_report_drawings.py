@@ -8,70 +8,60 @@ import re
 
 import pypdf
 import pytest
+from report_parts import pictures
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings, find
+from designer.report.blocks import Report
+from designer.report.design import selection as choice
 from designer.report.design.candidates import thin_table
-from designer.report.design.context import build_context
-from designer.report.design.drawings import draw
-from designer.report.pictures import Pictures
+from designer.report.design.first_page import FirstPage
+from designer.report.design.report import design_report, report_from
+from designer.report.design.source import Source
 from designer.report.render import render_html, render_pdf
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def pictures(analyses: dict[str, Analysis]) -> Pictures:
-    return draw(analyses["positive"])
+def report(analyses: dict[str, Analysis]) -> Report[FirstPage]:
+    return design_report(analyses["positive"])
 
 
-def test_every_place_is_filled(pictures: Pictures) -> None:
-    singles = (
-        pictures.robot,
-        pictures.loop_chart,
-        pictures.pose_scene,
-        pictures.verdicts,
-        pictures.candidates,
-    )
-    for picture in (*singles, *pictures.workspace):
+def test_every_place_is_filled(report: Report[FirstPage]) -> None:
+    numbers = {"pose": 2, "workspace": 6, "selection": 4, "stiffness": 1}
+    for section in report.sections:
+        assert len(pictures(section)) == numbers.get(section.id, 0), section.id
+    for picture in (report.first_page.picture, *pictures(report.sections)):
         assert picture is not None
         assert picture.caption.endswith(".")
         assert picture.svg.startswith("<svg") or picture.bitmap.startswith("data:image/png;base64,")
 
 
-def test_the_scene_to_turn_is_in_the_page_once(
-    analyses: dict[str, Analysis], pictures: Pictures
-) -> None:
-    html = render_html(build_context(analyses["positive"], pictures))
+def test_the_scene_to_turn_is_in_the_page_once(report: Report[FirstPage]) -> None:
+    html = render_html(report)
     assert html.count("<iframe") == 1
     assert html.count('sandbox="allow-scripts"') == 1
 
 
 def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
-    pictures = draw(pose_only)
-    assert pictures.workspace == ()
-    assert pictures.verdicts is None
-    assert pictures.candidates is None
-    assert pictures.robot == pictures.pose_scene
+    drawn = design_report(pose_only)
+    assert [section.id for section in drawn.sections if pictures(section)] == ["pose"]
+    assert drawn.first_page.picture is not None
+    bitmaps = {picture.bitmap for picture in pictures(drawn.section("pose")) if picture.bitmap}
+    assert bitmaps == {drawn.first_page.picture.bitmap}
 
 
-def test_charts_stay_vector_graphics_in_the_pdf(
-    analyses: dict[str, Analysis], pictures: Pictures
-) -> None:
-    charts = Pictures(
-        loop_chart=pictures.loop_chart,
-        verdicts=pictures.verdicts,
-        workspace=tuple(p for p in pictures.workspace if p.svg),
-        candidates=pictures.candidates,
-    )
-    assert len(charts.workspace) == 4
-    html = render_html(build_context(analyses["positive"], charts), paged=True)
-    reader = pypdf.PdfReader(io.BytesIO(render_pdf(html)))
+def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
+    analysis = analyses["positive"]
+    charts = report_from(Source(analysis, find(analysis), draws=True, missing="no scenes"))
+    assert len(pictures(charts.section("workspace"))) == 5
+    reader = pypdf.PdfReader(io.BytesIO(render_pdf(render_html(charts, paged=True))))
     assert [len(page.images) for page in reader.pages] == [0] * len(reader.pages)
 
 
-def test_ids_in_the_page_are_unique(analyses: dict[str, Analysis], pictures: Pictures) -> None:
-    html = render_html(build_context(analyses["positive"], pictures), paged=True)
-    ids = re.findall(r'\bid="([^"]+)"', html)
+def test_ids_in_the_page_are_unique(report: Report[FirstPage]) -> None:
+    ids = re.findall(r'\bid="([^"]+)"', render_html(report, paged=True))
     assert len(ids) == len(set(ids))
 
 
@@ -80,5 +70,6 @@ def test_grades_that_all_cannot_hold_have_no_chart(analyses: dict[str, Analysis]
     assert selection is not None
     needs = [o.continuous_diameter_m for o in selection.outcomes]
     assert all(math.isnan(need) for need in needs)
-    assert draw(analyses["no_finite_cable"]).candidates is None
+    source = Source(analyses["no_finite_cable"], Findings(), draws=True, missing="no scenes")
+    assert not any("A row for each" in p.alternative for p in pictures(choice.section(source)))
     assert thin_table(selection.outcomes) is not None

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import distance_to_sides_m, find
+from designer.analysis.findings import Findings, distance_to_sides_m, find
 from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.selection.verify import verify
@@ -121,15 +122,16 @@ def test_hanging_share_is_that_of_the_chosen_rope(
 
 
 def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
-    from designer.report.design.appendix import assumptions_section
+    from designer.report.design.assumptions import section
+    from designer.report.design.source import Source
     from designer.resources import example_file
 
     text = example_file("yard").read_text(encoding="utf-8")
     built = solve(text + "\neffects: {pulley_radius: {radius_m: 0.3}, linear_mass: {scale: 2}}\n")
-    assumptions = assumptions_section(built)
-    assert "300\u00a0mm radius" in assumptions.exits
-    assert assumptions.effects == "pulley_radius, linear_mass"
-    assert "without pulleys" in assumptions_section(yard).exits
+    assumptions = said(section(Source(built, Findings())))
+    assert "300 mm radius" in assumptions
+    assert "the study declares: pulley_radius, linear_mass. They act" in assumptions
+    assert "without pulleys" in said(section(Source(yard, Findings())))
     assert built.selection is not None
     outcome = built.selection.outcomes[0]
     assert outcome.family.density_kg_per_m3 == pytest.approx(

@@ -16,9 +16,10 @@ import pytest
 from fontTools.ttLib import TTFont
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import ReportContext, build_context
+from designer.report.blocks import Report
+from designer.report.design.first_page import FirstPage
+from designer.report.design.report import design_report
 from designer.report.fonts import FACES, with_fonts
-from designer.report.pictures import Pictures
 from designer.report.render import render_html
 
 PRINT = """
@@ -31,8 +32,8 @@ NO_FONTS = '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontco
 
 
 @pytest.fixture(scope="module")
-def context(pose_only: Analysis) -> ReportContext:
-    return build_context(pose_only, Pictures())
+def report(pose_only: Analysis) -> Report[FirstPage]:
+    return design_report(pose_only, draws=False)
 
 
 def fonts_in(page: str) -> list[TTFont]:
@@ -43,10 +44,10 @@ def fonts_in(page: str) -> list[TTFont]:
 @pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="fontconfig's settings")
 def test_without_any_font_installed_the_pdf_is_the_same(
-    context: ReportContext, tmp_path: Path
+    report: Report[FirstPage], tmp_path: Path
 ) -> None:
     page, none = tmp_path / "page.html", tmp_path / "fonts.conf"
-    page.write_text(render_html(context, paged=True), encoding="utf-8")
+    page.write_text(render_html(report, paged=True), encoding="utf-8")
     none.write_text(NO_FONTS, encoding="utf-8")
     made = []
     for name, fonts in (("with", {}), ("without", {"FONTCONFIG_FILE": str(none)})):
@@ -69,8 +70,8 @@ def test_a_page_carries_the_letters_that_it_shows_and_few_others() -> None:
     assert fonts_in(with_fonts("<head></head><p>plain</p>")) == []
 
 
-def test_every_letter_of_a_report_is_in_its_fonts(context: ReportContext) -> None:
-    page = render_html(context)
+def test_every_letter_of_a_report_is_in_its_fonts(report: Report[FirstPage]) -> None:
+    page = render_html(report)
     for font in fonts_in(page):
         text = re.sub(r"<(style|svg|script).*?</\1>|<[^>]*>", "", page, flags=re.DOTALL)
         shown = {

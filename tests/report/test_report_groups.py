@@ -6,16 +6,17 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from report_parts import cells, facts, statements, table, tables
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import groups_dict
-from designer.cli import tables
+from designer.cli.tables import summary_rows
+from designer.report.design import groups as groups_of_cables
 from designer.report.design.first_page import first_page
-from designer.report.design.groups import groups_section
+from designer.report.design.source import Source
 from designer.report.figures.groups_plan import groups_plan
-from designer.report.pictures import Pictures
 
 pytestmark = pytest.mark.slow
 
@@ -63,19 +64,17 @@ def test_result_has_the_groups_beside_the_single_choice(found: Analysis) -> None
 
 
 def test_section_says_the_same(found: Analysis) -> None:
-    section = groups_section(found, None)
-    assert section is not None
-    assert section.verdict.tone == "good"
-    assert section.chosen is not None
-    rows = section.chosen.groups[0].rows
-    assert [row.cells[1] for row in rows] == ["1, 2", "3"]
+    section = groups_of_cables.section(Source(found, Findings()))
+    assert statements(section)["Products were found for the groups"].tone == "good"
+    rows = cells(section, "What each group gets")
+    assert [row[1] for row in rows] == ["1, 2", "3"]
     assert found.groups is not None
     assert found.groups.chosen is not None
     for row, product in zip(rows, found.groups.chosen.products, strict=True):
-        assert row.cells[2] == product.label
-    assert section.proposals is not None
-    assert len(section.proposals.columns) == len(section.proposals.groups[0].rows[0].cells)
-    assert "proof" in {fact.label.lower() for fact in section.facts}
+        assert row[2] == product.label
+    proposals = table(section, "Assignments that were tried")
+    assert len(proposals.columns) == len(proposals.groups[0].rows[0].cells)
+    assert "Proof" in facts(section)
 
 
 def test_plan_names_each_group(found: Analysis) -> None:
@@ -93,15 +92,14 @@ def test_nothing_found_is_said(none: Analysis) -> None:
     assert part["groups"] == []
     assert part["group_choice"]["proof"] == "infeasible"
     assert part["group_choice"]["total_mass_kg"] is None
-    section = groups_section(none, None)
-    assert section is not None
-    assert section.verdict.tone == "bad"
-    assert section.chosen is None
+    section = groups_of_cables.section(Source(none, Findings()))
+    assert statements(section)["No products were found for the groups"].tone == "bad"
+    assert not any(one.caption.startswith("What each group") for one in tables(section))
 
 
 def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    assert groups_section(analysis, Pictures().groups) is None
+    assert groups_of_cables.section(Source(analysis, Findings())) is None
     assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
     assert result_dict(analysis)["selection"]["group_choice"] is None
 
@@ -117,11 +115,11 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     groups = replace(found.groups, single=None)
     without = replace(found, selection=alone, groups=groups)
     assert without.is_positive
-    page = first_page(without, Findings(), None)
+    page = first_page(Source(without, Findings()))
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
     assert page.card is not None and page.card.heading == "Ropes for groups of cables"
-    rows = [*tables.summary_rows(without)]
+    rows = [*summary_rows(without)]
     labels = [label for label, _ in rows]
     assert labels.index("cables") < labels.index("one for all")
 
@@ -129,6 +127,6 @@ def test_groups_are_the_answer(found: Analysis) -> None:
 def test_where_no_groups_are_found_the_answer_is_no(none: Analysis) -> None:
     assert not none.is_positive
     assert result_dict(none)["answer"] is None
-    page = first_page(none, Findings(), None)
+    page = first_page(Source(none, Findings()))
     assert page.verdict.title == "No"
     assert "No products were found for the groups" in [reason.title for reason in page.reasons]

@@ -6,11 +6,15 @@ import dataclasses
 import json
 
 import pytest
+from report_parts import said
 
 from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
-from designer.report.design.appendix import left_out_section
-from designer.resources import data_folder
+from designer.report.blocks import Bullets, Report, Section
+from designer.report.design import left_out
+from designer.report.design.source import Source
+from designer.report.render import render_html
 
 pytestmark = pytest.mark.slow
 
@@ -26,9 +30,9 @@ def test_both_kinds_of_problem_are_told_once(analyses: dict[str, Analysis]) -> N
         study=dataclasses.replace(analysis.study, known_effects=known),
         catalogue=dataclasses.replace(analysis.catalogue, problems=(EVIL,)),
     )
-    section = left_out_section(spoilt)
+    section = left_out.section(Source(spoilt, Findings()))
     assert section is not None
-    assert section.problems == (EVIL, LOST)
+    assert section.blocks[-2:] == ("These could not be loaded:", Bullets((EVIL, LOST)))
     assert result_dict(spoilt)["provenance"]["problems"] == [EVIL, LOST]
     assert json.dumps(result_dict(spoilt))
 
@@ -37,13 +41,12 @@ def test_few_grades_are_named_and_many_are_counted(analyses: dict[str, Analysis]
     analysis = analyses["positive"]
     names = [g.id for g in analysis.catalogue.grades if not g.why_only_by_name]
     few, many = (
-        left_out_section(_allowing(analysis, tuple(some))) for some in (names[3:], names[:3])
+        said(left_out.section(Source(_allowing(analysis, tuple(some)), Findings())))
+        for some in (names[3:], names[:3])
     )
-    assert few is not None
-    assert many is not None
-    assert all(name in few.not_allowed for name in names[:3])
-    assert f"{len(names) - 3}\u00a0more grades" in many.not_allowed
-    assert not any(name in many.not_allowed for name in names)
+    assert all(name in few for name in names[:3])
+    assert f"{len(names) - 3} more grades" in many
+    assert not any(name in many for name in names)
 
 
 def _allowing(analysis: Analysis, grades: tuple[str, ...]) -> Analysis:
@@ -55,12 +58,8 @@ def _allowing(analysis: Analysis, grades: tuple[str, ...]) -> Analysis:
 
 
 def test_markup_of_a_plugin_stays_text() -> None:
-    import jinja2
-
-    # the partial alone: what it shows is the section, whatever else the report has
-    loader = jinja2.FileSystemLoader(data_folder("reports"))
-    environment = jinja2.Environment(loader=loader, autoescape=True)
-    template = environment.get_template("partials/left_out.html.j2")
-    html = template.render(report={"left_out": {"not_allowed": "", "problems": (EVIL, LOST)}})
+    section = Section.of("left-out", "Grades left out", Bullets((EVIL, LOST)))
+    answer = Section("x", "Another section")
+    html = render_html(Report("report", "A", "Report", "us 1.0", "", "", None, (answer, section)))
     assert "<script" not in html
     assert "&lt;script&gt;alert(1)" in html

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import pytest
+from report_parts import table
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import build_context
-from designer.report.design.first_page import FirstPage
-from designer.report.pictures import Pictures
+from designer.model.verdict import Verdict
+from designer.report.design.first_page import FirstPage, first_page
+from designer.report.design.selection import section
+from designer.report.design.source import source_of
 
 pytestmark = pytest.mark.slow
 
 
 def page_of(analysis: Analysis) -> FirstPage:
-    return build_context(analysis, Pictures()).first_page
+    return first_page(source_of(analysis, draws=False))
 
 
 def said(page: FirstPage) -> str:
@@ -30,7 +32,7 @@ def test_no_finite_cable(analyses: dict[str, Analysis]) -> None:
     text = said(page)
     assert analysis.workspace is not None
     share = 100 * analysis.workspace.census.fraction("no_finite_cable")
-    assert f"In {share:#.3g} % of its volume no cable of the configured family" in text
+    assert f"In {share:#.3g} % of its volume {Verdict.NO_FINITE_CABLE.clause}" in text
     assert "One such position is (" in text
     assert "larger inset" in text
     assert "hangs_below: exclude" in text
@@ -80,9 +82,8 @@ def test_grade_ends_too_thin(analyses: dict[str, Analysis]) -> None:
     fitting = [outcome.best for outcome in analysis.selection.alternatives]
     lightest = min((c for c in fitting if c is not None), key=lambda c: c.total_mass_kg)
     assert f"the lightest first: {lightest.grade.id} ({lightest.size.id})" in text
-    context = build_context(analysis, Pictures())
-    assert context.selection is not None
-    assert context.selection.alternatives is not None
+    shown = section(source_of(analysis, draws=False))
+    assert table(shown, "Grades that the study does not allow").groups[0].rows
 
 
 @pytest.mark.parametrize("case", ["positive", "exclude"])

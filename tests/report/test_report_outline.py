@@ -7,7 +7,7 @@ import io
 import pypdf
 
 from designer.report.fonts import with_fonts
-from designer.report.outline import PageHeading, add_outline, summarise
+from designer.report.outline import PageHeading, PageSummary, add_outline
 from designer.report.render import render_pdf
 
 PAGE = """<!doctype html><html><head><title>Tom &amp; Co</title>
@@ -24,16 +24,15 @@ PAGE = """<!doctype html><html><head><title>Tom &amp; Co</title>
 
 
 def test_summary() -> None:
-    page = summarise(PAGE)
+    page = PageSummary(PAGE)
     assert page.title == "Tom & Co"
-    assert page.generator == "us 1.0"
-    assert page.created == "2026-02-03T04:05:06+01:30"
-    assert page.headings == (
+    assert page.meta == {"generator": "us 1.0", "dcterms.created": "2026-02-03T04:05:06+01:30"}
+    assert page.headings == [
         PageHeading(1, "top", "Top"),
         PageHeading(3, "deep", "Deep one"),
         PageHeading(2, "two", "Two"),
         PageHeading(3, "below", "Below"),
-    )
+    ]
 
 
 def test_outline_holds_linked_headings_by_level() -> None:

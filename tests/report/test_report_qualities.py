@@ -9,15 +9,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from report_parts import facts, pictures, said, statements, tables
 
 from designer.analysis import grids
 from designer.analysis.analyse import Analysis
+from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.section import Section
-from designer.report.design.context import build_context
-from designer.report.design.drawings import draw
+from designer.report.design import clearance, stiffness
+from designer.report.design.report import design_report
+from designer.report.design.source import Source, source_of
 from designer.report.figures.sections import section_map
-from designer.report.pictures import Pictures
 from designer.report.render import render_html
 
 pytestmark = pytest.mark.slow
@@ -98,19 +100,16 @@ def test_what_was_not_asked_for_is_null(yard: Analysis, pose_only: Analysis) -> 
 def test_no_cable_has_no_qualities(analyses: dict[str, Analysis]) -> None:
     assert analyses["no_finite_cable"].qualities is None
     assert result_dict(analyses["no_finite_cable"])["workspace"]["stiffness"] is None
-    assert build_context(analyses["no_finite_cable"], Pictures()).stiffness is None
+    assert stiffness.section(source_of(analyses["no_finite_cable"], draws=False)) is None
 
 
 def test_sections_say_what_was_found(kept: Analysis, not_kept: Analysis) -> None:
-    good, bad = (build_context(a, Pictures()) for a in (kept, not_kept))
-    assert good.clearance is not None and bad.clearance is not None
-    assert good.clearance.verdict.title == "The clearance is kept"
-    assert good.clearance.verdict.tone == "good"
-    assert bad.clearance.verdict.title == "The clearance is not kept"
-    assert "of the samples" in bad.clearance.verdict.text
-    assert bad.stiffness is not None
-    assert bad.stiffness.verdict.title == "No pose was found that is not stable"
-    ids = [heading.id for heading in bad.headings]
+    good, bad = (design_report(a, draws=False) for a in (kept, not_kept))
+    assert statements(good.section("clearance"))["The clearance is kept"].tone == "good"
+    found = statements(bad.section("clearance"))
+    assert "of the samples" in found["The clearance is not kept"].text
+    assert "No pose was found that is not stable" in statements(bad.section("stiffness"))
+    ids = [section.id for section in bad.sections]
     assert ids.index("stiffness") + 1 == ids.index("clearance")
     html = render_html(bad)
     assert "Cables are checked against each other" in html
@@ -122,36 +121,37 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
     assert found is not None and found.interference is not None
     none_of_the_samples = replace(found.interference, violating=0)
     changed = replace(not_kept, qualities=replace(found, interference=none_of_the_samples))
-    section = build_context(changed, Pictures()).clearance
-    assert section is not None
-    assert "only between the samples" in section.verdict.text
+    section = clearance.section(Source(changed, Findings()))
+    assert "only between the samples" in said(section)
 
 
 def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
     shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
-    section = build_context(replace(kept, qualities=shaky), Pictures()).stiffness
-    assert section is not None
-    assert section.verdict.tone == "bad"
-    assert "not stay where it is put in 5.00\u00a0% of the samples" in section.verdict.text
-    assert section.facts[1].value == "not stable"
+    section = stiffness.section(Source(replace(kept, qualities=shaky), Findings()))
+    verdict = statements(section)["Some poses are not stable"]
+    assert verdict.tone == "bad"
+    assert "not stay where it is put in 5.00\u00a0% of the samples" in verdict.text
+    assert facts(section)["Softest pose"].value == "not stable"
 
 
 def test_maps_are_drawn(not_kept: Analysis) -> None:
-    pictures = draw(not_kept)
-    assert pictures.stiffness is not None and pictures.clearance is not None
-    assert "largest displacement [mm/kN]" in pictures.stiffness.svg
-    assert "the clearance that is asked for" in pictures.clearance.svg
-    html = render_html(build_context(not_kept, pictures))
+    report = design_report(not_kept)
+    (soft,), (near,) = (pictures(report.section(name)) for name in ("stiffness", "clearance"))
+    assert "largest displacement [mm/kN]" in soft.svg
+    assert "the clearance that is asked for" in near.svg
+    html = render_html(report)
     assert 'id="stiffness-' in html and 'id="clearance-' in html
 
 
 def test_a_list_of_points_has_no_map(solve: Solve) -> None:
     points = "{points: [[0, 0, 4], [2, 1, 5]]}"
-    pictures = draw(solve(SIX.format(region=points, clearance="0.1 m", selection="")))
-    assert pictures.stiffness is None
-    assert pictures.clearance is None
+    analysis = solve(SIX.format(region=points, clearance="0.1 m", selection=""))
+    for make in (stiffness.section, clearance.section):
+        section = make(Source(analysis, Findings(), draws=True))
+        assert section is not None
+        assert pictures(section) == []
 
 
 def test_a_point_mass_has_nothing_to_compare(solve: Solve) -> None:
@@ -161,10 +161,9 @@ cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MP
 workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 """
     analysis = solve(text)
-    section = build_context(analysis, draw(analysis)).clearance
-    assert section is not None
-    assert section.verdict.title == "There is nothing to compare"
-    assert section.nearest is None
+    section = clearance.section(Source(analysis, Findings(), draws=True))
+    assert "There is nothing to compare" in statements(section)
+    assert tables(section) == []
     assert result_dict(analysis)["workspace"]["interference"]["min_distance_m"] is None
 
 

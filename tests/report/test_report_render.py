@@ -11,11 +11,14 @@ from pathlib import Path
 import pypdf
 import pytest
 from jinja2 import UndefinedError
-from test_report_context import PICTURES
+from report_parts import table
+from test_report_context import with_pictures
 
 from designer.analysis.analyse import Analysis
-from designer.report.design.context import ReportContext, build_context
-from designer.report.render import render_html, render_pdf, write_report
+from designer.report.blocks import Report
+from designer.report.design.first_page import FirstPage
+from designer.report.design.report import design_report
+from designer.report.render import REPORT_FILES, render_html, render_pdf, write_report
 
 pytestmark = pytest.mark.slow
 
@@ -45,13 +48,13 @@ def loads(html: str) -> Loads:
 
 
 @pytest.fixture(scope="module")
-def context(analyses: dict[str, Analysis]) -> ReportContext:
-    return build_context(analyses["positive"], PICTURES)
+def report(analyses: dict[str, Analysis]) -> Report[FirstPage]:
+    return with_pictures(design_report(analyses["positive"], draws=False))
 
 
 @pytest.fixture(scope="module")
-def pdf(context: ReportContext) -> pypdf.PdfReader:
-    return pypdf.PdfReader(io.BytesIO(render_pdf(render_html(context, paged=True))))
+def pdf(report: Report[FirstPage]) -> pypdf.PdfReader:
+    return pypdf.PdfReader(io.BytesIO(render_pdf(render_html(report, paged=True))))
 
 
 def outline_titles(items: list[object]) -> list[object]:
@@ -62,8 +65,8 @@ def outline_titles(items: list[object]) -> list[object]:
     ]
 
 
-def test_nothing_is_loaded_from_outside(context: ReportContext) -> None:
-    html = render_html(context)
+def test_nothing_is_loaded_from_outside(report: Report[FirstPage]) -> None:
+    html = render_html(report)
     addresses = loads(html).addresses
     assert len(addresses) >= 3
     assert all(address.startswith("data:") for address in addresses)
@@ -71,13 +74,13 @@ def test_nothing_is_loaded_from_outside(context: ReportContext) -> None:
     assert "@import" not in html
 
 
-def test_page_has_no_script_of_its_own(context: ReportContext) -> None:
-    assert "script" not in loads(render_html(context)).tags
+def test_page_has_no_script_of_its_own(report: Report[FirstPage]) -> None:
+    assert "script" not in loads(render_html(report)).tags
 
 
-def test_scenes_are_in_the_html_only(context: ReportContext) -> None:
-    assert 'srcdoc="&lt;p&gt;3-D&lt;/p&gt;"' in render_html(context)
-    assert "iframe" not in loads(render_html(context, paged=True)).tags
+def test_scenes_are_in_the_html_only(report: Report[FirstPage]) -> None:
+    assert 'srcdoc="&lt;p&gt;3-D&lt;/p&gt;"' in render_html(report)
+    assert "iframe" not in loads(render_html(report, paged=True)).tags
 
 
 def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
@@ -96,16 +99,17 @@ def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
         for o in analysis.selection.outcomes
     )
     selection = dataclasses.replace(analysis.selection, chosen=swapped, outcomes=outcomes)
-    html = render_html(build_context(dataclasses.replace(analysis, selection=selection), PICTURES))
+    changed = dataclasses.replace(analysis, selection=selection)
+    html = render_html(with_pictures(design_report(changed, draws=False)))
     assert "<script" not in html
     assert "onerror=alert(2)>" not in html
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
     assert "&lt;img src=x onerror=alert(2)&gt;" in html
 
 
-def test_rendering_again_gives_the_same(context: ReportContext) -> None:
-    html = render_html(context, paged=True)
-    assert html == render_html(context, paged=True)
+def test_rendering_again_gives_the_same(report: Report[FirstPage]) -> None:
+    html = render_html(report, paged=True)
+    assert html == render_html(report, paged=True)
     assert render_pdf(html) == render_pdf(html)
 
 
@@ -127,10 +131,12 @@ def test_first_page_has_the_answer_and_inputs_begin_on_the_second(pdf: pypdf.Pdf
     assert "robot.anchors" in second
 
 
-def test_pdf_outline_is_that_of_the_headings(pdf: pypdf.PdfReader, context: ReportContext) -> None:
+def test_pdf_outline_is_that_of_the_headings(
+    pdf: pypdf.PdfReader, report: Report[FirstPage]
+) -> None:
     titles = outline_titles(list(pdf.outline))
     top = [title for title in titles if isinstance(title, str)]
-    assert top == [f"{h.number} {h.title}" for h in context.headings]
+    assert top == [f"{k} {section.title}" for k, section in enumerate(report.sections, start=1)]
     nested = [entry for entry in titles if isinstance(entry, list)]
     assert ["Equations"] in nested
 
@@ -157,28 +163,32 @@ def test_pdf_refuses_what_lies_outside(tmp_path: Path) -> None:
         render_pdf(f'<title>x</title><img src="{picture.as_uri()}">')
 
 
-def test_a_template_can_extend_ours(context: ReportContext, tmp_path: Path) -> None:
-    own = tmp_path / "report.html.j2"
-    own.write_text(
-        '{% extends "default/report.html.j2" %}'
-        "{% block nomenclature %}<p>Our own words for {{ report.title }}.</p>{% endblock %}",
+def test_a_template_can_extend_ours(report: Report[FirstPage], tmp_path: Path) -> None:
+    (tmp_path / "page.html.j2").write_text(
+        '{% extends "default/page.html.j2" %}{% block footer %}Our own footer.{% endblock %}',
         encoding="utf-8",
     )
-    html = render_html(context, user_folder=tmp_path)
+    own = tmp_path / "report" / "nomenclature.html.j2"
+    own.parent.mkdir()
+    own.write_text("<p>Our own words for {{ report.title }}.</p>", encoding="utf-8")
+    html = render_html(report, user_folder=tmp_path)
     assert "Our own words for Crane." in html
+    assert "Our own footer." in html
     assert "length of cable paid out" not in html
     assert "How sure this is" in html
 
 
-def test_a_misspelt_name_in_a_template_is_an_error(context: ReportContext, tmp_path: Path) -> None:
-    (tmp_path / "report.html.j2").write_text("{{ report.titel }}", encoding="utf-8")
+def test_a_misspelt_name_in_a_template_is_an_error(
+    report: Report[FirstPage], tmp_path: Path
+) -> None:
+    (tmp_path / "page.html.j2").write_text("{{ report.titel }}", encoding="utf-8")
     with pytest.raises(UndefinedError, match="titel"):
-        render_html(context, user_folder=tmp_path)
+        render_html(report, user_folder=tmp_path)
 
 
 def test_report_files_are_written_whole(analyses: dict[str, Analysis], tmp_path: Path) -> None:
     write_report(analyses["too_thin"], tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "report.pdf"]
+    assert {path.name for path in tmp_path.iterdir()} == set(REPORT_FILES)
     assert (tmp_path / "report.html").read_text(encoding="utf-8").endswith("</html>")
     assert (tmp_path / "report.pdf").stat().st_size < 8e6
 
@@ -195,19 +205,17 @@ def test_a_failed_report_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_browser_is_told_to_load_nothing(context: ReportContext) -> None:
-    html = render_html(context)
+def test_a_browser_is_told_to_load_nothing(report: Report[FirstPage]) -> None:
+    html = render_html(report)
     policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', html)
     assert policy is not None
     assert policy.group(1).startswith("default-src 'none'")
     assert "http" not in policy.group(1)
 
 
-def test_on_paper_a_group_heading_stays_with_its_first_row(context: ReportContext) -> None:
-    assert context.selection is not None
-    assert context.selection.pareto is not None
-    title = context.selection.pareto.groups[0].title
+def test_on_paper_a_group_heading_stays_with_its_first_row(report: Report[FirstPage]) -> None:
+    title = table(report.section("selection"), "Sizes that hold everywhere").groups[0].title
     lifted = rf'<td><span class="lifted \w*">{re.escape(title)} '
-    assert re.search(lifted, render_html(context, paged=True))
-    assert not re.search(lifted, render_html(context))
-    assert re.search(rf'<th scope="rowgroup"[^>]*>{re.escape(title)} ', render_html(context))
+    assert re.search(lifted, render_html(report, paged=True))
+    assert not re.search(lifted, render_html(report))
+    assert re.search(rf'<th scope="rowgroup"[^>]*>{re.escape(title)} ', render_html(report))

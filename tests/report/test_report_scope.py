@@ -6,20 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from report_parts import statements
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.arrays import frozen_array
-from designer.cli import tables
+from designer.cli.tables import summary_rows
 from designer.io.config import read_study
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
-from designer.report.design.context import build_context
 from designer.report.design.first_page import first_page
+from designer.report.design.pose import section
 from designer.report.design.scope import orientation_statement, strength_statement
-from designer.report.pictures import Pictures
+from designer.report.design.source import Source, source_of
 from designer.resources import example_file
 from designer.study import Selection, Study
 
@@ -83,10 +84,10 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
     both, tone = said(Selection(termination_efficiency=0.95, sheave_diameter_m=sheave_m))
     assert f"90.0 % for {chosen.size.id} (D/d 25)" in both
     assert tone == ""
-    page = first_page(analysis, Findings(), None)
+    page = first_page(Source(analysis, Findings()))
     assert "Losses of strength" in [statement.title for statement in page.confidence]
     assert page.card is not None
-    assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts]
+    assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts.items]
 
 
 @pytest.mark.parametrize(
@@ -115,14 +116,14 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
     moved = replace(inside, study=replace(inside.study, pose=Poses.at([250.0, 200.0, -30.0])))
     assert moved.study.pose_outside == "lies outside the region"
     assert result_dict(moved)["pose"]["in_workspace"] is False
-    context = build_context(moved, Pictures())
-    flagged = context.first_page.confidence[0]
+    source = source_of(moved, draws=False)
+    flagged = first_page(source).confidence[0]
     assert flagged.title == "The configured pose is not in the workspace"
     assert "It lies outside the region. There, " in flagged.text
     assert flagged.tone in ("doubt", "bad")
-    assert context.pose is not None and context.pose.outside == flagged
-    assert ("", "[bold red]lies outside the region[/]") in [*tables.summary_rows(moved)]
-    assert build_context(inside, Pictures()).pose.outside is None
+    assert statements(section(source))[flagged.title] == flagged
+    assert ("", "[bold red]lies outside the region[/]") in [*summary_rows(moved)]
+    assert flagged.title not in statements(section(Source(inside, Findings())))
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:

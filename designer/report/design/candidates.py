@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from designer.report import format as fmt
-from designer.report.parts import MOST_ROWS, Column, Group, Row, Table, Tone
+from designer.report.blocks import MOST_ROWS, Column, Group, Row, Table, Tone
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import (
     Candidate,
@@ -20,6 +20,7 @@ from designer.study import Objective
 
 _MOST_NAMES = 3
 _Cell = Callable[[Candidate], str]
+_Columns = list[tuple[Column | str, _Cell]]
 
 
 def pareto_table(selection: SelectionResult) -> Table:
@@ -33,16 +34,16 @@ def pareto_table(selection: SelectionResult) -> Table:
     if len(shown) < len(selection.front):
         caption += f" {_more(len(selection.front) - len(shown), 'size')}"
     columns, cells = zip(*_columns(selection, shown), strict=True)
-    groups = tuple(
+    groups = (
         Group(
-            rows=(Row(tuple(cell(c) for cell in cells), _tone(c), _doubt(c)),),
+            rows=(Row(tuple(cell(c) for cell in cells), _tone(c), fmt.doubtful(c.size.doubt)),),
             title=c.grade.id,
             remark=f"{c.grade.construction} {c.grade.core}, trust {c.grade.trust}: {c.reason}",
             tone="good" if c.standing == "chosen" else "",
         )
         for c in shown
     )
-    return Table(caption, columns, groups)
+    return Table.grouped(caption, columns, groups, "candidates long")
 
 
 def front_sentence(selection: SelectionResult) -> str:
@@ -104,13 +105,15 @@ def _table_of_best(
     tone: Callable[[Candidate], Tone],
 ) -> Table:
     shown = best[:MOST_ROWS]
-    head: list[tuple[Column, _Cell]] = [
-        (Column("Grade", is_number=False), lambda c: c.grade.id),
-        (Column("Material", is_number=False), lambda c: c.grade.material or "not stated"),
+    head: _Columns = [
+        ("Grade", lambda c: c.grade.id),
+        ("Material", lambda c: c.grade.material or "not stated"),
     ]
     columns, cells = zip(*head, *_columns(selection, shown, full=False), strict=True)
-    rows = (Row(tuple(cell(c) for cell in cells), tone(c), _doubt(c)) for c in shown)
-    return Table.of(caption, columns, *rows)
+    rows = (
+        Row(tuple(cell(c) for cell in cells), tone(c), fmt.doubtful(c.size.doubt)) for c in shown
+    )
+    return Table.of(caption, columns, *rows, kind="candidates best long")
 
 
 def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
@@ -119,36 +122,27 @@ def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
     if not failing:
         return None
     failing.sort(key=_shortfall)
-    columns = (
-        Column("Grade", is_number=False),
-        Column("Thickest size", is_number=False),
-        Column("Needed", "mm"),
-        Column("Why not", is_number=False),
-    )
+    columns = ("Grade", "Thickest size", Column("Needed", "mm"), "Why not")
     caption = "Grades of which no size holds, the nearest first."
     if len(failing) > MOST_ROWS:
         caption += f" {_more(len(failing) - MOST_ROWS, 'grade')}"
-    return Table.of(caption, columns, *map(_thin, failing[:MOST_ROWS]))
+    return Table.of(caption, columns, *map(_thin, failing[:MOST_ROWS]), kind="long")
 
 
 def fallen_table(selection: SelectionResult) -> Table:
     """Return why sizes fell out, with how many and for example which."""
-    columns = (
-        Column("Why", is_number=False),
-        Column("Sizes"),
-        Column("Grades"),
-        Column("For example", is_number=False),
-    )
-    rows = [
-        _fallen_row(meaning, [c for c in selection.candidates if c.standing == standing])
+    fallen = (
+        _fallen_row(meaning, some)
         for standing, meaning in _MEANINGS.items()
-    ]
+        if (some := [c for c in selection.candidates if c.standing == standing])
+    )
     reasons = dict.fromkeys(one.reason for one in selection.not_tried)
-    rows += [
+    others = (
         _not_tried_row([n for n in selection.not_tried if n.reason == reason]) for reason in reasons
-    ]
+    )
+    columns = ("Why", Column("Sizes"), Column("Grades"), "For example")
     caption = "Why the other sizes fell out. candidates.csv has the reason of each."
-    return Table.of(caption, columns, *(row for row in rows if row is not None))
+    return Table.of(caption, columns, *fallen, *others)
 
 
 def main_dominators(selection: SelectionResult) -> str:
@@ -158,21 +152,18 @@ def main_dominators(selection: SelectionResult) -> str:
         return ""
     beaten = Counter(c.reason.split(";")[0].removeprefix("dominated by ") for c in dominated)
     searched = sum(c.verification.is_refined for c in selection.candidates)
+    if len(beaten) > 1:
+        parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
+        who = f"Of the {fmt.plural(len(dominated), 'dominated size')}, {fmt.listing(parts)}."
+    else:
+        all_of_them = f"all {fmt.count(len(dominated))} dominated sizes"
+        what = all_of_them if len(dominated) > 1 else "the one dominated size"
+        who = f"{next(iter(beaten))} beats {what}."
     return (
-        f"{_who_beats(beaten)} "
-        f"{fmt.plural(searched, 'size')} were searched between the samples: those that no other "
-        "beats, the best of each grade, and those above 90\u00a0% of their allowable tension. For "
-        "the others the samples are enough, since a search can only find more tension."
+        f"{who} {fmt.plural(searched, 'size')} were searched between the samples: those that no "
+        "other beats, the best of each grade, and those above 90\u00a0% of their allowable "
+        "tension. For the others the samples are enough, since a search can only find more tension."
     )
-
-
-def _who_beats(beaten: Counter[str]) -> str:
-    total = beaten.total()
-    if len(beaten) == 1:
-        what = f"all {fmt.count(total)} dominated sizes" if total > 1 else "the one dominated size"
-        return f"{next(iter(beaten))} beats {what}."
-    parts = [f"{name} beats {fmt.count(n)}" for name, n in beaten.most_common(_MOST_NAMES)]
-    return f"Of the {fmt.plural(total, 'dominated size')}, {fmt.listing(parts)}."
 
 
 _MEANINGS: dict[Standing, str] = {
@@ -185,42 +176,34 @@ _MEANINGS: dict[Standing, str] = {
 
 def _columns(
     selection: SelectionResult, shown: Sequence[Candidate], *, full: bool = True
-) -> list[tuple[Column, _Cell]]:
+) -> _Columns:
     smallest_N = min((c.verification.max_tension_N for c in shown), default=0.0)
-    unit, newtons = ("kN", 1e3) if smallest_N >= 1e3 else ("N", 1.0)
+    unit, newtons = fmt.force_unit(smallest_N)
     tension = fmt.decimals([smallest_N / newtons], 4)
     force = fmt.decimals(c.cable.allowable_tension_N / newtons for c in shown)
     mass = fmt.decimals(c.total_mass_kg for c in shown)
-    strength: list[tuple[Column, _Cell]] = [
-        (
-            Column("Breaking load", unit),
-            lambda c: fmt.fixed(c.size.minimum_breaking_load_N / newtons, force),
-        ),
-        (Column("Efficiency"), lambda c: fmt.trimmed(c.efficiency, 3)),
-        (
-            Column("Allowable", unit),
-            lambda c: fmt.fixed(c.cable.allowable_tension_N / newtons, force),
-        ),
-    ]
-    own: dict[Objective, tuple[Column, _Cell]] = {
-        "drum_diameter": (
-            Column("Drum", "m"),
-            lambda c: _known(c.figures.drum_diameter_m, 2),
-        ),
+
+    def forces(title: str, value_N: Callable[[Candidate], float], places: int) -> _Columns:
+        return [(Column(title, unit), lambda c: fmt.fixed(value_N(c) / newtons, places))]
+
+    own: dict[Objective, tuple[Column | str, _Cell]] = {
+        "drum_diameter": (Column("Drum", "m"), lambda c: _known(c.figures.drum_diameter_m, 2)),
         "cost": (Column("Price", selection.currency or ""), lambda c: _known(c.figures.cost, 0)),
         "stiffness": (
             Column("Stiffness", "kN/m"),
             lambda c: _known(c.figures.stiffness_N_per_m / 1e3, 2),
         ),
     }
+    strength = [
+        *forces("Breaking load", lambda c: c.size.minimum_breaking_load_N, force),
+        (Column("Efficiency"), lambda c: fmt.trimmed(c.efficiency, 3)),
+        *forces("Allowable", lambda c: c.cable.allowable_tension_N, force),
+    ]
     return [
-        (Column("Size", is_number=False), lambda c: c.size.id.replace(" ", "\u00a0")),
+        ("Size", lambda c: c.size.id.replace(" ", "\u00a0")),
         (Column("Diameter", "mm"), lambda c: fmt.fixed(1e3 * c.size.diameter_m, 1)),
         *(strength if full else ()),
-        (
-            Column("Largest tension", unit),
-            lambda c: fmt.fixed(c.verification.max_tension_N / newtons, tension),
-        ),
+        *forces("Largest tension", lambda c: c.verification.max_tension_N, tension),
         (Column("Used"), lambda c: fmt.utilisation(c.verification.utilisation)),
         (Column("All cables", "kg"), lambda c: fmt.fixed(c.total_mass_kg, mass)),
         *(own[objective] for objective in selection.objectives if objective in own),
@@ -235,44 +218,26 @@ def _tone(candidate: Candidate) -> Tone:
     return "good" if candidate.standing == "chosen" else ""
 
 
-def _doubt(candidate: Candidate) -> str:
-    return f"Doubtful figures: {fmt.printed(candidate.size.doubt)}" if candidate.size.doubt else ""
-
-
 def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:
     needed = outcome.continuous_diameter_m / outcome.grade.thickest.diameter_m
     return math.isnan(needed), 0.0 if math.isnan(needed) else needed
 
 
-def _thin(outcome: GradeOutcome) -> Row:
+def _thin(outcome: GradeOutcome) -> tuple[str, ...]:
     needed = outcome.continuous_diameter_m
     why = "ends too thin" if math.isfinite(needed) else "its own weight is too much"
-    shown = fmt.fixed(1e3 * needed, 1) if math.isfinite(needed) else fmt.MISSING
-    return Row((outcome.grade.id, outcome.grade.thickest.id, shown, why))
+    return outcome.grade.id, outcome.grade.thickest.id, _known(1e3 * needed, 1), why
 
 
-def _fallen_row(meaning: str, fallen: Sequence[Candidate]) -> Row | None:
-    if not fallen:
-        return None
+def _fallen_row(meaning: str, fallen: Sequence[Candidate]) -> tuple[str, ...]:
     example = min(fallen, key=lambda c: c.verification.utilisation)
-    return Row(
-        (
-            meaning,
-            fmt.count(len(fallen)),
-            fmt.count(len({c.grade.id for c in fallen})),
-            fmt.printed(f"{example.name}: {example.reason}"),
-        )
-    )
+    grades = {c.grade.id for c in fallen}
+    named = fmt.printed(f"{example.name}: {example.reason}")
+    return meaning, fmt.count(len(fallen)), fmt.count(len(grades)), named
 
 
-def _not_tried_row(some: Sequence[NotTried]) -> Row:
+def _not_tried_row(some: Sequence[NotTried]) -> tuple[str, ...]:
     sizes = sum(1 if one.size else len(one.grade.sizes) for one in some)
     grades = dict.fromkeys(one.grade.id for one in some)
-    return Row(
-        (
-            f"not solved: {some[0].reason}",
-            fmt.count(sizes),
-            fmt.count(len(grades)),
-            next(iter(grades)),
-        )
-    )
+    why = f"not solved: {some[0].reason}"
+    return why, fmt.count(sizes), fmt.count(len(grades)), next(iter(grades))

@@ -4,44 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from designer.analysis.analyse import Analysis
 from designer.model.cable import Material
 from designer.report import format as fmt
-from designer.report.parts import Column, Fact, Row, Table
+from designer.report.blocks import Block, Box, Column, Fact, Facts, Subheading, Table
 from designer.selection.result import Candidate, GradeOutcome
-from designer.study import GradeFamily
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """Why the rope that is bought is not the cable that was configured.
+def compared(analysis: Analysis, outcome: GradeOutcome) -> tuple[Block, ...]:
+    """Return why the rope that is bought is not the cable that was configured.
 
-    Parameters
-    ----------
-    table : Table
-        Figures of the configured family, of the chosen grade's family and of the chosen size.
-    reasons : tuple of str
-        Sentences that explain the table.
-    snap : tuple of Fact
-        What the step from the continuous optimum to a size costs.
+    Raises
+    ------
+    ValueError
+        If no size of the grade fits.
     """
-
-    table: Table
-    reasons: tuple[str, ...]
-    snap: tuple[Fact, ...]
-
-
-def compare(analysis: Analysis, outcome: GradeOutcome) -> Comparison:
-    """Compare the configured family with the best size of a grade that fits."""
     best = outcome.best
     if best is None:
         raise ValueError(f"no size of {outcome.grade.id} fits")
-    return Comparison(
-        table=_table(analysis, outcome, best),
-        reasons=_reasons(analysis, outcome.family, best),
-        snap=_snap(outcome, best),
+    heading = Subheading("comparison", "The configured cable and the rope")
+    return (
+        Box.of("keep", heading, _table(analysis, outcome, best)),
+        *_reasons(analysis, outcome.family, best),
+        Subheading("snap", "What the step to a size costs"),
+        "Ropes come in sizes. This is what the step from the best diameter to the size costs.",
+        _snap(outcome, best),
     )
 
 
@@ -70,15 +58,16 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
         ("Density", (fmt.kilograms_per_cubic_metre(f.density_kg_per_m3) for f in families)),
         ("Modulus of elasticity", (fmt.pascals(f.youngs_modulus_Pa) for f in families)),
         ("Allowable stress", (fmt.pascals(f.allowable_stress_Pa) for f in families)),
-        ("Self-supporting length", (_self_supporting(f) for f in families)),
+        (
+            "Self-supporting length",
+            (f"{fmt.count(round(f.strength_length_m))}\u00a0m" for f in families),
+        ),
         ("Diameter", (fmt.millimetres(d) for d in diameters)),
         ("Mass per length", (fmt.kilograms_per_metre(mass) for mass in masses)),
         ("Largest tension", fmt.newtons_alike(*tensions)),
     )
     columns = (
-        Column("Figure", is_number=False),
-        Column("Configured family"),
-        Column("Chosen grade, any diameter"),
+        *("Figure", Column("Configured family"), Column("Chosen grade, any diameter")),
         Column(f"Chosen size, {best.size.id}"),
     )
     caption = (
@@ -87,11 +76,7 @@ def _table(analysis: Analysis, outcome: GradeOutcome, best: Candidate) -> Table:
         "factor. The self-supporting length is the hanging length whose weight alone would reach "
         "the allowable stress."
     )
-    return Table.of(caption, columns, *(Row((name, *cells)) for name, cells in lines))
-
-
-def _self_supporting(material: Material) -> str:
-    return f"{fmt.count(round(material.strength_length_m))}\u00a0m"
+    return Table.of(caption, columns, *((name, *cells) for name, cells in lines))
 
 
 def _material_of(candidate: Candidate) -> Material:
@@ -103,59 +88,44 @@ def _material_of(candidate: Candidate) -> Material:
     )
 
 
-def _whose(family: GradeFamily | None) -> str:
-    if family is None:
-        return "The configured family is an assumption about a cable."
-    return (
-        f"The configured family is that of the grade {family.grade}, as if it were sold in every "
-        f"diameter, at a safety factor of {fmt.trimmed(family.safety_factor)}."
-    )
-
-
 def _reasons(analysis: Analysis, real: Material, best: Candidate) -> tuple[str, ...]:
     assert analysis.study.selection is not None
-    ideal = analysis.built.material(analysis.study.material)
-    safety = fmt.trimmed(analysis.study.selection.safety_factor)
+    ideal, family = analysis.built.material(analysis.study.material), analysis.study.family
     stress = real.allowable_stress_Pa / ideal.allowable_stress_Pa
     density = real.density_kg_per_m3 / ideal.density_kg_per_m3
     stiffness = real.youngs_modulus_Pa / ideal.youngs_modulus_Pa
+    whose = "The configured family is an assumption about a cable."
+    if family is not None:
+        whose = (
+            f"The configured family is that of the grade {family.grade}, as if it were sold in "
+            f"every diameter, at a safety factor of {fmt.trimmed(family.safety_factor)}."
+        )
+    share = fmt.trimmed(best.efficiency, 3)
+    lost = f", times the {share} that end fittings and bending leave of it"
     return (
-        f"{_whose(analysis.study.family)} The figures of the chosen grade come from its table. "
+        f"{whose} The figures of the chosen grade come from its table. "
         "They ask for different diameters.",
         f"On the same circle the rope carries {fmt.factor(stress)} times the allowable stress, "
         f"weighs {fmt.factor(density)} times as much and is {fmt.factor(stiffness)} times as "
         f"stiff. Sag depends on strength over weight, where the rope has "
         f"{fmt.factor(stress / density)} times the configured value.",
         "The allowable stress of the rope is its breaking load over the nominal circle"
-        f"{_efficiency(best)}, divided by the safety factor of {safety}.",
+        f"{lost if best.efficiency != 1.0 else ''}, divided by the safety factor of "
+        f"{fmt.trimmed(analysis.study.selection.safety_factor)}.",
     )
 
 
-def _efficiency(best: Candidate) -> str:
-    if best.efficiency == 1.0:
-        return ""
-    share = fmt.trimmed(best.efficiency, 3)
-    return f", times the {share} that end fittings and bending leave of it"
-
-
-def _snap(outcome: GradeOutcome, best: Candidate) -> tuple[Fact, ...]:
-    optimum_m, size = outcome.continuous_diameter_m, best.size
+def _snap(outcome: GradeOutcome, best: Candidate) -> Facts:
+    optimum_m, size_m = outcome.continuous_diameter_m, best.size.diameter_m
     lightest = outcome.family.density_kg_per_m3 * math.pi * optimum_m**2 / 4.0
     heavier = best.cable.linear_density_kg_per_m
-    return (
-        Fact(
-            "Diameter",
-            f"{fmt.millimetres(optimum_m)} → {fmt.millimetres(size.diameter_m)}",
-            fmt.signed_percent(size.diameter_m / optimum_m - 1.0),
-        ),
-        Fact(
-            "Mass per length",
-            f"{fmt.kilograms_per_metre(lightest)} → {fmt.kilograms_per_metre(heavier)}",
-            fmt.signed_percent(heavier / lightest - 1.0),
-        ),
-        Fact(
-            "Utilisation",
-            f"{fmt.utilisation(1.0)} → {fmt.utilisation(best.verification.utilisation)}",
-            "largest over allowable tension at the worst pose",
-        ),
+    diameters = f"{fmt.millimetres(optimum_m)} → {fmt.millimetres(size_m)}"
+    masses = f"{fmt.kilograms_per_metre(lightest)} → {fmt.kilograms_per_metre(heavier)}"
+    used = f"{fmt.utilisation(1.0)} → {fmt.utilisation(best.verification.utilisation)}"
+    return Facts(
+        (
+            Fact("Diameter", diameters, fmt.signed_percent(size_m / optimum_m - 1.0)),
+            Fact("Mass per length", masses, fmt.signed_percent(heavier / lightest - 1.0)),
+            Fact("Utilisation", used, "largest over allowable tension at the worst pose"),
+        )
     )

@@ -2,58 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
-from designer.grades.grade import TRUST_MEANING, Grade, Size
+from designer.grades.grade import TRUST_MEANING, Grade
 from designer.report import format as fmt
-from designer.report.design.hanging import hanging_statements
+from designer.report.blocks import Statement
 from designer.report.design.scope import (
     orientation_statement,
     pose_statement,
     strength_statement,
 )
 from designer.report.material_class import class_of
-from designer.report.parts import Statement
 from designer.selection.result import Candidate
+from designer.statics.task import LONG
+from designer.workspace.hanging import Hanging
 
 _NEAR_BOUNDARY = 0.9
 
 
-def confidence(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
-    """Return what a reviewer should know before relying on the answer."""
-    chosen = analysis.selection.chosen if analysis.selection else None
-    ropes = [*_ropes(analysis)]
-    statements = [
-        *pose_statement(analysis),
-        *_margin(analysis, findings),
-        *_sampling(analysis),
-        *orientation_statement(analysis.study),
-        *_hanging(analysis, findings),
-        *hanging_statements(analysis),
-        *strength_statement(analysis.study.selection, ropes),
-    ]
-    if analysis.has_groups:
-        statements += _trust_of_groups(ropes)
-    elif chosen is not None:
-        statements += [_trust(chosen.grade), _modulus(chosen, findings)]
-    for grade in {grade.id: grade for grade, _ in ropes}.values():
-        statements += _limits(grade)
-    for grade, size in ropes:
-        statements += _doubt(grade, size)
-    return tuple(statements)
-
-
-def _ropes(analysis: Analysis) -> Iterator[tuple[Grade, Size]]:
-    """Yield the ropes of the groups, else the chosen one, each grade and size once."""
+def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
+    """Yield what a reviewer should know before relying on the answer."""
     chosen = analysis.selection.chosen if analysis.selection else None
     found = analysis.groups.chosen if analysis.groups else None
-    if found is not None:
-        ropes = [(one.grade, one.size) for one in found.products]
-    else:
-        ropes = [] if chosen is None else [(chosen.grade, chosen.size)]
-    yield from {(grade.id, size.id): (grade, size) for grade, size in ropes}.values()
+    used = found.products if found is not None else [chosen] if chosen is not None else []
+    ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
+    grades = {grade.id: grade for grade, _ in ropes}.values()
+    yield from pose_statement(analysis)
+    yield from _margin(analysis, findings)
+    yield from _sampling(analysis)
+    yield from orientation_statement(analysis.study)
+    yield from _hanging(analysis, findings)
+    yield from _slack(analysis)
+    yield from strength_statement(analysis.study.selection, ropes)
+    if analysis.has_groups:
+        for grade in grades:
+            yield _trust(grade, f"Figures of {grade.id}")
+        known = (
+            f"{g.id}: {g.elasticity.basis}, known to {fmt.plus_minus(g.elasticity.uncertainty)}"
+            for g in grades
+        )
+        yield Statement("Modulus", f"{'; '.join(known)}.")
+    elif chosen is not None:
+        yield _trust(chosen.grade, "Figures of the rope")
+        yield _modulus(chosen, findings)
+    for grade in grades:
+        yield from _limits(grade)
+    for grade, size in ropes:
+        if size.doubt:
+            title = f"Doubt about {size.id} of {grade.id}"
+            yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
@@ -115,39 +114,54 @@ def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield Statement("Poses left out", text, "doubt")
 
 
-def _trust(grade: Grade, title: str = "Figures of the rope") -> Statement:
+def _slack(analysis: Analysis) -> Iterator[Statement]:
+    """Yield in how many samples cables hang as none should, where, and what could be done."""
+    found, workspace = analysis.hanging, analysis.study.workspace
+    whose = "the design" if analysis.qualities is not None else "what each sample needs"
+    advice = "make the region smaller, or leave out poses with a cable below the platform."
+    if analysis.built.robot.is_redundant:
+        advice = (
+            "a least tension (robot.tension_min) keeps cables from hanging so, where they can; or "
+            f"{advice}"
+        )
+
+    def told(title: str, what: str, so: str, where: Hanging, how_far: str) -> Statement:
+        text = (
+            f"With {whose}, a cable {what} in {fmt.share(where.samples, found.samples)} of the "
+            f"samples{so}. Cable {where.cable} at {fmt.position(where.place)} {how_far}. "
+            f"{fmt.capital(advice)}"
+        )
+        return Statement(title, text, "bad")
+
+    if found.long is not None:
+        what = f"is longer than {fmt.trimmed(LONG)} times its chord"
+        how_far = f"has {fmt.trimmed(found.long.extreme, 3)} times its chord"
+        title = "Cables far longer than their chord"
+        yield told(title, what, ": it hangs all but slack", found.long, how_far)
+    if found.below_floor is not None and workspace is not None and workspace.floor_m is not None:
+        what = f"hangs below the floor at {fmt.metres(workspace.floor_m)}"
+        how_far = f"reaches down to {fmt.metres(found.below_floor.extreme)}"
+        yield told("Cables below the floor", what, "", found.below_floor, how_far)
+
+
+def _trust(grade: Grade, title: str) -> Statement:
     letter = grade.trust
     text = f"Trust {letter}: {TRUST_MEANING[letter]}. Ask the maker for a certificate."
     return Statement(title, text, "" if letter == "A" else "doubt")
 
 
-def _trust_of_groups(ropes: Iterable[tuple[Grade, Size]]) -> Iterator[Statement]:
-    grades = {grade.id: grade for grade, _ in ropes}
-    for grade in grades.values():
-        yield _trust(grade, f"Figures of {grade.id}")
-    known = [
-        f"{grade.id}: {grade.elasticity.basis}, known to ±\u00a0"
-        f"{fmt.trimmed(100 * grade.elasticity.uncertainty)}\u00a0%"
-        for grade in grades.values()
-    ]
-    yield Statement("Modulus", f"{'; '.join(known)}.")
-
-
 def _modulus(chosen: Candidate, findings: Findings) -> Statement:
     elasticity = chosen.grade.elasticity
-    doubt = f"±\u00a0{fmt.trimmed(100 * elasticity.uncertainty)}\u00a0%"
-    text = f"The modulus is {elasticity.basis}, known to {doubt}."
+    known = fmt.plus_minus(elasticity.uncertainty)
+    text = f"The modulus is {elasticity.basis}, known to {known}."
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
-        text += f" Over that range the utilisation at the worst pose is {_range(low, high)}."
+        ends = dict.fromkeys((fmt.utilisation(low), fmt.utilisation(high)))
+        shown = " to ".join(ends) if len(ends) > 1 else f"{fmt.utilisation(low)} throughout"
+        text += f" Over that range the utilisation at the worst pose is {shown}."
         if high > 1.0 >= chosen.verification.utilisation:
             return Statement("Modulus", f"{text} So it may exceed what is allowed.", "bad")
     return Statement("Modulus", text)
-
-
-def _range(low: float, high: float) -> str:
-    first, last = fmt.utilisation(low), fmt.utilisation(high)
-    return f"{first} throughout" if first == last else f"{first} to {last}"
 
 
 def _limits(grade: Grade) -> Iterator[Statement]:
@@ -169,9 +183,3 @@ def _limits(grade: Grade) -> Iterator[Statement]:
             "is not part of the study."
         )
         yield Statement("Temperature", text, "doubt")
-
-
-def _doubt(grade: Grade, size: Size) -> Iterator[Statement]:
-    if size.doubt:
-        title = f"Doubt about {size.id} of {grade.id}"
-        yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.arrays import FloatArray
 from designer.report import format as fmt
+from designer.report.blocks import Block, Fact, Facts, Picture, Statement
 from designer.report.design.confidence import confidence
 from designer.report.design.groups import groups_hold, groups_statement
 from designer.report.design.negative import actions, objections, reasons
-from designer.report.design.sag_cost import SagCost, sag_cost
+from designer.report.design.sag_cost import sag_cost
 from designer.report.design.selection import product_name
+from designer.report.design.source import Source
+from designer.report.design.workspace_figures import cover_picture
 from designer.report.material_class import class_of
-from designer.report.parts import Fact, Picture, Statement
 from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
@@ -24,31 +26,22 @@ from designer.sizing.newton import size_poses
 from designer.study import CableGroup
 
 _MOST_SIZES = 2
+_TIGHT = 0.97
 
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """The answer at a glance.
+    """The answer at a glance: what it is about, the size set large, and what else is looked for.
 
-    Parameters
-    ----------
-    heading : str
-        What the card is about, such as ``Chosen rope``.
-    size : str
-        The size, set large.
-    metric : str
-        The diameter in millimetres where the size is not; may be empty.
-    product : str
-        Name and maker, or what the size refers to.
-    facts : tuple of Fact
-        The figures that a reviewer looks for first.
+    ``metric`` is the diameter in millimetres where the size is not; it may be empty. ``product``
+    is name and maker, or what the size refers to.
     """
 
     heading: str
     size: str
-    metric: str
     product: str
-    facts: tuple[Fact, ...]
+    facts: Facts
+    metric: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +58,8 @@ class FirstPage:
         Why the answer is no, and where; empty if it is yes.
     actions : tuple of str
         What could be done about it.
-    sag : SagCost or None
-        What ignoring sag would have cost; None where there is nothing to compare.
+    sag : tuple of Block
+        What ignoring sag would have cost; empty where there is nothing to compare.
     groups : Statement or None
         What ropes for groups of cables save; None if the study has no groups.
     confidence : tuple of Statement
@@ -79,32 +72,42 @@ class FirstPage:
     card: Card | None
     reasons: tuple[Statement, ...]
     actions: tuple[str, ...]
-    sag: SagCost | None
+    sag: tuple[Block, ...]
     groups: Statement | None
     confidence: tuple[Statement, ...]
     picture: Picture | None
 
 
-def first_page(analysis: Analysis, findings: Findings, picture: Picture | None) -> FirstPage:
+def first_page(source: Source) -> FirstPage:
     """Return the first page."""
+    analysis, findings = source.analysis, source.findings
     return FirstPage(
         verdict=_verdict(analysis, findings),
         card=_card(analysis),
-        reasons=reasons(analysis, findings),
-        actions=actions(analysis, findings),
+        reasons=tuple(reasons(analysis, findings)),
+        actions=tuple(actions(analysis, findings)),
         sag=sag_cost(analysis, findings),
         groups=groups_statement(analysis.groups) if analysis.groups else None,
-        confidence=confidence(analysis, findings),
-        picture=picture,
+        confidence=tuple(confidence(analysis, findings)),
+        picture=_picture(source),
     )
+
+
+def _picture(source: Source) -> Picture | None:
+    if source.draws_scenes and source.maps is not None:
+        return cover_picture(source.maps)
+    return replace(source.robot, kind="robot") if source.robot else None
 
 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
     found = analysis.groups if analysis.has_groups else None
-    against = [*_open_points(analysis), *objections(analysis)]
     if analysis.has_cable:
-        text = f"{_positive(analysis, chosen)}{_exception(analysis, findings)}"
+        text = _positive(analysis, chosen)
+        workspace = analysis.study.workspace
+        if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
+            share = fmt.percent(findings.hanging)
+            text += f" {share} of the volume is left out, as configured."
     elif found is not None:
         text = groups_hold(found)
     elif chosen is not None and analysis.has_products:
@@ -112,9 +115,18 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     else:
         return Statement("No", _negative(analysis), "bad")
     text += "" if found is not None else _of_metal(analysis.selection, chosen)
+    against = [*_open_points(analysis), *objections(analysis)]
     if against:
         return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
     return Statement("Yes", text, "good")
+
+
+def _open_points(analysis: Analysis) -> Iterator[str]:
+    pose, workspace = analysis.pose, analysis.workspace
+    if pose is not None and not pose.sizing.statics.is_solved:
+        yield "no cable of the configured family can hold the configured pose"
+    elif workspace is not None and not workspace.is_feasible:
+        yield "no cable of the configured family can serve the whole workspace"
 
 
 def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
@@ -140,53 +152,32 @@ def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> st
 
 
 def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
-    workspace, pose = analysis.workspace, analysis.pose
     if analysis.groups is not None:
         return groups_hold(analysis.groups)
     if chosen is not None:
-        return f"{_holds(chosen)} {_load(chosen)}"
-    if workspace is not None and workspace.sagging is not None:
-        worst = workspace.sagging
+        found = chosen.verification
+        tight = " There is hardly any reserve beyond it." if found.utilisation > _TIGHT else ""
         return (
-            f"A cable of {fmt.millimetres(worst.diameter_m)} of the configured family holds every "
-            f"pose of the workspace. Its largest tension is {fmt.newtons(worst.max_tension_N)}."
+            f"{_holds(chosen)} Its largest tension is {fmt.newtons(found.max_tension_N)}, "
+            f"{fmt.utilisation(found.utilisation)} of what the safety factor allows.{tight}"
         )
-    assert pose is not None
+    workspace, pose = analysis.workspace, analysis.pose
+    if workspace is not None and workspace.sagging is not None:
+        worst, what = workspace.sagging, "every pose of the workspace"
+        diameter_m, tension_N = worst.diameter_m, worst.max_tension_N
+    else:
+        assert pose is not None
+        sizing, what = pose.sizing, "the configured pose"
+        diameter_m, tension_N = float(sizing.diameter_m), float(sizing.statics.largest_tension_N)
     return (
-        f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} of the configured family "
-        "holds the configured pose. Its largest tension is "
-        f"{fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."
+        f"A cable of {fmt.millimetres(diameter_m)} of the configured family holds {what}. "
+        f"Its largest tension is {fmt.newtons(tension_N)}."
     )
-
-
-def _exception(analysis: Analysis, findings: Findings) -> str:
-    """Say on the first line how much of the volume does not count."""
-    workspace = analysis.study.workspace
-    if workspace is None or workspace.hangs_below == "include" or not findings.hanging:
-        return ""
-    return f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
 
 
 def _holds(chosen: Candidate) -> str:
     name = f"{chosen.grade.product} ({chosen.grade.id})"
     return f"The {chosen.size.id} size of {name} holds every pose of the workspace."
-
-
-def _load(chosen: Candidate) -> str:
-    found = chosen.verification
-    text = (
-        f"Its largest tension is {fmt.newtons(found.max_tension_N)}, "
-        f"{fmt.utilisation(found.utilisation)} of what the safety factor allows."
-    )
-    return f"{text} There is hardly any reserve beyond it." if found.utilisation > 0.97 else text
-
-
-def _open_points(analysis: Analysis) -> Iterator[str]:
-    pose, workspace = analysis.pose, analysis.workspace
-    if pose is not None and not pose.sizing.statics.is_solved:
-        yield "no cable of the configured family can hold the configured pose"
-    elif workspace is not None and not workspace.is_feasible:
-        yield "no cable of the configured family can serve the whole workspace"
 
 
 def _negative(analysis: Analysis) -> str:
@@ -219,33 +210,19 @@ def _card(analysis: Analysis) -> Card | None:
     workspace, pose = analysis.workspace, analysis.pose
     if workspace is not None:
         worst = workspace.sagging
-        return (
-            None
-            if worst is None
-            else Card(
-                diameter_heading(analysis, "workspace"),
-                fmt.millimetres(worst.diameter_m),
-                "",
-                "of the configured cable family",
-                (
-                    Fact("Largest tension", fmt.newtons(worst.max_tension_N)),
-                    Fact("At the position", fmt.position(worst.place)),
-                ),
-            )
-        )
-    if pose is None or not pose.sizing.statics.is_solved:
+        if worst is None:
+            return None
+        found = ("workspace", worst.diameter_m, worst.max_tension_N, fmt.position(worst.place))
+    elif pose is not None and pose.sizing.statics.is_solved:
+        statics = pose.sizing.statics
+        where = fmt.position(statics.poses.position_m)
+        found = ("pose", float(pose.sizing.diameter_m), float(statics.largest_tension_N), where)
+    else:
         return None
-    statics = pose.sizing.statics
-    return Card(
-        diameter_heading(analysis, "pose"),
-        fmt.millimetres(float(pose.sizing.diameter_m)),
-        "",
-        "of the configured cable family",
-        (
-            Fact("Largest tension", fmt.newtons(float(statics.largest_tension_N))),
-            Fact("At the position", fmt.position(statics.poses.position_m)),
-        ),
-    )
+    what, diameter_m, tension_N, where = found
+    facts = Fact("Largest tension", fmt.newtons(tension_N)), Fact("At the position", where)
+    heading, size = diameter_heading(analysis, what), fmt.millimetres(diameter_m)
+    return Card(heading, size, "of the configured cable family", Facts(facts))
 
 
 def diameter_heading(analysis: Analysis, what: str) -> str:
@@ -267,35 +244,32 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     breaking, allowable, largest = fmt.newtons_alike(
         size.minimum_breaking_load_N, chosen.cable.allowable_tension_N, found.max_tension_N
     )
-    return Card(
-        heading="Chosen rope",
-        size=size.id,
-        metric="" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m),
-        product=product_name(chosen.grade),
-        facts=(
-            Fact("Grade", chosen.grade.id),
-            Fact("Minimum breaking load", breaking),
-            Fact("Allowable tension", allowable, _from_breaking(chosen.efficiency, required)),
-            Fact("Largest tension", largest),
-            Fact("At the position", fmt.position(found.worst_position_m)),
-            Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
-            Fact("Utilisation", fmt.utilisation(found.utilisation)),
-            Fact("Mass", *_mass(chosen)),
-            Fact(
-                "Longest, each cable", _lengths(found.longest_m, math.ceil), "unstrained, no spare"
-            ),
-            Fact("Shortest", _lengths(found.shortest_m, math.floor), "unstrained"),
-            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
-        ),
+    lost = chosen.efficiency != 1.0
+    share = f" times {fmt.trimmed(chosen.efficiency, 3)}" if lost else ", no loss,"
+    longest, shortest = _lengths(found.longest_m, math.ceil), _lengths(found.shortest_m, math.floor)
+    facts = (
+        Fact("Grade", chosen.grade.id),
+        Fact("Minimum breaking load", breaking),
+        Fact("Allowable tension", allowable, f"breaking load{share} over {required}"),
+        Fact("Largest tension", largest),
+        Fact("At the position", fmt.position(found.worst_position_m)),
+        Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
+        Fact("Utilisation", fmt.utilisation(found.utilisation)),
+        _mass(chosen),
+        Fact("Longest, each cable", longest, "unstrained, no spare"),
+        Fact("Shortest", shortest, "unstrained"),
+        Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
     )
+    metric = "" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m)
+    return Card("Chosen rope", size.id, product_name(chosen.grade), Facts(facts), metric)
 
 
-def _mass(chosen: Candidate) -> tuple[str, str]:
+def _mass(chosen: Candidate) -> Fact:
     """Return the mass per length on this machine, and that of the table where it differs."""
     built, table = chosen.cable.linear_density_kg_per_m, chosen.size.linear_density_kg_per_m
     is_same = math.isclose(built, table, rel_tol=1e-9)
     note = "" if is_same else f"with the declared effects; {fmt.kilograms_per_metre(table)} bare"
-    return fmt.kilograms_per_metre(built), note
+    return Fact("Mass", fmt.kilograms_per_metre(built), note)
 
 
 def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:
@@ -310,19 +284,19 @@ def _groups_card(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> C
     sizes = [*dict.fromkeys(product.size.id for product in chosen.products)]
     distinct = fmt.plural(len({*chosen.products}), "product")
     groups = zip(choice.groups, chosen.products, chosen.verification.utilisation, strict=True)
-    return Card(
-        heading="Ropes for groups of cables",
-        size=fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
-        metric="",
-        product=f"{distinct} for {fmt.plural(len(choice.groups), 'group')}",
-        facts=(
-            *(
-                Fact(group.name, product.label, _of_group(group, chosen, float(used)))
-                for group, product, used in groups
-            ),
-            Fact("Safety factor required", required, "on the breaking load"),
-            Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+    facts = (
+        *(
+            Fact(group.name, product.label, _of_group(group, chosen, float(used)))
+            for group, product, used in groups
         ),
+        Fact("Safety factor required", required, "on the breaking load"),
+        Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+    )
+    return Card(
+        "Ropes for groups of cables",
+        fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
+        f"{distinct} for {fmt.plural(len(choice.groups), 'group')}",
+        Facts(facts),
     )
 
 
@@ -333,9 +307,3 @@ def _of_group(group: CableGroup, chosen: Assigned, used: float) -> str:
     cables = fmt.listing(str(cable) for cable in group.cables)
     at_most = _lengths(longest, math.ceil)
     return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"
-
-
-def _from_breaking(efficiency: float, required: str) -> str:
-    """Return how the allowable tension follows from the breaking load."""
-    share = ", no loss," if efficiency == 1.0 else f" times {fmt.trimmed(efficiency, 3)}"
-    return f"breaking load{share} over {required}"

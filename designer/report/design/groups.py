@@ -2,57 +2,55 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.report import format as fmt
-from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.blocks import (
+    Column,
+    Fact,
+    Facts,
+    Heads,
+    Picture,
+    Row,
+    Section,
+    Statement,
+    Subheading,
+    Table,
+)
+from designer.report.design.source import Source
+from designer.report.pictures import chart
 from designer.selection.groups.result import Assigned, GroupChoice, Proposal
 
 _MOST_ROWS = 12
 
 
-@dataclass(frozen=True, slots=True)
-class GroupsSection:
-    """Products for groups of cables.
-
-    Parameters
-    ----------
-    verdict : Statement
-        What was found.
-    facts : tuple of Fact
-        Mass, saving and proof.
-    chosen : Table or None
-        What each group gets; None if nothing was found.
-    plan : Picture or None
-        The robot from above with the cables of each group.
-    how : str
-        How the choice was made.
-    proposals : Table or None
-        What was tried; None where there was nothing to try.
-    """
-
-    verdict: Statement
-    facts: tuple[Fact, ...]
-    chosen: Table | None
-    plan: Picture | None
-    how: str
-    proposals: Table | None
-
-
-def groups_section(analysis: Analysis, plan: Picture | None) -> GroupsSection | None:
-    """Return the section on groups; None if the study has none."""
-    choice = analysis.groups
+def section(source: Source) -> Section | None:
+    """Return what each group gets; None if the study has no groups."""
+    choice = source.analysis.groups
     if choice is None:
         return None
-    return GroupsSection(
-        verdict=groups_statement(choice),
-        facts=_facts(choice),
-        chosen=_chosen(choice, choice.chosen) if choice.chosen else None,
-        plan=plan,
-        how=_how(choice),
-        proposals=_proposals(choice) if choice.proposals else None,
+    return Section.of(
+        "groups",
+        "Products for groups of cables",
+        groups_statement(choice),
+        _facts(choice),
+        _chosen(choice, choice.chosen) if choice.chosen else None,
+        _plan(source.analysis, choice, choice.chosen) if source.draws and choice.chosen else None,
+        Subheading("proposals", "How they were found"),
+        _how(choice),
+        _proposals(choice) if choice.proposals else None,
+    )
+
+
+def _plan(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Picture | None:
+    from designer.report.figures.groups_plan import groups_plan
+
+    workspace = analysis.study.workspace
+    assert workspace is not None
+    return chart(
+        "The robot from above. Cables are drawn as thick as they are to each other.",
+        "Lines from the exit points to the platform, one colour a group",
+        groups_plan(analysis.built.robot, workspace.region, choice, chosen),
     )
 
 
@@ -95,7 +93,7 @@ def groups_hold(choice: GroupChoice) -> str:
     )
 
 
-def _facts(choice: GroupChoice) -> tuple[Fact, ...]:
+def _facts(choice: GroupChoice) -> Facts:
     limit = fmt.plural(choice.most_distinct, "product")
     facts = [Fact("Different products", f"at most {limit}")]
     if choice.chosen is not None:
@@ -109,19 +107,7 @@ def _facts(choice: GroupChoice) -> tuple[Fact, ...]:
         facts.append(Fact("Bound", f"{unit}, gap {fmt.percent(choice.gap)}"))
     proof = {"optimal": "best", "stopped": "not finished", "infeasible": "none holds"}
     facts.append(Fact("Proof", proof[choice.proof], choice.proof_sentence))
-    return tuple(facts)
-
-
-_HEAD = (
-    Column("Group", is_number=False),
-    Column("Cables", is_number=False),
-    Column("Product", is_number=False),
-    Column("Diameter", "mm"),
-    Column("Mass", "kg/m"),
-    Column("Allowable", "kN"),
-    Column("Used"),
-    Column("Most at", "m", is_number=False),
-)
+    return Facts(tuple(facts))
 
 
 def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
@@ -139,9 +125,7 @@ def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
                 fmt.utilisation(float(found.utilisation[k])),
                 _place(found.worst_place[k]),
             ),
-            note=f"Doubtful figures: {fmt.printed(product.size.doubt)}"
-            if product.size.doubt
-            else "",
+            note=fmt.doubtful(product.size.doubt),
         )
         for k, (group, product) in enumerate(zip(choice.groups, chosen.products, strict=True))
     ]
@@ -150,7 +134,11 @@ def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
         "with its own mass, stiffness and breaking load, and each group's worst pose was searched "
         "between the samples."
     )
-    return Table.of(caption, _HEAD, *rows)
+    columns = (
+        *("Group", "Cables", "Product", Column("Diameter", "mm"), Column("Mass", "kg/m")),
+        *(Column("Allowable", "kN"), Column("Used"), Column("Most at", "m", is_number=False)),
+    )
+    return Table.of(caption, columns, *rows)
 
 
 def _place(place: FloatArray) -> str:
@@ -185,15 +173,11 @@ def _proposals(choice: GroupChoice) -> Table:
     caption = "Assignments that were tried, in order, after one product for all."
     if more:
         caption += f" {fmt.plural(more, 'more')} are in result.json."
-    columns = (
-        Column("No."),
-        *(Column(group.name, is_number=False) for group in choice.groups),
-        Column("At least", choice.unit),
-        Column("Excluded"),
-        Column("Outcome", is_number=False),
-    )
+    names = (group.name for group in choice.groups)
+    numbers = Column("At least", choice.unit), Column("Excluded")
+    columns: Heads = (Column("No."), *names, *numbers, "Outcome")
     rows = (_row(k, one, choice) for k, one in enumerate(shown, start=1))
-    return Table.of(caption, columns, *rows)
+    return Table.of(caption, columns, *rows, kind="long")
 
 
 def _row(number: int, one: Proposal, choice: GroupChoice) -> Row:

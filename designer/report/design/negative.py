@@ -8,10 +8,10 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, Unserved
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
+from designer.report.blocks import Statement
 from designer.report.design.clearance import clearance_statement
 from designer.report.design.groups import groups_statement
 from designer.report.design.stiffness import stiffness_statement
-from designer.report.parts import Statement
 from designer.workspace.result import WorkspaceMap
 
 _MOST_NAMES = 4
@@ -19,10 +19,22 @@ _STRIP = 0.5  # of the inradius: what reaches deeper is no strip along the sides
 _LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 
-def reasons(analysis: Analysis, findings: Findings) -> tuple[Statement, ...]:
-    """Return why the answer is no, one statement for each part of it; empty if it is yes."""
-    found = [*_pose_reason(analysis), *_workspace_reason(analysis, findings)]
-    return (*found, *_selection_reason(analysis), *_quality_reasons(analysis))
+def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
+    """Yield why the answer is no, one statement for each part of it; nothing if it is yes."""
+    pose, workspace, selection = analysis.pose, analysis.workspace, analysis.selection
+    if pose is not None and not pose.sizing.statics.is_solved:
+        statics = pose.sizing.statics
+        where, why = fmt.position(statics.poses.position_m), Verdict(int(statics.verdict)).clause
+        yield Statement("The configured pose", f"At {where} {why}.", "bad")
+    if workspace is not None and not workspace.is_feasible:
+        parts = _not_served(analysis, workspace, findings.unserved)
+        yield Statement("The workspace", " ".join(parts), "bad")
+    if selection is not None and not analysis.has_products:
+        if analysis.groups is not None:
+            yield groups_statement(analysis.groups)
+        if selection.reason:
+            yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", "bad")
+    yield from _quality_reasons(analysis)
 
 
 def objections(analysis: Analysis) -> Iterator[str]:
@@ -40,49 +52,31 @@ def _quality_reasons(analysis: Analysis) -> Iterator[Statement]:
         yield stiffness_statement(found.stiffness)
 
 
-def _pose_reason(analysis: Analysis) -> Iterator[Statement]:
-    pose = analysis.pose
-    if pose is None or pose.sizing.statics.is_solved:
-        return
-    statics = pose.sizing.statics
-    where = fmt.position(statics.poses.position_m)
-    why = Verdict(int(statics.verdict)).clause
-    yield Statement("The configured pose", f"At {where} {why}.", "bad")
-
-
-def _workspace_reason(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
-    workspace = analysis.workspace
-    if workspace is None or workspace.is_feasible:
-        return
-    parts = [*_shares(analysis, workspace)]
-    if not parts:
-        parts = [
+def _not_served(
+    analysis: Analysis, workspace: WorkspaceMap, unserved: Unserved | None
+) -> Iterator[str]:
+    """Yield which share of the workspace is not served and why, an example, and where it lies."""
+    assert analysis.study.workspace is not None
+    census, fine = workspace.census, [Verdict.SOLVED]
+    if analysis.study.workspace.hangs_below == "exclude":
+        fine.append(Verdict.NO_FINITE_CABLE)
+    bad = [v for v in Verdict if v not in fine and census.statuses[v.label] > 0]
+    for verdict in bad:
+        share = fmt.share(census.statuses[verdict.label], census.samples)
+        yield f"In {share} of its volume {verdict.clause}."
+    if not bad:
+        yield (
             "Every sample is served, but the search between the samples met poses that no cable "
             "of the configured family can hold."
-        ]
+        )
     if workspace.infeasible_example_m is not None:
-        parts.append(f"One such position is {fmt.position(workspace.infeasible_example_m)}.")
-    if findings.unserved is not None:
-        parts.append(_whereabouts(analysis, findings.unserved))
-    yield Statement("The workspace", " ".join(parts), "bad")
-
-
-def _shares(analysis: Analysis, workspace: WorkspaceMap) -> Iterator[str]:
-    assert analysis.study.workspace is not None
-    census = workspace.census
-    left_out = analysis.study.workspace.hangs_below == "exclude"
-    for verdict in Verdict:
-        amount = census.statuses[verdict.label]
-        is_fine = verdict is Verdict.SOLVED or (verdict is Verdict.NO_FINITE_CABLE and left_out)
-        if amount > 0 and not is_fine:
-            yield f"In {fmt.share(amount, census.samples)} of its volume {verdict.clause}."
-
-
-def _whereabouts(analysis: Analysis, unserved: Unserved) -> str:
-    text = "All samples that are not served lie"
-    if _is_layer(analysis, unserved):
-        text += f" above z = {fmt.metres(unserved.lowest_z_m)} and"
-    return f"{text} within {fmt.metres(unserved.depth_m)} of the sides."
+        yield f"One such position is {fmt.position(workspace.infeasible_example_m)}."
+    if unserved is not None:
+        above = f" above z = {fmt.metres(unserved.lowest_z_m)} and"
+        yield (
+            f"All samples that are not served lie{above if _is_layer(analysis, unserved) else ''} "
+            f"within {fmt.metres(unserved.depth_m)} of the sides."
+        )
 
 
 def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
@@ -91,34 +85,31 @@ def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
     return bool(unserved.lowest_z_m > low + _LAYER * (high - low))
 
 
-def _selection_reason(analysis: Analysis) -> Iterator[Statement]:
-    selection = analysis.selection
-    if selection is None or analysis.has_products:
-        return
-    if analysis.groups is not None:
-        yield groups_statement(analysis.groups)
-    if not selection.reason:
-        return
-    text = f"{selection.reason[0].upper()}{selection.reason[1:]}."
-    yield Statement("The ropes", text, "bad")
-
-
-def actions(analysis: Analysis, findings: Findings) -> tuple[str, ...]:
-    """Return what could be done about a no, the most direct first; empty if the answer is yes."""
-    workspace = analysis.workspace
-    advice = [*_other_grades(analysis), *_move_pose(analysis)]
-    if workspace is not None and not workspace.is_feasible:
-        advice += [
-            *_real_figures(findings),
-            *_change_region(analysis, findings.unserved),
-            *_leave_out_hanging(findings),
-            "Raise the exit points (higher masts), or lower the top of the region.",
-            "Use a cable with more strength for its weight.",
-        ]
-    advice += _keep_clear(analysis)
+def actions(analysis: Analysis, findings: Findings) -> Iterator[str]:
+    """Yield what could be done about a no, the most direct first; nothing if the answer is yes."""
+    advice = [*_advice(analysis, findings)]
     if not advice and not analysis.is_positive:
-        advice.append("Add a grade with thicker sizes to the catalogue, or carry less mass.")
-    return tuple(advice)
+        advice = ["Add a grade with thicker sizes to the catalogue, or carry less mass."]
+    yield from advice
+
+
+def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
+    pose, workspace, found = analysis.pose, analysis.workspace, analysis.qualities
+    yield from _other_grades(analysis)
+    if pose is not None and not pose.sizing.statics.is_solved:
+        yield Verdict(int(pose.sizing.statics.verdict)).advice
+    if workspace is not None and not workspace.is_feasible:
+        yield from _real_figures(findings)
+        yield from _change_region(analysis, findings.unserved)
+        yield from _leave_out_hanging(findings)
+        yield "Raise the exit points (higher masts), or lower the top of the region."
+        yield "Use a cable with more strength for its weight."
+    if found is not None and found.interference is not None and found.interference.is_violated:
+        assert found.interference.worst is not None
+        yield (
+            f"Move exit points or attachments of {fmt.listing(found.interference.worst.names)} "
+            "apart, make the region smaller, or ask for less clearance."
+        )
 
 
 def _other_grades(analysis: Analysis) -> Iterator[str]:
@@ -126,49 +117,28 @@ def _other_grades(analysis: Analysis) -> Iterator[str]:
     if selection is None or analysis.has_products:
         return
     fitting = [o.best for o in selection.alternatives if o.best is not None]
-    if not fitting:
-        return
     fitting.sort(key=lambda candidate: candidate.total_mass_kg)
     names = [f"{c.grade.id} ({c.size.id})" for c in fitting[:_MOST_NAMES]]
     more = len(fitting) - _MOST_NAMES
     if more > 0:
         names.append(fmt.plural(more, "other"))
-    yield (
-        "Allow other grades. These hold the whole workspace, the lightest first: "
-        f"{fmt.listing(names)}."
-    )
-
-
-def _move_pose(analysis: Analysis) -> Iterator[str]:
-    pose = analysis.pose
-    if pose is not None and not pose.sizing.statics.is_solved:
-        yield Verdict(int(pose.sizing.statics.verdict)).advice
-
-
-def _keep_clear(analysis: Analysis) -> Iterator[str]:
-    found = analysis.qualities
-    if found is None or found.interference is None or not found.interference.is_violated:
-        return
-    worst = found.interference.worst
-    assert worst is not None
-    yield (
-        f"Move exit points or attachments of {fmt.listing(worst.names)} apart, make the region "
-        "smaller, or ask for less clearance."
-    )
+    if names:
+        yield (
+            "Allow other grades. These hold the whole workspace, the lightest first: "
+            f"{fmt.listing(names)}."
+        )
 
 
 def _real_figures(findings: Findings) -> Iterator[str]:
     outcome = findings.chosen_outcome
-    if outcome is None:
-        return
-    family = outcome.family
-    yield (
-        f"Configure the cable as a real rope. {outcome.grade.id} holds where the configured "
-        "family does not; on the nominal circle it has "
-        f"{fmt.kilograms_per_cubic_metre(family.density_kg_per_m3)}, "
-        f"{fmt.pascals(family.youngs_modulus_Pa)} and an allowable stress of "
-        f"{fmt.pascals(family.allowable_stress_Pa)}."
-    )
+    if outcome is not None:
+        yield (
+            f"Configure the cable as a real rope. {outcome.grade.id} holds where the configured "
+            "family does not; on the nominal circle it has "
+            f"{fmt.kilograms_per_cubic_metre(outcome.family.density_kg_per_m3)}, "
+            f"{fmt.pascals(outcome.family.youngs_modulus_Pa)} and an allowable stress of "
+            f"{fmt.pascals(outcome.family.allowable_stress_Pa)}."
+        )
 
 
 def _change_region(analysis: Analysis, unserved: Unserved | None) -> Iterator[str]:

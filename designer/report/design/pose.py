@@ -2,75 +2,73 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import replace
+from typing import SupportsFloat
 
 import numpy as np
 
-from designer.analysis.analyse import Analysis, PoseAnalysis
+from designer.analysis.analyse import PoseAnalysis
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
+from designer.report.blocks import (
+    Box,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Row,
+    Section,
+    Statement,
+    Subheading,
+    Table,
+    Tone,
+)
 from designer.report.design.scope import pose_statement
-from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
+from designer.report.design.source import Source
+from designer.report.pictures import chart
 from designer.sizing.loop import LoopSizing
 
 _MOST_TURNS = 8
 _LAST_TURNS = 3
+_NEGLIGIBLE, _LITTLE = 0.005, 0.02
+"""Shares by which sag may change a tension: not worth a word, not worth a figure."""
 
 
-@dataclass(frozen=True, slots=True)
-class PoseSection:
-    """The configured pose.
-
-    Parameters
-    ----------
-    verdict : Statement
-        Whether it can be held.
-    outside : Statement or None
-        Where it is none of the workspace; None if it is one of it.
-    facts : tuple of Fact
-        Position, margins and residuals.
-    methods : Table or None
-        The diameter by each way of sizing; None if no way gives one.
-    cables : Table or None
-        Every cable at the optimum; None if the pose is not solved.
-    turns : Table or None
-        Iterates of the loop; None if it could not start.
-    loop_chart, scene : Picture or None
-        The iterates over the turns, and the robot in this pose.
-    """
-
-    verdict: Statement
-    outside: Statement | None
-    facts: tuple[Fact, ...]
-    methods: Table | None
-    cables: Table | None
-    turns: Table | None
-    loop_chart: Picture | None
-    scene: Picture | None
-
-
-def pose_section(
-    analysis: Analysis, loop_chart: Picture | None, scene: Picture | None
-) -> PoseSection | None:
-    """Return the section on the configured pose; None if the study has none."""
-    pose = analysis.pose
+def section(source: Source) -> Section | None:
+    """Return what is known of the configured pose; None if the study has none."""
+    pose = source.analysis.pose
     if pose is None:
         return None
-    verdict = Verdict(int(pose.sizing.statics.verdict))
-    solved = verdict is Verdict.SOLVED
-    return PoseSection(
-        verdict=_statement(pose, verdict),
-        outside=next(pose_statement(analysis), None),
-        facts=_facts(pose),
-        methods=_methods(pose),
-        cables=_cables(pose) if solved else None,
-        turns=turns_table(pose.loop) if pose.loop.iterates else None,
-        loop_chart=loop_chart,
-        scene=scene,
+    return Section.of(
+        "pose",
+        "The configured pose",
+        _statement(pose),
+        next(pose_statement(source.analysis), None),
+        _facts(pose),
+        _methods(pose),
+        replace(source.robot, kind="space") if source.robot else None,
+        _cables(pose) if pose.sizing.statics.is_solved else None,
+        *(
+            (
+                Box.of(
+                    "keep",
+                    Subheading("loop", "The loop, turn by turn"),
+                    "Each turn solves the pose with the last diameter, takes the largest tension, "
+                    "and asks for the diameter that carries it at the allowable stress. A thicker "
+                    "cable is heavier, so the tension rises from turn to turn.",
+                    _loop_chart(pose) if source.draws else None,
+                ),
+                turns_table(pose.loop),
+            )
+            if pose.loop.iterates
+            else ()
+        ),
     )
 
 
-def _statement(pose: PoseAnalysis, verdict: Verdict) -> Statement:
+def _statement(pose: PoseAnalysis) -> Statement:
+    verdict = Verdict(int(pose.sizing.statics.verdict))
     if verdict is not Verdict.SOLVED:
         return Statement("This pose cannot be held", verdict.sentence, "bad")
     text = (
@@ -82,11 +80,15 @@ def _statement(pose: PoseAnalysis, verdict: Verdict) -> Statement:
     return Statement("This pose can be held", text, "good")
 
 
-def _facts(pose: PoseAnalysis) -> tuple[Fact, ...]:
+def _facts(pose: PoseAnalysis) -> Facts:
+    from scipy.spatial.transform import Rotation
+
     statics = pose.sizing.statics
     facts = [Fact("Position", fmt.position(statics.poses.position_m))]
     if not statics.robot.is_point_mass:
-        facts.append(Fact("Rotation vector", _rotation(statics.poses.rotation)))
+        turn = np.degrees(Rotation.from_matrix(statics.poses.rotation).as_rotvec())
+        row = ", ".join(fmt.fixed(float(x), 2) for x in turn)
+        facts.append(Fact("Rotation vector", f"({row}) deg"))
     if np.isfinite(pose.limit_ratio):
         meaning = (
             "stress of a cable of unlimited thickness over the allowable stress; "
@@ -102,64 +104,47 @@ def _facts(pose: PoseAnalysis) -> tuple[Fact, ...]:
         facts.append(Fact("Largest closure residual", fmt.power_of_ten(closure, "m")))
         unit = "N" if statics.robot.is_point_mass else "N or N·m"
         facts.append(Fact("Largest balance residual", fmt.power_of_ten(balance, unit), scale))
-    return tuple(facts)
-
-
-def _rotation(matrix: np.ndarray) -> str:
-    from scipy.spatial.transform import Rotation
-
-    degrees = np.degrees(Rotation.from_matrix(matrix).as_rotvec())
-    return f"({', '.join(fmt.fixed(float(x), 2) for x in degrees)}) deg"
+    return Facts(tuple(facts))
 
 
 def _methods(pose: PoseAnalysis) -> Table | None:
+    """Return the diameter by each way of sizing; None if no way gives one."""
     massless, sizing, loop = pose.massless, pose.sizing, pose.loop
     rows = []
     if np.isfinite(massless.largest_tension_N):
-        rows.append(
-            Row(
-                (
-                    "Straight weightless cables",
-                    fmt.millimetres(float(sizing.massless_diameter_m)),
-                    fmt.newtons(float(massless.largest_tension_N)),
-                    "sag ignored",
-                )
-            )
-        )
+        found = sizing.massless_diameter_m, massless.largest_tension_N
+        rows.append(_way("Straight weightless cables", *found, "sag ignored"))
     if loop.iterates:
         last = loop.iterates[-1]
-        found = (fmt.millimetres(last.diameter_m), fmt.newtons(last.max_tension_N))
-        if loop.has_diverged:
-            found = (fmt.MISSING, fmt.MISSING)
-        rows.append(Row(("Loop of section IV-B", *found, loop.outcome)))
+        ends = (math.nan, math.nan) if loop.has_diverged else (last.diameter_m, last.max_tension_N)
+        rows.append(_way("Loop of section IV-B", *ends, loop.outcome))
     if sizing.statics.is_solved:
-        found = (
-            fmt.millimetres(float(sizing.diameter_m)),
-            fmt.newtons(float(sizing.statics.largest_tension_N)),
-        )
-        rows.append(Row(("Optimum of section IV-C", *found, "Newton's method"), "good"))
-    columns = (
-        Column("Way", is_number=False),
-        Column("Diameter"),
-        Column("Largest tension"),
-        Column("Remark", is_number=False),
-    )
+        found = sizing.diameter_m, sizing.statics.largest_tension_N
+        rows.append(_way("Optimum of section IV-C", *found, "Newton's method", "good"))
+    columns = ("Way", Column("Diameter"), Column("Largest tension"), "Remark")
     caption = "The diameter of this pose by each way; sections are those of Riehl et al. (2010)."
     return Table.of(caption, columns, *rows) if rows else None
+
+
+def _way(
+    name: str,
+    diameter_m: SupportsFloat,
+    tension_N: SupportsFloat,
+    remark: str,
+    tone: Tone = "",
+) -> Row:
+    found = fmt.millimetres(float(diameter_m)), fmt.newtons(float(tension_N))
+    return Row((name, *found, remark), tone)
 
 
 def _cables(pose: PoseAnalysis) -> Table:
     statics = pose.sizing.statics
     largest = float(statics.largest_tension_N)
-    unit, scale = _force_unit(largest)
+    unit, scale = fmt.force_unit(largest)
     columns = (
-        Column("Cable"),
-        Column("Straight distance", "m"),
-        Column("Unstrained length", "m"),
-        Column("Horizontal force", unit),
-        Column("Vertical force", unit),
-        Column("Tension at platform", unit),
-        Column("Tension at exit", unit),
+        *(Column("Cable"), Column("Straight distance", "m"), Column("Unstrained length", "m")),
+        *(Column("Horizontal force", unit), Column("Vertical force", unit)),
+        *(Column("Tension at platform", unit), Column("Tension at exit", unit)),
         Column("Tension without sag", unit),
     )
     metres = zip(statics.geometry().chord_m, statics.length_m, strict=True)
@@ -174,11 +159,11 @@ def _cables(pose: PoseAnalysis) -> Table:
     length_places = fmt.decimals([float(statics.length_m.max())], 5)
     force_places = fmt.decimals([largest / scale], 4)
     rows = []
-    for index, (lengths, loads) in enumerate(zip(metres, forces, strict=True)):
+    for number, (lengths, loads) in enumerate(zip(metres, forces, strict=True), start=1):
         cells = [fmt.fixed(float(x), length_places) for x in lengths]
         cells += [fmt.fixed(float(x) / scale, force_places) for x in loads]
         is_worst = max(loads[2:4]) >= largest * (1.0 - 1e-9)
-        rows.append(Row((str(index + 1), *cells), "good" if is_worst else ""))
+        rows.append(Row((str(number), *cells), "good" if is_worst else ""))
     caption = (
         "Every cable at the optimum; the most loaded is marked. The forces act on the cable at "
         "the platform: the horizontal one away from the exit point, the vertical one upward."
@@ -186,9 +171,25 @@ def _cables(pose: PoseAnalysis) -> Table:
     return Table.of(caption, columns, *rows)
 
 
-def _force_unit(largest_N: float) -> tuple[str, float]:
-    """Return the unit for a column of forces, and how many newtons it has."""
-    return ("kN", 1e3) if largest_N >= 1e3 else ("N", 1.0)
+def _loop_chart(pose: PoseAnalysis) -> Picture | None:
+    """Return the turns as curves; None where they would be flat, as the loop ends at its start."""
+    from designer.report.figures.charts_pose import loop_chart
+
+    start, end = pose.massless.largest_tension_N, pose.sizing.statics.largest_tension_N
+    more, is_solved = float(end / start) - 1.0, pose.sizing.statics.is_solved
+    if is_solved and pose.loop.has_converged and abs(more) < _LITTLE:
+        return None
+    caption = "Largest tension and diameter over the turns of the loop"
+    if not (is_solved and np.isfinite(start)):
+        caption += "."
+    elif abs(more) < _NEGLIGIBLE:
+        caption += ". In this pose sag hardly matters."
+    else:
+        caption += (
+            ", and the optimum. Sag changes the tension of this pose by "
+            f"{fmt.signed_percent(more)}."
+        )
+    return chart(caption, "Two curves that rise from the massless start", loop_chart(pose))
 
 
 def turns_table(loop: LoopSizing) -> Table:
@@ -197,7 +198,7 @@ def turns_table(loop: LoopSizing) -> Table:
     if len(numbered) > _MOST_TURNS:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
     typical = loop.iterates[0 if loop.has_diverged else -1]
-    unit, scale = _force_unit(typical.max_tension_N)
+    unit, scale = fmt.force_unit(typical.max_tension_N)
     force_places = fmt.decimals([typical.max_tension_N / scale], 5)
     places = fmt.decimals([1e3 * typical.diameter_m], 4)
     rows: list[Row] = []
@@ -210,4 +211,4 @@ def turns_table(loop: LoopSizing) -> Table:
     caption = "Turns of the loop; turn 0 is the massless start."
     if loop.has_diverged:
         caption += " It diverges: each turn asks for more than the one before."
-    return Table.of(caption, columns, *rows)
+    return Table.of(caption, columns, *rows, kind="narrow turns")

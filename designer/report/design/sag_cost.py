@@ -2,95 +2,60 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, MasslessChoice
 from designer.report import format as fmt
-from designer.report.parts import Column, Row, Table
+from designer.report.blocks import Block, Column, Table
 
 
-@dataclass(frozen=True, slots=True)
-class SagCost:
-    """With and without sag.
+def sag_cost(analysis: Analysis, findings: Findings) -> tuple[Block, ...]:
+    """Compare with and without sag at the worst pose, or at the configured pose.
 
-    Parameters
-    ----------
-    table : Table
-        Diameter and tension in the configured family, and the factor between the two.
-    consequence : str
-        What a design without sag would have bought, and how it would fare; may be empty.
+    Also what a design without sag would have bought, and how it would fare; empty where there is
+    nothing to compare.
     """
-
-    table: Table
-    consequence: str
-
-
-def sag_cost(analysis: Analysis, findings: Findings) -> SagCost | None:
-    """Compare with and without sag at the worst pose, or at the configured pose."""
-    pairs = _workspace_pairs(analysis) or _pose_pairs(analysis)
-    if pairs is None:
-        return None
-    (diameter_m, massless_diameter_m), (tension_N, massless_tension_N), place = pairs
-    columns = (
-        Column("", is_number=False),
-        Column("Without sag"),
-        Column("With sag"),
-        Column("Factor"),
+    found = _at_the_worst_poses(analysis) or _at_the_configured_pose(analysis)
+    if found is None:
+        return ()
+    place, diameter_m, massless_diameter_m, tension_N, massless_tension_N = found
+    diameters = fmt.millimetres(massless_diameter_m), fmt.millimetres(diameter_m)
+    tensions = fmt.newtons_alike(massless_tension_N, tension_N)
+    table = Table.of(
+        f"Configured cable family, {place}.",
+        ("", Column("Without sag"), Column("With sag"), Column("Factor")),
+        ("Diameter", *diameters, fmt.factor(diameter_m / massless_diameter_m)),
+        ("Tension", *tensions, fmt.factor(tension_N / massless_tension_N)),
+        kind="small",
     )
-    rows = (
-        Row(
-            (
-                "Diameter",
-                fmt.millimetres(massless_diameter_m),
-                fmt.millimetres(diameter_m),
-                fmt.factor(diameter_m / massless_diameter_m),
-            )
-        ),
-        Row(
-            (
-                "Tension",
-                *fmt.newtons_alike(massless_tension_N, tension_N),
-                fmt.factor(tension_N / massless_tension_N),
-            )
-        ),
-    )
-    caption = f"Configured cable family, {place}."
     choice = findings.massless_choice
-    return SagCost(
-        Table.of(caption, columns, *rows), _consequence(analysis, choice) if choice else ""
-    )
+    return (table, _consequence(analysis, choice)) if choice else (table,)
 
 
-Pairs = tuple[tuple[float, float], tuple[float, float], str]
+_Found = tuple[str, float, float, float, float]
+"""Where, diameter with and without sag, tension with and without."""
 
 
-def _workspace_pairs(analysis: Analysis) -> Pairs | None:
+def _at_the_worst_poses(analysis: Analysis) -> _Found | None:
     workspace = analysis.workspace
     if workspace is None or workspace.sagging is None or workspace.massless is None:
         return None
     sagging, massless = workspace.sagging, workspace.massless
-    return (
-        (sagging.diameter_m, massless.diameter_m),
-        (sagging.max_tension_N, massless.max_tension_N),
-        "each at its own worst pose",
-    )
+    diameters = sagging.diameter_m, massless.diameter_m
+    return "each at its own worst pose", *diameters, sagging.max_tension_N, massless.max_tension_N
 
 
-def _pose_pairs(analysis: Analysis) -> Pairs | None:
+def _at_the_configured_pose(analysis: Analysis) -> _Found | None:
     pose = analysis.pose
     if pose is None or not pose.sizing.statics.is_solved:
         return None
-    massless_N = float(pose.massless.largest_tension_N)
+    sizing, massless_N = pose.sizing, float(pose.massless.largest_tension_N)
     if not np.isfinite(massless_N):
         return None
-    return (
-        (float(pose.sizing.diameter_m), float(pose.sizing.massless_diameter_m)),
-        (float(pose.sizing.statics.largest_tension_N), massless_N),
-        "at the configured pose",
-    )
+    diameters = float(sizing.diameter_m), float(sizing.massless_diameter_m)
+    tension_N = float(sizing.statics.largest_tension_N)
+    return "at the configured pose", *diameters, tension_N, massless_N
 
 
 def _consequence(analysis: Analysis, choice: MasslessChoice) -> str:

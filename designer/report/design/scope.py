@@ -10,7 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.grades.grade import Grade, Size
 from designer.model.space import Orientations
 from designer.report import format as fmt
-from designer.report.parts import Fact, Statement, Tone
+from designer.report.blocks import Fact, Statement, Tone
 from designer.selection.efficiency import Allowance
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study
@@ -32,26 +32,32 @@ def describe_orientations(orientations: Orientations) -> str:
 
 
 def orientation_fact(study: Study) -> Iterator[Fact]:
-    """Yield which orientations were checked; nothing of a point mass, which has none."""
+    """Yield which orientations were checked, and how; nothing of a point mass, which has none."""
     if study.workspace is None or study.robot.is_point_mass:
         return
-    orientations = study.workspace.orientations
-    yield Fact("Orientation", describe_orientations(orientations), _how_tried(orientations))
-
-
-def _how_tried(orientations: Orientations) -> str:
-    if orientations.is_level:
-        return "the platform was not turned"
-    if orientations.range_rad is None:
-        return "rotation vectors, the worst of them counts" if orientations.count > 1 else ""
-    return f"{orientations.count} of them at each sample, the worst searched between"
+    given = study.workspace.orientations
+    how = f"{given.count} of them at each sample, the worst searched between"
+    if given.is_level:
+        how = "the platform was not turned"
+    elif given.range_rad is None:
+        how = "rotation vectors, the worst of them counts" if given.count > 1 else ""
+    yield Fact("Orientation", describe_orientations(given), how)
 
 
 def orientation_statement(study: Study) -> Iterator[Statement]:
     """Yield the same for the first page."""
     for fact in orientation_fact(study):
-        text = f"{fact.value[0].upper()}{fact.value[1:]}{fact.note and ': '}{fact.note}."
+        text = f"{fmt.capital(fact.value)}{fact.note and ': '}{fact.note}."
         yield Statement("Orientations checked", text)
+
+
+def in_first_orientation(study: Study) -> str:
+    """Return in which orientation a map over positions is drawn; empty where there is one only."""
+    if study.workspace is None or study.workspace.orientations.is_level:
+        return ""
+    if study.workspace.orientations.range_rad is not None:
+        return ", in the middle of the range of orientations"
+    return ", in the first of the orientations" if study.workspace.orientations.count > 1 else ""
 
 
 def strength_statement(
@@ -69,42 +75,32 @@ def strength_statement(
     if sheave_m is None:
         bends = "100\u00a0% (none assumed) of the breaking load"
     else:
-        left = _after_bending(Allowance.of(selection), ropes)
-        bends = f"over {fmt.millimetres(sheave_m)}{left}; the smaller share counts"
+        left = Allowance.of(selection).bending_efficiency
+        parts = [
+            f"{fmt.percent(left(grade, size.diameter_m))} for {size.id} "
+            f"(D/d {fmt.trimmed(sheave_m / size.diameter_m, 3)})"
+            for grade, size in ropes
+        ]
+        shares = f" {fmt.listing(parts)} of the breaking load" if parts else ""
+        bends = f"over {fmt.millimetres(sheave_m)}{shares}; the smaller share counts"
     is_assumed = share == 1.0 or sheave_m is None
     yield Statement("Losses of strength", f"{ends}{bends}.", "doubt" if is_assumed else "")
 
 
-def _after_bending(allowance: Allowance, ropes: Iterable[tuple[Grade, Size]]) -> str:
-    assert allowance.sheave_diameter_m is not None
-    parts = [
-        f"{fmt.percent(allowance.bending_efficiency(grade, size.diameter_m))} for {size.id} "
-        f"(D/d {fmt.trimmed(allowance.sheave_diameter_m / size.diameter_m, 3)})"
-        for grade, size in ropes
-    ]
-    return f" {fmt.listing(parts)} of the breaking load" if parts else ""
-
-
 def pose_statement(analysis: Analysis) -> Iterator[Statement]:
     """Yield where the configured pose is not one of the workspace, and what holds there."""
-    outside = analysis.study.pose_outside
+    outside, pose, qualities = analysis.study.pose_outside, analysis.study.pose, analysis.qualities
     if not outside:
         return
+    tone: Tone = "doubt"
     text = f"It {outside}."
-    tone, used = _used_there(analysis)
-    yield Statement("The configured pose is not in the workspace", f"{text}{used}", tone)
-
-
-def _used_there(analysis: Analysis) -> tuple[Tone, str]:
-    pose, qualities = analysis.study.pose, analysis.qualities
-    if pose is None or qualities is None:
-        return "doubt", ""
-    cable, name = qualities.cable.cable, qualities.cable.name
-    statics = solve_sagging(analysis.built.robot, pose, cable)
-    if not statics.is_solved:
-        return "bad", f" With {name} no equilibrium was found there."
-    used = float((statics.cable_tension_N / cable.allowable_tension_N).max())
-    return (
-        "bad" if used > 1.0 else "doubt",
-        f" There, {name} is used to {fmt.utilisation(used)} of what is allowed.",
-    )
+    if pose is not None and qualities is not None:
+        cable, name = qualities.cable.cable, qualities.cable.name
+        statics = solve_sagging(analysis.built.robot, pose, cable)
+        used, said = np.inf, f"With {name} no equilibrium was found there."
+        if statics.is_solved:
+            used = float((statics.cable_tension_N / cable.allowable_tension_N).max())
+            said = f"There, {name} is used to {fmt.utilisation(used)} of what is allowed."
+        tone = "bad" if used > 1.0 else "doubt"
+        text += f" {said}"
+    yield Statement("The configured pose is not in the workspace", text, tone)

@@ -1,14 +1,25 @@
-"""The choice of a rope: idealised beside real, the cost of the snap, all candidates."""
+"""The choice of a rope: what was chosen and where it is known from, and all that was tried."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.grades.grade import TRUST_MEANING, Grade, Reference
 from designer.report import format as fmt
+from designer.report.blocks import (
+    Block,
+    Box,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Row,
+    Section,
+    Statement,
+    Subheading,
+    Table,
+)
 from designer.report.design.candidates import (
     alternatives_table,
     best_table,
@@ -18,112 +29,44 @@ from designer.report.design.candidates import (
     pareto_table,
     thin_table,
 )
-from designer.report.design.comparison import Comparison, compare
-from designer.report.parts import Column, Fact, Picture, Row, Statement, Table
-from designer.report.pictures import Pictures
+from designer.report.design.comparison import compared
+from designer.report.design.source import Source
+from designer.report.pictures import chart, scene
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import SelectionResult
-from designer.selection.usable import UsableSize
+from designer.selection.usable import Usable, UsableSize
 
 
-@dataclass(frozen=True, slots=True)
-class UsablePart:
-    """Where each size of one grade may go.
-
-    Parameters
-    ----------
-    table : Table
-        Share and volume of each size.
-    chart : Picture or None
-        The same as a curve.
-    scene : Picture or None
-        Where some of the sizes serve, in space.
-    """
-
-    table: Table
-    chart: Picture | None
-    scene: Picture | None
-
-
-@dataclass(frozen=True, slots=True)
-class SelectionSection:
-    """The choice of a rope.
-
-    Parameters
-    ----------
-    verdict : Statement
-        What was chosen, or why nothing.
-    sources : tuple of Fact
-        What is known of the chosen grade, and where from; empty if none was chosen.
-    comparison : Comparison or None
-        The configured cable family beside the chosen rope; None if none was chosen.
-    tried : str
-        What was solved and what it was compared by.
-    front : str
-        How many sizes no other beats, in a sentence; empty where none holds.
-    pareto : Table or None
-        These sizes; None where none holds.
-    pareto_chart : Picture or None
-        The same among all that hold.
-    best : Table or None
-        The best size of each grade; None where none holds.
-    chart : Picture or None
-        Sizes and need of each grade.
-    fallen : Table
-        Why the others fell out.
-    dominators : str
-        Who beats most of the others, and what was searched; may be empty.
-    thin : Table or None
-        Grades of which no size holds; None where there are none.
-    usable : UsablePart or None
-        What each size of the chosen grade serves; None where nothing was solved.
-    notes : tuple of Statement
-        Doubts about figures that the tables point to.
-    alternatives : Table or None
-        Grades outside the study's list that would hold; None where there are none to show.
-    """
-
-    verdict: Statement
-    sources: tuple[Fact, ...]
-    comparison: Comparison | None
-    tried: str
-    front: str
-    pareto: Table | None
-    pareto_chart: Picture | None
-    best: Table | None
-    chart: Picture | None
-    fallen: Table
-    dominators: str
-    thin: Table | None
-    usable: UsablePart | None
-    notes: tuple[Statement, ...]
-    alternatives: Table | None
-
-
-def selection_section(
-    analysis: Analysis, findings: Findings, pictures: Pictures
-) -> SelectionSection | None:
-    """Return the section on the choice; None if the study asks for none."""
-    selection = analysis.selection
+def section(source: Source) -> Section | None:
+    """Return what was chosen and tried; None if the study asks for no rope."""
+    selection = source.analysis.selection
     if selection is None:
         return None
-    chosen, outcome = selection.chosen, findings.chosen_outcome
-    return SelectionSection(
-        verdict=_statement(selection),
-        sources=_sources(chosen.grade) if chosen else (),
-        comparison=compare(analysis, outcome) if outcome else None,
-        tried=_tried(selection),
-        front=front_sentence(selection),
-        pareto=pareto_table(selection) if selection.front else None,
-        pareto_chart=pictures.pareto,
-        best=best_table(selection) if selection.front else None,
-        chart=pictures.candidates,
-        fallen=fallen_table(selection),
-        dominators=main_dominators(selection),
-        thin=thin_table(selection.outcomes),
-        usable=_usable(selection, pictures),
-        notes=_notes(selection),
-        alternatives=alternatives_table(selection),
+    chosen, outcome = selection.chosen, source.findings.chosen_outcome
+    seen = {outcome.grade.trust for outcome in selection.outcomes}
+    alternatives = alternatives_table(selection)
+    grades = _grades_chart(selection) if source.draws else None
+    return Section.of(
+        "selection",
+        "The choice of a rope",
+        _statement(selection),
+        Box.of("loose", sources(chosen.grade)) if chosen else None,
+        _tried(selection),
+        *(_front(selection, draws=source.draws) if selection.front else ()),
+        Box.of("keep", Subheading("fallen", "Why the others fell out"), fallen_table(selection)),
+        main_dominators(selection),
+        thin_table(selection.outcomes),
+        Box.of("keep", Subheading("candidates", "Grades"), grades) if grades else None,
+        best_table(selection) if selection.front else None,
+        *(
+            Statement(f"Trust {letter}", f"{fmt.capital(meaning)}.")
+            for letter, meaning in TRUST_MEANING.items()
+            if letter in seen
+        ),
+        *(_usable(source, selection, selection.usable) if selection.usable else ()),
+        *(compared(source.analysis, outcome) if outcome else ()),
+        Subheading("alternatives", "Grades that would hold") if alternatives else None,
+        alternatives,
     )
 
 
@@ -136,7 +79,7 @@ def _statement(selection: SelectionResult) -> Statement:
     chosen = selection.chosen
     if chosen is None:
         reason = selection.reason or "no reason is known"
-        return Statement("No rope was found", f"{reason[0].upper()}{reason[1:]}.", "bad")
+        return Statement("No rope was found", f"{fmt.capital(reason)}.", "bad")
     held = sum(outcome.outcome == "fits" for outcome in selection.outcomes)
     first = MEANINGS[selection.objectives[0]]
     most = "largest" if first.more_is_better else "least"
@@ -148,30 +91,28 @@ def _statement(selection: SelectionResult) -> Statement:
     return Statement("A rope was found", text, "good")
 
 
-def _sources(grade: Grade) -> tuple[Fact, ...]:
-    elasticity = grade.elasticity
-    doubt = f"±\u00a0{fmt.trimmed(100 * elasticity.uncertainty)}\u00a0%"
-    return (
-        Fact("Grade", grade.id),
-        Fact("Product", grade.product),
-        Fact("Maker", grade.manufacturer),
-        Fact("Construction", f"{grade.construction}, core {grade.core}, {grade.finish}"),
-        Fact("Standard", grade.standard or "not given"),
-        _reference(grade.source),
-        Fact("Trust", f"{grade.trust}: {TRUST_MEANING[grade.trust]}"),
-        Fact(
-            "Modulus" if grade.modulus else "Stiffness",
-            f"{elasticity.figure}, {doubt}",
-            f"{elasticity.basis}: {elasticity.source}",
-        ),
-        *_limits(grade),
-        *(Fact("Computed", f"{c.figure.replace('_', ' ')}: {c.how}") for c in grade.computed),
-        *([Fact("Notes", " ".join(map(_sentence, grade.notes)))] if grade.notes else []),
+def sources(grade: Grade) -> Facts:
+    """Return what is known of a grade, and where from."""
+    elasticity, notes = grade.elasticity, (f"{note.removesuffix('.')}." for note in grade.notes)
+    return Facts(
+        (
+            Fact("Grade", grade.id),
+            Fact("Product", grade.product),
+            Fact("Maker", grade.manufacturer),
+            Fact("Construction", f"{grade.construction}, core {grade.core}, {grade.finish}"),
+            Fact("Standard", grade.standard or "not given"),
+            _reference(grade.source),
+            Fact("Trust", f"{grade.trust}: {TRUST_MEANING[grade.trust]}"),
+            Fact(
+                "Modulus" if grade.modulus else "Stiffness",
+                f"{elasticity.figure}, {fmt.plus_minus(elasticity.uncertainty)}",
+                f"{elasticity.basis}: {elasticity.source}",
+            ),
+            *_limits(grade),
+            *(Fact("Computed", f"{c.figure.replace('_', ' ')}: {c.how}") for c in grade.computed),
+            *([Fact("Notes", " ".join(notes))] if grade.notes else []),
+        )
     )
-
-
-def _sentence(note: str) -> str:
-    return note if note.endswith(".") else f"{note}."
 
 
 def _limits(grade: Grade) -> Iterator[Fact]:
@@ -192,15 +133,6 @@ def _reference(source: Reference) -> Fact:
     return Fact("Table read from", text, note=url, link=url if is_web else "")
 
 
-def _notes(selection: SelectionResult) -> tuple[Statement, ...]:
-    seen = {outcome.grade.trust for outcome in selection.outcomes}
-    return tuple(
-        Statement(f"Trust {letter}", f"{meaning[0].upper()}{meaning[1:]}.")
-        for letter, meaning in TRUST_MEANING.items()
-        if letter in seen
-    )
-
-
 def _tried(selection: SelectionResult) -> str:
     """Return what was solved, in a sentence."""
     candidates = selection.candidates
@@ -215,46 +147,115 @@ def _tried(selection: SelectionResult) -> str:
     )
 
 
-def _usable(selection: SelectionResult, pictures: Pictures) -> UsablePart | None:
-    usable = selection.usable
-    if usable is None or not usable.sizes:
+def _front(selection: SelectionResult, *, draws: bool) -> tuple[Block, ...]:
+    heading = Subheading("pareto", "The sizes that no other beats")
+    picture = _pareto_chart(selection) if draws else None
+    return Box.of("keep", heading, front_sentence(selection), picture), pareto_table(selection)
+
+
+def _pareto_chart(selection: SelectionResult) -> Picture | None:
+    from designer.report.figures.charts_selection import pareto_chart
+
+    caption = "Every size that holds, by what sizes are compared by"
+    if not any(MEANINGS[objective].more_is_better for objective in selection.objectives):
+        caption += "; better is further left and further down"
+    caption += ". A size of which a figure is not known is not in that panel."
+    if len(selection.front) > 1:
+        caption += " Numbers are the rows of the table below."
+    return chart(caption, "Clouds of points with a lower left edge", pareto_chart(selection))
+
+
+def _grades_chart(selection: SelectionResult) -> Picture | None:
+    """Return sizes and need of each grade; None where no grade has a diameter that would do."""
+    from designer.report.figures.charts_selection import candidates_chart
+
+    outcomes = (*selection.outcomes, *selection.alternatives)
+    if not any(math.isfinite(outcome.continuous_diameter_m) for outcome in outcomes):
         return None
-    has_volume = usable.sizes[0].volume_m3 is not None
-    columns = [
-        Column("Size", is_number=False),
-        Column("Diameter", "mm"),
-        Column("Serves", "of the region" if has_volume else "of the points"),
-    ]
-    if has_volume:
-        columns.append(Column("Volume", "m³"))
-    first = usable.first_for_good
-    shown = len(usable.sizes) if first is None else first + 1
     caption = (
-        f"How much of the workspace each size of {usable.grade.id} serves with its own figures, "
+        "Each grade: the sizes that are sold, the diameter that the workspace needs, the best size "
+        "that holds and the mass of all cables of it."
+    )
+    if selection.alternatives:
+        caption += " A star marks grades that the study does not allow."
+    return chart(caption, "A row for each grade", candidates_chart(selection))
+
+
+def _usable(source: Source, selection: SelectionResult, found: Usable) -> tuple[Block, ...]:
+    """Return where each size of one grade may go: as a curve if sizes differ, and in space."""
+    if not found.sizes:
+        return ()
+    curve = _usable_chart(selection, found) if source.draws and found.differs else None
+    table = usable_table(found, kind="long" if curve else "")
+    heading = Subheading("usable", "Where each size may go")
+    layers = _layers(source, found)
+    shown = (Box.of("keep", heading, curve or table), layers, table if curve else None)
+    return tuple(block for block in shown if block)
+
+
+def _usable_chart(selection: SelectionResult, found: Usable) -> Picture | None:
+    from designer.report.figures.charts_shares import usable_chart
+
+    drawn = usable_chart(found, selection.chosen)
+    return chart(usable_caption(selection, found), "A curve that climbs to all", drawn)
+
+
+def usable_caption(selection: SelectionResult, found: Usable) -> str:
+    """Return the caption of how much of the workspace each size serves.
+
+    Only of the chosen size is it proved between the samples that it serves all.
+    """
+    text = f"How much of the workspace each size of {found.grade.id} serves."
+    whole = next((one.size for one in found.sizes if one.fraction == 1.0), None)
+    if selection.chosen is None or whole is not selection.chosen.size:
+        return text
+    return f"{text} The chosen {whole.id} is the thinnest that serves all of it."
+
+
+def _layers(source: Source, found: Usable) -> Picture | None:
+    if source.maps is None or not source.draws_scenes:
+        return None
+    from designer.report.figures.scenes import usable_scene
+
+    drawn = usable_scene(source.maps, found)
+    return scene(layers_caption(found), "The region in layers", drawn, kind="space")
+
+
+def layers_caption(found: Usable) -> str:
+    """Return the caption of the layers that sizes serve."""
+    text = f"Where sizes of {found.grade.id} may go, a part of the region cut away:"
+    if found.is_nested:
+        return f"{text} each serves its own layer and those of all thinner ones."
+    return (
+        f"{text} each part has the colour of the thinnest of them that serves there. Not all "
+        "thicker ones serve there too; the table says which."
+    )
+
+
+def usable_table(found: Usable, kind: str = "") -> Table:
+    """Return how much each size serves, up to the thinnest from which on all serve all."""
+    has_volume = found.sizes[0].volume_m3 is not None
+    of_what = "of the region" if has_volume else "of the points"
+    volume = (Column("Volume", "m³"),) if has_volume else ()
+    first = found.first_for_good
+    shown = len(found.sizes) if first is None else first + 1
+    caption = (
+        f"How much of the workspace each size of {found.grade.id} serves with its own figures, "
         "by the samples."
     )
-    if not usable.is_nested:
+    if not found.is_nested:
         caption += " The sizes are not nested: some serve less than a thinner one."
-    if shown < len(usable.sizes):
+    if shown < len(found.sizes):
         caption += " All thicker ones serve all of it."
-    return UsablePart(
-        table=Table.of(caption, tuple(columns), *map(_usable_row, usable.sizes[:shown])),
-        chart=pictures.usable_chart,
-        scene=pictures.usable_scene,
-    )
+    columns = ("Size", Column("Diameter", "mm"), Column("Serves", of_what), *volume)
+    return Table.of(caption, columns, *map(_usable_row, found.sizes[:shown]), kind=kind)
 
 
 def _usable_row(one: UsableSize) -> Row:
-    cells = [one.size.id, fmt.fixed(1e3 * one.size.diameter_m, 1), _part(one.fraction)]
+    cells = [one.size.id, fmt.fixed(1e3 * one.size.diameter_m, 1), fmt.share(one.fraction)]
     if one.volume_m3 is not None:
         cells.append(fmt.number(one.volume_m3))
     note = ""
     if one.lost_fraction > 0.0:
-        note = f"Does not serve {_part(one.lost_fraction)} of it that a thinner size serves."
+        note = f"Does not serve {fmt.share(one.lost_fraction)} of it that a thinner size serves."
     return Row(tuple(cells), "" if one.fraction > 0.0 else "muted", note)
-
-
-def _part(fraction: float) -> str:
-    """Return a share; never ``100 %`` for what is not all."""
-    nearly_all = fraction < 1.0 and round(fraction, 3) == 1.0
-    return f"over\u00a0{fmt.percent(0.999)}" if nearly_all else fmt.percent(fraction)

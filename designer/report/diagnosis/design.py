@@ -5,58 +5,47 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from markupsafe import Markup
 
 from designer.diagnosis.result import Choice, Diagnosis
 from designer.report import format as fmt
-from designer.report.diagnosis import words
-from designer.report.parts import Column, Row, Table
+from designer.report.blocks import Column, Heads, Listing, Row, Section, Table
 
 
-@dataclass(frozen=True, slots=True)
-class DesignSection:
-    """What the better model does to the design.
-
-    Parameters
-    ----------
-    sentence : str
-        What it means for the cable.
-    numbers : str
-        Utilisation, tension and diameter before and after, in sentences; may be empty.
-    mounted : str
-        What it means for the cable that hangs on the machine; may be empty.
-    table : Table or None
-        The choice before and after; None where the study does not ask for one.
-    remarks : tuple of str
-        Which effects do not reach the design.
-    effects : str
-        The block ``effects`` as it stands in the config that was written; may be empty.
-    config : str
-        Name of that config.
-    """
-
-    sentence: str
-    numbers: str
-    mounted: str
-    table: Table | None
-    remarks: tuple[str, ...]
-    effects: str
-    config: str
-
-
-def design_section(diagnosis: Diagnosis) -> DesignSection:
-    """Return what the better model does to the design."""
-    before, after = diagnosis.design_before, diagnosis.design_after
-    has_both = before is not None and after is not None
-    return DesignSection(
-        sentence=_sentence(diagnosis),
-        numbers=_numbers(diagnosis),
-        mounted=_mounted(diagnosis),
-        table=_design_table(diagnosis),
-        remarks=_remarks(diagnosis) if has_both else (),
-        effects=effects_text(diagnosis),
-        config=f"{diagnosis.study.source.path.stem}.diagnosed.yaml",
+def section(diagnosis: Diagnosis) -> Section:
+    """Return what the better model does to the design, and the effects for the config."""
+    effects = effects_text(diagnosis)
+    config = Markup('<span class="id">{}</span>').format(config_name(diagnosis))
+    if effects:
+        how = Markup(
+            "The config {}, beside this report, holds the whole model: what was declared, fitted "
+            "and found. A design report made from it uses it everywhere; "
+            '<span class="id">designer diagnose --check</span> holds it against later data, with '
+            "nothing fitted anew."
+        ).format(config)
+    else:
+        how = Markup("The config {}, beside this report, holds no effects.").format(config)
+    return Section.of(
+        "design",
+        "What it means for the design",
+        consequence(diagnosis),
+        _table(diagnosis),
+        how,
+        _mounted(diagnosis) if effects else None,
+        Listing(effects) if effects else None,
     )
+
+
+def on_first_page(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return what it means for the cable, and in numbers."""
+    numbers = f"{_numbers(diagnosis)} {_mounted(diagnosis)}".strip()
+    return tuple(text for text in (consequence(diagnosis), numbers) if text)
+
+
+def config_name(diagnosis: Diagnosis) -> str:
+    """Return the name of the config that is written."""
+    return f"{diagnosis.study.source.path.stem}.diagnosed.yaml"
 
 
 def effects_text(diagnosis: Diagnosis) -> str:
@@ -76,21 +65,26 @@ def effects_text(diagnosis: Diagnosis) -> str:
     return stream.getvalue()
 
 
-def _sentence(diagnosis: Diagnosis) -> str:
+def consequence(diagnosis: Diagnosis) -> str:
+    """Return what the better model means for the cable, and which effects do not reach it."""
     before, after = diagnosis.design_before, diagnosis.design_after
     if before is None or after is None:
-        return _why_not(diagnosis)
-    if not _reaches(diagnosis):
-        if not diagnosis.findings:
-            return f"Nothing was found, so the design stays as it is: {_named(before)}."
-        return f"Nothing that was found reaches the design, which stays as it is: {_named(before)}."
-    if (before.grade, before.size_id) == (after.grade, after.size_id):
-        return f"The choice stays: {_named(after)}."
-    return f"The choice changes from {_named(before)} to {_named(after)}."
-
-
-def _reaches(diagnosis: Diagnosis) -> bool:
-    return any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings))
+        if diagnosis.study.robot.has_enough_cables:
+            return "The study has no workspace or no selection, so no cable was chosen."
+        return (
+            "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
+            "pose that one chooses, so none was chosen."
+        )
+    if not any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings)):
+        what = "Nothing was found, so the design stays as it is"
+        if diagnosis.findings:
+            what = "Nothing that was found reaches the design, which stays as it is"
+        text = f"{what}: {_named(before)}."
+    elif (before.grade, before.size_id) == (after.grade, after.size_id):
+        text = f"The choice stays: {_named(after)}."
+    else:
+        text = f"The choice changes from {_named(before)} to {_named(after)}."
+    return " ".join((text, *_remarks(diagnosis)))
 
 
 def _numbers(diagnosis: Diagnosis) -> str:
@@ -115,22 +109,18 @@ def _numbers(diagnosis: Diagnosis) -> str:
 
 def _utilisation(diagnosis: Diagnosis, before: Choice, after: Choice) -> Iterator[str]:
     """Yield how far the cable is used, and how far the one chosen before would be."""
-    if after.grade and before.grade == after.grade and before.size_id == after.size_id:
-        yield _use(
-            "Its utilisation", before.utilisation, after.utilisation, changes=after is not before
-        )
-    elif after.grade:
-        yield _use("Its utilisation", after.utilisation, after.utilisation, changes=False)
+    if after.grade:
+        is_same = before.grade == after.grade and before.size_id == after.size_id
+        was = before.utilisation if is_same else after.utilisation
+        yield _use("Its utilisation", was, after.utilisation)
     if diagnosis.kept is not None:
         used = fmt.utilisation(diagnosis.kept.utilisation)
         yield f"The one chosen before would be used to {used}."
 
 
-def _use(what: str, before: float, after: float, *, changes: bool) -> str:
+def _use(what: str, before: float, after: float) -> str:
     was, now = fmt.utilisation(before), fmt.utilisation(after)
-    if not changes or was == now:
-        return f"{what} is {now}."
-    return f"{what} goes from {was} to {now}."
+    return f"{what} is {now}." if was == now else f"{what} goes from {was} to {now}."
 
 
 def _mounted(diagnosis: Diagnosis) -> str:
@@ -143,97 +133,59 @@ def _mounted(diagnosis: Diagnosis) -> str:
             "Whether the rope on the machine holds is not said: "
             "measurements.cable gives no minimum_breaking_load."
         )
-    text = _use(
-        "The utilisation of the rope on the machine",
-        before.utilisation,
-        after.utilisation,
-        changes=True,
-    )
+    what = "The utilisation of the rope on the machine"
+    text = _use(what, before.utilisation, after.utilisation)
     return text if after.utilisation <= 1.0 else f"{text} That rope is overloaded."
-
-
-def _why_not(diagnosis: Diagnosis) -> str:
-    robot = diagnosis.study.robot
-    if not robot.has_enough_cables:
-        return (
-            "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
-            "pose that one chooses, so none was chosen."
-        )
-    return "The study has no workspace or no selection, so no cable was chosen."
 
 
 def _named(choice: Choice) -> str:
     return f"{choice.grade}, {choice.size_id}" if choice.grade else "no product holds"
 
 
-def _remarks(diagnosis: Diagnosis) -> tuple[str, ...]:
+def _remarks(diagnosis: Diagnosis) -> Iterator[str]:
     idle = [s.effect.key for s in diagnosis.settings if not s.effect.reaches_design]
-    remarks = []
     if idle:
         verb, it = ("does", "it changes") if len(idle) == 1 else ("do", "they change")
-        remarks.append(
-            f"{words.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
+        yield (
+            f"{fmt.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
             "the sizing counts."
         )
     if diagnosis.is_unexplained:
-        remarks.append("What is unexplained is not in the design.")
-    return tuple(remarks)
+        yield "What is unexplained is not in the design."
 
 
-def _design_table(diagnosis: Diagnosis) -> Table | None:
+def _table(diagnosis: Diagnosis) -> Table | None:
     before, after = diagnosis.design_before, diagnosis.design_after
     if before is None or after is None:
         return None
-    columns = (
-        Column("", is_number=False),
-        Column("Product", is_number=False),
-        Column("Its diameter"),
-        Column("Its largest tension"),
-        Column("Utilisation"),
-        Column("Optimum of the configured family"),
-        Column("Its largest tension"),
+    numbers = ("Its diameter", "Its largest tension", "Utilisation")
+    optimum = ("Optimum of the configured family", "Its largest tension")
+    when, rows = "", [_row("As declared", before)]
+    if after is not before:
+        when, names = ", before and after", ("diameter_m", "max_tension_N", "utilisation")
+        ratios = (
+            getattr(after, name) / getattr(before, name)
+            for name in (*names, "optimum_m", "optimum_tension_N")
+        )
+        changes = (fmt.signed_percent(r - 1.0) if math.isfinite(r) else fmt.MISSING for r in ratios)
+        rows = [_row("Before", before), _row("After", after)]
+        rows.append(Row(("Change", "", *changes), "muted"))
+    others = (
+        ("After", "the one chosen before", diagnosis.kept),
+        ("Before", "on the machine", diagnosis.mounted_before),
+        ("After", "on the machine", diagnosis.mounted_after),
     )
-    if after is before:
-        caption = "The chosen cable and the largest tension in the workspace."
-        return Table.of(caption, columns, _row("As declared", before), *_other_rows(diagnosis))
-    return Table.of(
-        "The chosen cable and the largest tension in the workspace, before and after.",
-        columns,
-        _row("Before", before),
-        _row("After", after),
-        Row(("Change", "", *_changes(before, after)), "muted"),
-        *_other_rows(diagnosis),
-    )
+    for title, name, use in others:  # these have no optimum
+        if use is not None:
+            figures = fmt.newtons(use.max_tension_N), fmt.utilisation(use.utilisation)
+            rows.append(Row((title, name, "", *figures, "", "")))
+    columns: Heads = ("", "Product", *map(Column, (*numbers, *optimum)))
+    caption = f"The chosen cable and the largest tension in the workspace{when}."
+    return Table.of(caption, columns, *rows)
 
 
 def _row(title: str, choice: Choice) -> Row:
     chosen, optimum = fmt.newtons_alike(choice.max_tension_N, choice.optimum_tension_N)
-    return Row(
-        (
-            title,
-            _named(choice),
-            fmt.millimetres(choice.diameter_m),
-            chosen,
-            fmt.utilisation(choice.utilisation),
-            fmt.millimetres(choice.optimum_m),
-            optimum,
-        )
-    )
-
-
-def _other_rows(diagnosis: Diagnosis) -> Iterator[Row]:
-    """Yield the cable chosen before and the one on the machine, which have no optimum."""
-    for title, name, use in (
-        ("After", "the one chosen before", diagnosis.kept),
-        ("Before", "on the machine", diagnosis.mounted_before),
-        ("After", "on the machine", diagnosis.mounted_after),
-    ):
-        if use is not None:
-            figures = fmt.newtons(use.max_tension_N), fmt.utilisation(use.utilisation)
-            yield Row((title, name, "", *figures, "", ""))
-
-
-def _changes(before: Choice, after: Choice) -> Iterator[str]:
-    for name in ("diameter_m", "max_tension_N", "utilisation", "optimum_m", "optimum_tension_N"):
-        was, now = getattr(before, name), getattr(after, name)
-        yield fmt.signed_percent(now / was - 1.0) if math.isfinite(now / was) else fmt.MISSING
+    diameter, optimum_diameter = map(fmt.millimetres, (choice.diameter_m, choice.optimum_m))
+    used = fmt.utilisation(choice.utilisation)
+    return Row((title, _named(choice), diameter, chosen, used, optimum_diameter, optimum))

@@ -2,129 +2,102 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from designer.diagnosis.errors_of import Interval
-from designer.diagnosis.foretell import Foretold
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
+from designer.report.blocks import Column, Group, Picture, Row, Section, Table
 from designer.report.diagnosis.quantity import Quantity, quantities
-from designer.report.parts import Column, Group, Picture, Row, Table
+from designer.report.pictures import chart
 
 
-@dataclass(frozen=True, slots=True)
-class ErrorsSection:
-    """Errors before and after.
-
-    Parameters
-    ----------
-    picture : Picture
-        Held-out error at each stage with its interval.
-    stages : Table
-        The same in numbers, with the error over fitted rows.
-    cables : tuple of Table
-        Held-out error of each cable at each stage, a table for each kind of reading.
-    foretold : Table or None
-        Error of the pose and tensions that the lengths alone foretell, before and after.
-    """
-
-    picture: Picture
-    stages: Table
-    cables: tuple[Table, ...]
-    foretold: Table | None
-
-
-def errors_section(diagnosis: Diagnosis, picture: Picture) -> ErrorsSection:
+def section(diagnosis: Diagnosis) -> Section:
     """Return the errors at each stage."""
     kinds = [quantity for quantity, _, _ in quantities(diagnosis)]
-    columns = (
-        Column("Model", is_number=False),
-        Column("Fitted rows"),
-        Column("Held-out rows"),
-        Column("95 %"),
-        Column("In units of noise"),
-    )
-    stages = Table(
+    numbers = ("Fitted rows", "Held-out rows", "95 %", "In units of noise")
+    stages = Table.grouped(
         "Root mean square error at each stage, outliers left out; intervals by block bootstrap.",
-        columns,
-        tuple(_group(diagnosis, quantity) for quantity in kinds),
+        ("Model", *map(Column, numbers)),
+        (_group(diagnosis, quantity) for quantity in kinds),
     )
-    cables = tuple(_cables(diagnosis, quantity) for quantity in kinds)
-    return ErrorsSection(picture, stages, cables, _foretold(diagnosis))
+    return Section.of(
+        "errors",
+        "Errors before and after",
+        _chart(diagnosis),
+        stages,
+        _foretold(diagnosis),
+        *(_cables(diagnosis, quantity) for quantity in kinds),
+    )
+
+
+def _chart(diagnosis: Diagnosis) -> Picture | None:
+    from designer.report.figures.diagnosis import errors_chart
+
+    return chart(
+        "Error on held-out rows at each stage, with 95 % intervals. At the dashed line the "
+        "model is as good as the readings.",
+        "A row for each stage, a panel for each kind of reading",
+        errors_chart(diagnosis),
+    )
 
 
 def _group(diagnosis: Diagnosis, quantity: Quantity) -> Group:
-    rows = []
-    for stage in diagnosis.stages:
-        error = quantity.error_of(stage)
-        if error is None:
-            continue
-        held = error.heldout
-        rows.append(
-            Row(
-                (
-                    stage.label,
-                    quantity.shown(error.rms),
-                    quantity.shown(held.value),
-                    f"{quantity.shown(held.low)} to {quantity.shown(held.high)}",
-                    quantity.in_noise(held.value),
-                )
+    rows = tuple(
+        Row(
+            (
+                stage.label,
+                quantity.shown(error.rms),
+                quantity.shown(error.heldout.value),
+                quantity.interval(error.heldout),
+                quantity.in_noise(error.heldout.value),
             )
         )
+        for stage in diagnosis.stages
+        if (error := quantity.error_of(stage)) is not None
+    )
     noise = f"noise {quantity.with_unit(quantity.noise)}"
-    return Group(tuple(rows), f"Error of {quantity.name} [{quantity.unit}]", noise)
+    return Group(rows, f"Error of {quantity.name} [{quantity.unit}]", noise)
 
 
 def _cables(diagnosis: Diagnosis, quantity: Quantity) -> Table:
-    rows = []
-    for stage in diagnosis.stages:
-        error = quantity.error_of(stage)
-        if error is not None:
-            values = (quantity.shown(float(value)) for value in error.heldout_of_cable)
-            rows.append(Row((stage.label, *values)))
+    rows = (
+        (stage.label, *(quantity.shown(float(value)) for value in error.heldout_of_cable))
+        for stage in diagnosis.stages
+        if (error := quantity.error_of(stage)) is not None
+    )
     n_cables = diagnosis.machine.robot.n_cables
+    prefix = "Cable " if n_cables < 5 else ""
     return Table.of(
         f"Error of {quantity.name} on held-out rows, cable by cable [{quantity.unit}].",
-        (
-            Column("Model", is_number=False),
-            *(Column(f"{'Cable ' if n_cables < 5 else ''}{k}") for k in range(1, n_cables + 1)),
-        ),
+        ("Model", *(Column(f"{prefix}{k}") for k in range(1, n_cables + 1))),
         *rows,
     )
 
 
 def _foretold(diagnosis: Diagnosis) -> Table | None:
+    """Return the error of what the lengths alone foretell; None where that is not known."""
     before, after = diagnosis.foretold_before, diagnosis.foretold_after
     if before is None or after is None:
         return None
     rows = (
-        _foretold_row("Position of the platform", "mm", 1e3, before.position_m, after.position_m),
-        _foretold_row("Its orientation", "mrad", 1e3, before.turn_rad, after.turn_rad),
-        _foretold_row("Tensions at the winches", "N", 1.0, before.tension_N, after.tension_N),
+        ("Position of the platform [mm]", 1e3, before.position_m, after.position_m),
+        ("Its orientation [mrad]", 1e3, before.turn_rad, after.turn_rad),
+        ("Tensions at the winches [N]", 1.0, before.tension_N, after.tension_N),
     )
+    lost = max(one.n_rows - one.n_solved for one in (before, after))
+    unsolved = f" Without {lost} rows in which no balance was found." if lost else ""
     return Table.of(
         "Pose and tensions by forward statics from the measured lengths alone: root mean square "
-        f"error on held-out rows, with its 95 % interval.{_unsolved(before, after)}",
-        (Column("What the lengths foretell", is_number=False), Column("Before"), Column("After")),
-        *(row for row in rows if row is not None),
+        f"error on held-out rows, with its 95 % interval.{unsolved}",
+        ("What the lengths foretell", Column("Before"), Column("After")),
+        *(
+            (name, _with_interval(was, scale), _with_interval(now, scale))
+            for name, scale, was, now in rows
+            if was is not None and now is not None
+        ),
     )
 
 
-def _foretold_row(
-    name: str, unit: str, scale: float, before: Interval | None, after: Interval | None
-) -> Row | None:
-    if before is None or after is None:
-        return None
-
-    def shown(interval: Interval) -> str:
-        value, low, high = (
-            fmt.number(scale * x, 3) for x in (interval.value, interval.low, interval.high)
-        )
-        return f"{value} ({low} to {high})"
-
-    return Row((f"{name} [{unit}]", shown(before), shown(after)))
-
-
-def _unsolved(before: Foretold, after: Foretold) -> str:
-    lost = max(before.n_rows - before.n_solved, after.n_rows - after.n_solved)
-    return f" Without {lost} rows in which no balance was found." if lost else ""
+def _with_interval(found: Interval, scale: float) -> str:
+    ends = (found.value, found.low, found.high)
+    value, low, high = (fmt.number(scale * x, 3) for x in ends)
+    return f"{value} ({low} to {high})"

@@ -9,11 +9,12 @@ from designer.diagnosis.errors_of import Error
 from designer.diagnosis.result import Diagnosis, Finding, Verdict
 from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
+from designer.report.blocks import Column, Picture, Statement, Table
 from designer.report.diagnosis import words
-from designer.report.diagnosis.design import DesignSection, design_section
+from designer.report.diagnosis.carriers import strongest
+from designer.report.diagnosis.design import on_first_page
 from designer.report.diagnosis.quantity import Quantity, quantities
 from designer.report.diagnosis.sureness import sureness
-from designer.report.parts import Column, Picture, Row, Statement, Table
 
 _ABOUT_AS_FAR = 0.9
 _MOST_STATEMENTS = 7
@@ -35,8 +36,8 @@ class FirstPage:
         Error on held-out rows before and after.
     picture : Picture or None
         The residual against what it goes with most.
-    design : DesignSection
-        What it means for the cable.
+    design : tuple of str
+        What it means for the cable, in paragraphs.
     """
 
     verdict: Statement
@@ -44,7 +45,7 @@ class FirstPage:
     sureness: tuple[Statement, ...]
     errors: Table
     picture: Picture | None
-    design: DesignSection
+    design: tuple[str, ...]
 
     @property
     def is_full(self) -> bool:
@@ -52,25 +53,24 @@ class FirstPage:
         return len(self.findings) + len(self.sureness) > _MOST_STATEMENTS
 
 
-def first_page(diagnosis: Diagnosis, picture: Picture | None) -> FirstPage:
+def first_page(diagnosis: Diagnosis) -> FirstPage:
     """Return the first page."""
     return FirstPage(
         verdict=verdict(diagnosis),
         findings=tuple(_finding(group) for group in words.grouped(diagnosis.findings)),
-        sureness=sureness(diagnosis),
+        sureness=tuple(sureness(diagnosis)),
         errors=_errors(diagnosis),
-        picture=picture,
-        design=design_section(diagnosis),
+        picture=strongest(diagnosis),
+        design=on_first_page(diagnosis),
     )
 
 
 def verdict(diagnosis: Diagnosis) -> Statement:
     """Return the answer: what was found, that there is nothing to find, or what is unexplained."""
     found = [words.plain_group(group) for group in words.grouped(diagnosis.findings)]
-    against = f"{_left(diagnosis)}{_scatter(diagnosis)}{_doubts(diagnosis)}".strip()
-    answer = diagnosis.verdict
+    against, answer = _against(diagnosis), diagnosis.verdict
     if found:
-        text = f"{words.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
+        text = f"{fmt.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
         if answer is Verdict.IN_PART:
             return Statement("Found in part", f"{text} {against}", "doubt")
         doubtful = any(f.rivals or f.warnings for f in diagnosis.findings)
@@ -107,23 +107,21 @@ def _left(diagnosis: Diagnosis) -> str:
     )
 
 
-def _scatter(diagnosis: Diagnosis) -> str:
-    if not diagnosis.is_scattered:
-        return ""
-    kind, times = max(diagnosis.scatter.items(), key=lambda item: item[1])
-    return (
-        f" The {kind}s scatter by {fmt.number(times, 2)} times their declared noise, more than "
-        "their sensors explain."
-    )
-
-
-def _doubts(diagnosis: Diagnosis) -> str:
-    if not diagnosis.doubts:
-        return ""
-    return (
-        f" What was unknown came out where it cannot be: {fmt.listing(diagnosis.doubts)}. Check "
-        "units, scales and numbers of cables in the config."
-    )
+def _against(diagnosis: Diagnosis) -> str:
+    """Say what speaks against the model as it is now; empty where nothing does."""
+    text = _left(diagnosis)
+    if diagnosis.is_scattered:
+        kind, times = max(diagnosis.scatter.items(), key=lambda item: item[1])
+        text += (
+            f" The {kind}s scatter by {fmt.number(times, 2)} times their declared noise, more than "
+            "their sensors explain."
+        )
+    if diagnosis.doubts:
+        text += (
+            f" What was unknown came out where it cannot be: {fmt.listing(diagnosis.doubts)}. "
+            "Check units, scales and numbers of cables in the config."
+        )
+    return text.strip()
 
 
 def _drop(diagnosis: Diagnosis) -> str:
@@ -132,17 +130,12 @@ def _drop(diagnosis: Diagnosis) -> str:
     for quantity, before, after in quantities(diagnosis):
         last = quantity.with_unit(after.heldout.value)
         first = quantity.with_unit(before.heldout.value)
-        change = _moves(first, last, before, after) if diagnosis.findings else f"is {last}"
+        verb = "falls" if after.heldout.value < before.heldout.value else "rises"
+        change = f"stays {last}" if first == last else f"{verb} from {first} to {last}"
+        change = change if diagnosis.findings else f"is {last}"
         noise = f"{quantity.in_noise(after.heldout.value)} times the noise"
         parts.append(f"of {quantity.name} {change} ({noise})")
     return f"On rows that no fit has seen, the error {fmt.listing(parts, 'and that')}."
-
-
-def _moves(first: str, last: str, before: Error, after: Error) -> str:
-    if first == last:
-        return f"stays {last}"
-    verb = "falls" if after.heldout.value < before.heldout.value else "rises"
-    return f"{verb} from {first} to {last}"
 
 
 def _foretold(diagnosis: Diagnosis) -> str:
@@ -156,7 +149,7 @@ def _foretold(diagnosis: Diagnosis) -> str:
 
 
 def _finding(group: Sequence[Finding]) -> Statement:
-    title = words.capital(words.plain_group(group))
+    title = fmt.capital(words.plain_group(group))
     if len(group) == 1:
         text = f"{words.values(group[0].effect, group[0].parameters)}."
     else:
@@ -181,28 +174,24 @@ def _of_one_cable(finding: Finding) -> str:
 
 def _errors(diagnosis: Diagnosis) -> Table:
     has_change = bool(diagnosis.findings)
-    ends = ("Before", "After") if has_change else ("Error",)
-    columns = [Column("Reading", is_number=False)]
-    for end in ends:
-        columns += [Column(end), Column("95 %")]
-    columns += [Column("Noise"), Column("In units of noise")]
-    rows = []
-    for quantity, before, after in quantities(diagnosis):
-        errors = (before, after) if has_change else (after,)
-        rows.append(Row(tuple(_cells(quantity, errors))))
+    stages = ("Before", "95 %", "After", "95 %") if has_change else ("Error", "95 %")
+    rows = (
+        tuple(_cells(quantity, (before, after) if has_change else (after,)))
+        for quantity, before, after in quantities(diagnosis)
+    )
     when = ", before and after," if has_change else ""
     return Table.of(
         f"Root mean square error on held-out rows{when} with 95 % intervals.",
-        tuple(columns),
+        ("Reading", *map(Column, (*stages, "Noise", "In units of noise"))),
         *rows,
+        kind="small",
     )
 
 
 def _cells(quantity: Quantity, errors: Sequence[Error]) -> Iterator[str]:
-    yield f"{words.capital(quantity.name)}\u00a0[{quantity.unit}]"
+    yield f"{fmt.capital(quantity.name)}\u00a0[{quantity.unit}]"
     for error in errors:
-        held = error.heldout
-        yield quantity.shown(held.value)
-        yield f"{quantity.shown(held.low)} to {quantity.shown(held.high)}"
+        yield quantity.shown(error.heldout.value)
+        yield quantity.interval(error.heldout)
     yield quantity.shown(quantity.noise)
     yield " → ".join(quantity.in_noise(error.heldout.value) for error in errors)

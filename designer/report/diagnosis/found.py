@@ -2,78 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
 from designer.diagnosis.propose import Proposal
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
 from designer.effects.effect import Parameter
 from designer.report import format as fmt
+from designer.report.blocks import (
+    Block,
+    Column,
+    Group,
+    Heads,
+    Row,
+    Section,
+    Statement,
+    Subheading,
+    Table,
+)
 from designer.report.diagnosis import words
 from designer.report.diagnosis.sureness import withdrawal
-from designer.report.parts import Column, Group, Row, Statement, Table
 
 _TO_95 = 1.96
 
 
-@dataclass(frozen=True, slots=True)
-class FoundSection:
-    """What was found.
-
-    Parameters
-    ----------
-    parameters : Table or None
-        Values with their intervals and what is plausible.
-    laws : Table or None
-        How each effect acts, and where the law comes from.
-    rivals : tuple of Statement
-        Effects that cannot be told apart.
-    proposals : tuple of Table
-        Poses that would tell rivals apart.
-    withdrawn : tuple of Statement
-        Effects that fitted, but do not hold.
-    """
-
-    parameters: Table | None
-    laws: Table | None
-    rivals: tuple[Statement, ...]
-    proposals: tuple[Table, ...]
-    withdrawn: tuple[Statement, ...]
-
-
-def found_section(diagnosis: Diagnosis) -> FoundSection | None:
+def section(diagnosis: Diagnosis) -> Section | None:
     """Return what was found; None where nothing was, and nothing withdrawn."""
-    if not diagnosis.findings and not diagnosis.withdrawn:
+    found, withdrawn = diagnosis.findings, diagnosis.withdrawn
+    if not found and not withdrawn:
         return None
-    return FoundSection(
-        parameters=_parameters(diagnosis),
-        laws=_laws(diagnosis),
-        rivals=tuple(_rivals(diagnosis)),
-        proposals=tuple(_proposal(item) for item in diagnosis.proposals),
-        withdrawn=tuple(Statement(w.effect, withdrawal(w)) for w in diagnosis.withdrawn),
+    tables = (_parameters(diagnosis), _laws(diagnosis)) if found else ()
+    heading = Subheading("withdrawn", "Withdrawn") if found and withdrawn else None
+    note = (
+        "These effects fit the data better than nothing, but do not hold as what they are. They "
+        "stand in for something else, and were taken back."
+    )
+    return Section.of(
+        "found",
+        "What was found" if found else "What was withdrawn",
+        *tables,
+        *_rivals(diagnosis),
+        heading,
+        note if withdrawn else None,
+        *(Statement(gone.effect, withdrawal(gone)) for gone in withdrawn),
     )
 
 
-def _parameters(diagnosis: Diagnosis) -> Table | None:
-    if not diagnosis.findings:
-        return None
-    groups = tuple(
+def _parameters(diagnosis: Diagnosis) -> Table:
+    groups = (
         Group(
             tuple(_parameter(p, finding) for p in finding.effect.parameters),
-            words.capital(words.plain_finding(finding)),
+            fmt.capital(words.plain_finding(finding)),
             finding.effect.key,
         )
         for finding in diagnosis.findings
     )
-    columns = (
-        Column("Parameter", is_number=False),
-        Column("Value"),
-        Column("95 %"),
-        Column("Does nothing at"),
-        Column("Plausible"),
-    )
+    numbers = map(Column, ("Value", "95 %", "Does nothing at", "Plausible"))
+    columns: Heads = ("Parameter", *numbers)
     caption = "Fitted values with one standard deviation, from the joint fit of all effects."
-    return Table(caption, columns, groups)
+    return Table.grouped(caption, columns, groups, "long")
 
 
 def _parameter(parameter: Parameter, finding: Finding) -> Row:
@@ -92,32 +76,37 @@ def _parameter(parameter: Parameter, finding: Finding) -> Row:
     )
 
 
-def _laws(diagnosis: Diagnosis) -> Table | None:
-    if not diagnosis.findings:
-        return None
+def _laws(diagnosis: Diagnosis) -> Table:
     unique = {f.effect.id: f.effect for f in diagnosis.findings}
     return Table.of(
         "How each effect acts.",
-        tuple(Column(title, is_number=False) for title in ("Effect", "Law", "Source")),
-        *(Row((e.id, words.capital(e.law), words.capital(e.source))) for e in unique.values()),
+        ("Effect", "Law", "Source"),
+        *((e.id, fmt.capital(e.law), fmt.capital(e.source)) for e in unique.values()),
     )
 
 
-def _rivals(diagnosis: Diagnosis) -> Iterator[Statement]:
-    for finding in diagnosis.findings:
-        if finding.rivals:
-            yield Statement(
-                finding.effect.key,
-                f"These data are explained as well with {fmt.listing(finding.rivals, 'or')} in its "
-                "place. Only one of them need be true.",
-                "doubt",
-            )
+def _rivals(diagnosis: Diagnosis) -> tuple[Block, ...]:
+    """Return effects that cannot be told apart, and poses that would tell them."""
+    statements = [
+        Statement(
+            finding.effect.key,
+            f"These data are explained as well with {fmt.listing(finding.rivals, 'or')} in its "
+            "place. Only one of them need be true.",
+            "doubt",
+        )
+        for finding in diagnosis.findings
+        if finding.rivals
+    ]
+    if not statements:
+        return ()
+    heading = Subheading("rivals", "Rivals, and how to tell them apart")
+    return heading, *statements, *map(_proposal, diagnosis.proposals)
 
 
 def _proposal(proposal: Proposal) -> Table:
     pairs = zip(proposal.positions_m, proposal.separation, strict=True)
     rows = (
-        Row((str(k), fmt.position(position), fmt.number(float(gap), 3)))
+        (str(k), fmt.position(position), fmt.number(float(gap), 3))
         for k, (position, gap) in enumerate(pairs, start=1)
     )
     return Table.of(
@@ -125,4 +114,5 @@ def _proposal(proposal: Proposal) -> Table:
         "these data, and differ there by this much over all readings of one pose.",
         (Column("Pose"), Column("Position"), Column("Apart by", "times the noise")),
         *rows,
+        kind="narrow",
     )

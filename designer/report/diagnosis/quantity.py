@@ -5,25 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from designer.diagnosis.errors_of import Error, Stage
+from designer.diagnosis.errors_of import Error, Interval, Stage
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A kind of reading.
+    """A kind of reading: ``length`` or ``tension``, its unit in the report, the scale from SI.
 
-    Parameters
-    ----------
-    name : str
-        ``length`` or ``tension``.
-    unit : str
-        What it is shown in.
-    scale : float
-        From SI to that unit.
-    noise : float
-        Standard deviation of one reading, in SI units.
+    ``noise`` is the standard deviation of one reading in SI units.
     """
 
     name: str
@@ -42,6 +33,10 @@ class Quantity:
     def with_unit(self, value: float) -> str:
         """Return a value in SI units as text."""
         return f"{self.shown(value)}\u00a0{self.unit}"
+
+    def interval(self, found: Interval) -> str:
+        """Return the ends of an interval in SI units as text, without unit."""
+        return f"{self.shown(found.low)} to {self.shown(found.high)}"
 
     def in_noise(self, value: float) -> str:
         """Return a value in units of noise."""

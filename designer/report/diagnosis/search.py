@@ -2,45 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from designer.diagnosis.result import Diagnosis, Estimate
 from designer.diagnosis.search import SIGNIFICANCE, Step, Trial
 from designer.report import format as fmt
+from designer.report.blocks import Column, Group, Heads, Row, Section, Table
 from designer.report.diagnosis import words
-from designer.report.parts import Column, Group, Row, Table
 
 _MOST = 6
 
 
-@dataclass(frozen=True, slots=True)
-class SearchSection:
-    """The search.
-
-    Parameters
-    ----------
-    table : Table
-        The best candidates of each round, and what was added.
-    significance : str
-        Chance below which a gain is no accident.
-    """
-
-    table: Table
-    significance: str
-
-
-def search_section(diagnosis: Diagnosis) -> SearchSection:
-    """Return the search, round by round."""
-    groups = tuple(_group(diagnosis, k, step) for k, step in enumerate(diagnosis.steps, start=1))
-    columns = (
-        Column("Candidate", is_number=False),
-        Column("Gain"),
-        Column("Chance"),
-        Column("Gain unseen"),
-        Column("Its values", is_number=False),
-    )
+def section(diagnosis: Diagnosis) -> Section:
+    """Return the best candidates of each round, and what was added."""
+    groups = (_group(diagnosis, k, step) for k, step in enumerate(diagnosis.steps, start=1))
+    columns: Heads = ("Candidate", *map(Column, ("Gain", "Chance", "Gain unseen")), "Its values")
     caption = f"Each round: the {_MOST} best candidates in addition to what was found before."
-    return SearchSection(Table(caption, columns, groups), words.chance(SIGNIFICANCE))
+    return Section.of(
+        "search",
+        "The search",
+        "In each round every candidate is fitted together with what was found before. Its gain is "
+        "what it takes off the robust loss, in units of the variance that is left; its chance is "
+        "that of such a gain by accident in any candidate of the round. The gain on unseen rows "
+        "comes from fits that left these rows out; it is worked out from the best candidate down, "
+        "as far as the choice needs it. A candidate earns its place with a chance below "
+        f"{words.chance(SIGNIFICANCE)} and a gain on unseen rows.",
+        Table.grouped(caption, columns, groups, "candidates long"),
+    )
 
 
 def _group(diagnosis: Diagnosis, number: int, step: Step) -> Group:

@@ -8,16 +8,11 @@ from collections.abc import Iterator, Sequence
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding, Reason, Withdrawn
 from designer.diagnosis.search import Trial
 from designer.report import format as fmt
+from designer.report.blocks import Statement
 from designer.report.diagnosis import words
 from designer.report.diagnosis.quantity import quantities
-from designer.report.parts import Statement
 
 _MUCH = 1.5
-
-
-def sureness(diagnosis: Diagnosis) -> tuple[Statement, ...]:
-    """Return statements on significance, rivals, warnings, what was withdrawn, and noise."""
-    return tuple(_statements(diagnosis))
 
 
 def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
@@ -29,7 +24,8 @@ def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
     return None
 
 
-def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
+def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
+    """Yield statements on significance, rivals, warnings, what was withdrawn, and noise."""
     if diagnosis.not_tried:
         left_out = "; ".join(diagnosis.not_tried)
         yield Statement("Out of time", f"The search ended early. Not tried: {left_out}.", "bad")
@@ -46,7 +42,7 @@ def _statements(diagnosis: Diagnosis) -> Iterator[Statement]:
     for gone in diagnosis.withdrawn:
         yield Statement(f"{gone.effect} withdrawn", withdrawal(gone), "doubt")
     for doubt in diagnosis.doubts:
-        yield Statement("Not plausible", f"{words.capital(doubt)}.", "bad")
+        yield Statement("Not plausible", f"{fmt.capital(doubt)}.", "bad")
     yield _left(diagnosis)
     yield from _lasting(diagnosis)
     yield _noise(diagnosis)
@@ -61,12 +57,12 @@ def withdrawal(gone: Withdrawn) -> str:
     """Say why an effect that fits was not kept."""
     if gone.reason is Reason.UNSEEN:
         return (
-            f"{words.capital(gone.reason.value)}: with it, their mean square changes by "
+            f"{fmt.capital(gone.reason.value)}: with it, their mean square changes by "
             f"{fmt.signed_percent(-gone.gain)} ± {fmt.percent(gone.gain_std, 2)}, and a finding "
             "has to lower it by more than twice that doubt."
         )
     if gone.reason is not Reason.DRIFTS:
-        return f"{words.capital(gone.reason.value)}{': ' if gone.detail else ''}{gone.detail}."
+        return f"{fmt.capital(gone.reason.value)}{': ' if gone.detail else ''}{gone.detail}."
     size = f"{fmt.percent(gone.variation, 2)} of itself"
     if gone.variation > _MUCH:
         size = f"{fmt.number(gone.variation, 2)} times itself"

@@ -2,65 +2,47 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from designer.diagnosis.result import Diagnosis
 from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
-from designer.report.diagnosis import words
-from designer.report.parts import Fact, Picture, Statement
+from designer.report.blocks import Block, Box, Fact, Facts, Section, Statement, Subheading
+from designer.report.diagnosis import carriers, words
+
+_MOST_CARRIERS = 6
 
 
-@dataclass(frozen=True, slots=True)
-class UnexplainedSection:
-    """What no effect explains.
-
-    Parameters
-    ----------
-    statement : Statement
-        What the residual goes with.
-    facts : tuple of Fact
-        The strongest covariates.
-    picture : Picture or None
-        The residual that is left, against them.
-    correction : tuple of Fact
-        A smooth empirical correction; empty where there is none.
-    """
-
-    statement: Statement
-    facts: tuple[Fact, ...]
-    picture: Picture | None
-    correction: tuple[Fact, ...]
-
-
-def unexplained_section(diagnosis: Diagnosis, picture: Picture | None) -> UnexplainedSection | None:
+def section(diagnosis: Diagnosis) -> Section | None:
     """Return what is left unexplained; None where nothing is."""
     if not diagnosis.is_unexplained:
         return None
     structure = diagnosis.structure_after
-    carriers, events = structure.present, structure.events
-    named = events[0].text if events else words.covariate(carriers[0].name)
-    return UnexplainedSection(
-        statement=Statement(
-            f"Goes with {named}",
-            "No effect that the program knows accounts for it. Covariates that vary together share "
-            f"the blame: the cause need not be the first of them.{_where(diagnosis)}",
-            "bad",
-        ),
-        facts=tuple(
-            Fact(words.capital(e.text), f"{fmt.percent(e.fraction_of_variance, 2)} of it")
+    present, events = structure.present, structure.events
+    named = events[0].text if events else words.covariate(present[0].name)
+    text = (
+        "No effect that the program knows accounts for it. Covariates that vary together share "
+        f"the blame: the cause need not be the first of them.{_where(diagnosis)}"
+    )
+    facts = (
+        *(
+            Fact(fmt.capital(e.text), f"{fmt.percent(e.fraction_of_variance, 2)} of it")
             for e in events
-        )
-        + tuple(
+        ),
+        *(
             Fact(
-                words.capital(words.covariate(c.name)),
+                fmt.capital(words.covariate(c.name)),
                 f"{fmt.percent(c.fraction_of_variance, 2)} of the variance",
                 f"chance {words.chance(c.chance)}",
             )
-            for c in carriers[:6]
+            for c in present[:_MOST_CARRIERS]
         ),
-        picture=picture,
-        correction=_correction(diagnosis),
+    )
+    return Section.of(
+        "unexplained",
+        "What is unexplained",
+        Statement(f"Goes with {named}", text, "bad"),
+        Facts(facts),
+        carriers.left(diagnosis),
+        *_correction(diagnosis),
     )
 
 
@@ -75,23 +57,22 @@ def _where(diagnosis: Diagnosis) -> str:
     )
 
 
-def _correction(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+def _correction(diagnosis: Diagnosis) -> tuple[Block, ...]:
+    """Return a smooth empirical correction; nothing where there is none."""
     correction = diagnosis.correction
     if correction is None:
         return ()
+    before, after = correction.heldout_before, correction.heldout_after
     what = words.covariate(correction.covariate)
-    return (
+    no_help = "" if after < before else "no help on rows that it has not seen"
+    facts = (
         Fact("Correction", f"a parabola in {what} for each reading"),
-        Fact("Held-out error without it", _in_noise(correction.heldout_before)),
-        Fact(
-            "With it",
-            _in_noise(correction.heldout_after),
-            ""
-            if correction.heldout_after < correction.heldout_before
-            else "no help on rows that it has not seen",
-        ),
+        Fact("Held-out error without it", f"{fmt.number(before, 3)} times the noise"),
+        Fact("With it", f"{fmt.number(after, 3)} times the noise", no_help),
     )
-
-
-def _in_noise(value: float) -> str:
-    return f"{fmt.number(value, 3)} times the noise"
+    note = (
+        "It only smooths these data. It may serve to correct readings in the range that was "
+        "measured; it says nothing of the cause, and it is not in the config that was written."
+    )
+    title = "An empirical correction: no physics, not used in the design"
+    return Subheading("correction", title), Box.of("panel empirical", Facts(facts), note)

@@ -29,34 +29,28 @@ _SUFFIX = re.compile(
 _SPELT = {"degC": "°C", "deg": "°", "percent": "%"}
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NEGLIGIBLE = 1e-12
+_CABLE = "the cable is {} than declared"
+_PAYLOAD = "the platform with its payload is {} than declared"
+_STREAM = "the length stream {} the pose stream"
 _DIRECTIONS = {
-    "elastic_modulus": ("scale", "the cable", "stiffer", "softer"),
-    "linear_mass": ("scale", "the cable", "heavier", "lighter"),
-    "platform_mass": ("offset_kg", "the platform with its payload", "heavier", "lighter"),
+    "elastic_modulus": ("scale", _CABLE, "stiffer", "softer"),
+    "linear_mass": ("scale", _CABLE, "heavier", "lighter"),
+    "platform_mass": ("offset_kg", _PAYLOAD, "heavier", "lighter"),
+    "clock_offset": ("offset_s", _STREAM, "lags", "runs ahead of"),
 }
+"""The parameter that tells the direction, and the words for more and for less of it."""
 _OF_SEVERAL = {
     "anchor_offset": "the exit points of {} are not where the drawing has them",
     "tension_gain": "the load cells of {} have wrong gains",
-}
-_SIGNED = {
-    "clock_offset": (
-        "offset_s",
-        "the length stream lags the pose stream",
-        "the length stream runs ahead of the pose stream",
-    ),
 }
 
 
 def plain(effect: Effect, values: Mapping[str, float]) -> str:
     """Return what an effect is, in a few words, with its direction where it has one."""
-    if effect.id in _SIGNED:
-        name, positive, negative = _SIGNED[effect.id]
-        return positive if values[name] > 0.0 else negative
     if effect.id not in _DIRECTIONS:
         return effect.summary
-    name, what, more, less = _DIRECTIONS[effect.id]
-    neutral = effect.neutral[name]
-    return f"{what} is {more if values[name] > neutral else less} than declared"
+    name, text, more, less = _DIRECTIONS[effect.id]
+    return text.format(more if values[name] > effect.neutral[name] else less)
 
 
 def grouped(findings: Iterable[Finding]) -> list[tuple[Finding, ...]]:
@@ -160,7 +154,8 @@ def interval(item: Estimate, unit: str, width: float) -> str:
 
 def plausible(parameter: Parameter) -> str:
     """Return the range that an engineer would believe."""
-    scale, unit = (1e3, "mm") if _in_millimetres(parameter) else (1.0, parameter.unit)
+    is_small = parameter.unit == "m" and max(map(abs, parameter.plausible)) < 1.0
+    scale, unit = (1e3, "mm") if is_small else (1.0, parameter.unit)
     ends = (_short(scale * end) for end in parameter.plausible)
     return f"{' to '.join(ends)} {unit}".strip().replace(" ", NO_BREAK)
 
@@ -174,20 +169,11 @@ def chance(value: float) -> str:
     return fmt.power_of_ten(value) if value < 1e-4 else fmt.percent(value, 2)
 
 
-def capital(text: str) -> str:
-    """Return a text with a capital first letter."""
-    return text[:1].upper() + text[1:]
-
-
 def _with_std(value: float, std: float) -> str:
     if not math.isfinite(std) or std <= 0.0:
         return fmt.number(value)
     places = min(max(1 - math.floor(math.log10(std)), 0), 9)
     return f"{fmt.fixed(value, places)} ± {fmt.fixed(std, places)}"
-
-
-def _in_millimetres(parameter: Parameter) -> bool:
-    return parameter.unit == "m" and max(abs(end) for end in parameter.plausible) < 1.0
 
 
 def _short(value: float) -> str:

@@ -11,10 +11,10 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade
 from designer.report import format as fmt
+from designer.report.blocks import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.report.material_class import CLASSES, class_of
-from designer.report.parts import MOST_ROWS
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
 from designer.study import Objective

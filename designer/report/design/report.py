@@ -1,0 +1,58 @@
+"""The design report: its sections, one file each, in the order in which they are shown."""
+
+from __future__ import annotations
+
+from designer.analysis.analyse import Analysis
+from designer.report.blocks import Report, Section, shown_time
+from designer.report.design import (
+    assumptions,
+    clearance,
+    groups,
+    inputs,
+    left_out,
+    pose,
+    provenance,
+    selection,
+    stiffness,
+    workspace,
+)
+from designer.report.design.first_page import FirstPage, first_page
+from designer.report.design.source import Source, source_of
+
+SECTIONS = (
+    inputs.section,
+    pose.section,
+    workspace.section,
+    selection.section,
+    groups.section,
+    stiffness.section,
+    clearance.section,
+    left_out.section,
+    assumptions.section,
+    assumptions.nomenclature,
+    provenance.section,
+)
+"""Each takes a `Source` and returns a section; None where the study gives nothing for it."""
+
+
+def design_report(analysis: Analysis, *, draws: bool = True) -> Report[FirstPage]:
+    """Return the report on an analysis; with ``draws`` false, without figures."""
+    return report_from(source_of(analysis, draws=draws))
+
+
+def report_from(source: Source) -> Report[FirstPage]:
+    """Return the report from what its sections are made from."""
+    provenance, page = source.analysis.provenance, first_page(source)
+    answer = Section("answer", "The answer", kind=f"first-page{'' if page.reasons else ' alone'}")
+    found = (make(source) for make in SECTIONS)
+    return Report(
+        name="report",
+        title=source.analysis.study.name,
+        document="Cable design report",
+        generator=f"cdpr-designer {provenance.version}",
+        created=shown_time(provenance.created),
+        created_iso=provenance.created.isoformat(timespec="seconds"),
+        first_page=page,
+        sections=(answer, *(section for section in found if section is not None)),
+        missing=source.missing,
+    )

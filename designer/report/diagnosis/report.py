@@ -1,0 +1,75 @@
+"""The diagnosis report: its sections, in the order in which they are shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from designer.analysis.analyse import Provenance
+from designer.diagnosis.result import Diagnosis
+from designer.report import format as fmt
+from designer.report.blocks import Box, Fact, Facts, Report, Section, shown_time
+from designer.report.design.provenance import facts_of
+from designer.report.diagnosis import (
+    assumptions,
+    data,
+    design,
+    errors,
+    found,
+    residual,
+    search,
+    unexplained,
+)
+from designer.report.diagnosis.first_page import FirstPage, first_page
+from designer.report.render import write_pages
+
+SECTIONS = (
+    found.section,
+    errors.section,
+    residual.section,
+    unexplained.section,
+    search.section,
+    design.section,
+    data.section,
+    assumptions.section,
+)
+"""Each takes a `Diagnosis` and returns a section; None where there is nothing to say in it."""
+
+
+def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report[FirstPage]:
+    """Return the report on a diagnosis."""
+    sections = (make(diagnosis) for make in SECTIONS)
+    return Report(
+        name="diagnosis",
+        title=diagnosis.study.name,
+        document="Diagnosis of measured data",
+        generator=f"cdpr-designer {provenance.version}",
+        created=shown_time(provenance.created),
+        created_iso=provenance.created.isoformat(timespec="seconds"),
+        first_page=first_page(diagnosis),
+        sections=(
+            Section("answer", "What was wrong", kind="first-page"),
+            *(section for section in sections if section is not None),
+            _provenance(diagnosis, provenance),
+        ),
+    )
+
+
+def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
+    """Write ``diagnosis.html`` and ``diagnosis.pdf`` into an existing folder."""
+    write_pages(diagnosis_report(diagnosis, Provenance.now()), folder)
+
+
+def _provenance(diagnosis: Diagnosis, provenance: Provenance) -> Section:
+    measurements, steps = diagnosis.study.measurements, diagnosis.steps
+    measured: tuple[Fact, ...] = ()
+    if measurements is not None:
+        measured = (
+            Fact("Measured data", measurements.file.name),
+            Fact("SHA-256 of the data", diagnosis.measured.sha256),
+        )
+    facts = (
+        *facts_of(provenance, diagnosis.study, *measured),
+        Fact("Candidates", fmt.count(len(steps[0].trials) if steps else 0)),
+        Fact("Everything in numbers", "diagnosis.json", "beside this report"),
+    )
+    return Section.of("provenance", "Provenance", Box.of("loose", Facts(facts)))
