@@ -153,3 +153,5 @@ def test_lists_are_taken_and_what_is_right_stays_as_it_is() -> None:
     assert ROBOT.exit_points_m is EXITS
     assert replace(ROPE, axial_stiffness_N=inf).axial_stiffness_N == inf
     assert np.isnan(Poses.at([nan, 0.0, 0.0]).position_m[0])
+    assert Poses([1, 2, 3], np.eye(3).tolist()).shape == ()  # type: ignore[arg-type]
+    assert Poses(ONE.position_m, ONE.rotation).position_m is ONE.position_m

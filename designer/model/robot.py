@@ -242,6 +242,8 @@ class Poses:
     rotation: FloatArray
 
     def __post_init__(self) -> None:
+        for name in ("position_m", "rotation"):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
         position, rotation = self.position_m, self.rotation
         if position.ndim < 1 or position.shape[-1] != 3:
             raise ValueError(f"position_m must have the shape (…, 3), not {position.shape}")
