@@ -39,11 +39,16 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
 
 def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldInfo]:
     """Return the fields that the schema knows at pydantic's path ``loc``."""
+    section = next(_sections_in(kind_at(schema, loc)), None)
+    return fields_of(section) if section else {}
+
+
+def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
+    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
     kind: Any = schema
     for key in loc:
         kind = _step(kind, key)
-    section = _section_in(kind)
-    return fields_of(section) if section else {}
+    return kind
 
 
 def _step(kind: Any, key: Key) -> Any:
@@ -53,9 +58,8 @@ def _step(kind: Any, key: Key) -> Any:
     branch = _branch(kind, key)
     if branch is not None:
         return branch
-    section = _section_in(kind)
-    info = fields_of(section).get(str(key)) if section else None
-    return kind if info is None else info.rebuild_annotation()
+    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
+    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
 
 
 def _branch(kind: Any, label: Key) -> Any:
@@ -66,12 +70,14 @@ def _branch(kind: Any, label: Key) -> Any:
     return next((found for part in parts if (found := _branch(part, label)) is not None), None)
 
 
-def _section_in(kind: Any) -> AnySection | None:
+def _sections_in(kind: Any) -> Iterator[AnySection]:
     if isinstance(kind, ReadAs):
-        return kind.section
-    if isinstance(kind, type) and issubclass(kind, Section | FileValue):
-        return kind
-    return next((found for part in get_args(kind) if (found := _section_in(part))), None)
+        yield kind.section
+    elif isinstance(kind, type) and issubclass(kind, Section | FileValue):
+        yield kind
+    else:
+        for part in get_args(kind):
+            yield from _sections_in(part)
 
 
 def _misspelt_fields(
