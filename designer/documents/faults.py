@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any, get_args, get_origin
+from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import Tag, ValidationError
 from pydantic.fields import FieldInfo
@@ -53,8 +53,9 @@ def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
 
 def _step(kind: Any, key: Key) -> Any:
     """Return what the schema holds one step further; a place in a list keeps its kind."""
-    if get_origin(kind) is dict:
-        return get_args(kind)[1]
+    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+    if get_origin(plain) is dict:
+        return get_args(plain)[1]
     branch = _branch(kind, key)
     if branch is not None:
         return branch
