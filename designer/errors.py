@@ -67,15 +67,7 @@ class MissingLibraryError(DesignerError):
 
 
 class EffectError(DesignerError):
-    """An effect that a plugin brought in fails at work.
-
-    Parameters
-    ----------
-    effect_id : str
-        Which one.
-    message : str
-        Whose it is, and what happened.
-    """
+    """An effect that a plugin brought in fails at work; says whose it is, and what happened."""
 
     def __init__(self, effect_id: str, message: str) -> None:
         super().__init__(message)

@@ -11,6 +11,7 @@ import functools
 import math
 import re
 import unicodedata
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -34,17 +35,7 @@ _COMMON_UNITS = (
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A kind of quantity.
-
-    Parameters
-    ----------
-    noun : str
-        Its name with the article, such as ``a length``.
-    unit : str
-        Its SI unit; empty for a plain number.
-    example : str
-        How a value may be written.
-    """
+    """A kind of quantity: such as ``a length``, its SI unit (empty for a number), an example."""
 
     noun: str
     unit: str
@@ -53,9 +44,7 @@ class Dimension:
     @property
     def expected(self) -> str:
         """What to write, for an error message."""
-        if not self.unit:
-            return f"{self.noun} such as {self.example}"
-        return f"{self.noun} such as '{self.example}'"
+        return f"{self.noun} such as " + (f"'{self.example}'" if self.unit else self.example)
 
 
 NUMBER = Dimension("a plain number", "", "5")
@@ -79,22 +68,14 @@ SPEED = Dimension("a speed", "m/s", "3 m/s")
 
 
 class QuantityError(ValueError):
-    """A value is no quantity of the wanted kind.
+    """A value is no quantity of the wanted kind: what was found, and what was expected.
 
     The reader of a file turns it into a `designer.errors.Fault`, which knows the line.
-
-    Parameters
-    ----------
-    problem : str
-        What was found.
-    expected : str
-        What was expected instead.
     """
 
     def __init__(self, problem: str, expected: str) -> None:
         super().__init__(f"{problem} (expected {expected})")
-        self.problem = problem
-        self.expected = expected
+        self.problem, self.expected = problem, expected
 
 
 def read_quantity(given: object, dimension: Dimension) -> float:
@@ -184,25 +165,14 @@ def _read_text(text: str, dimension: Dimension) -> float:
 
 
 def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
+    """Return the SI value of a unit of this dimension; an angle is not a plain ratio."""
     from pint import PintError
 
-    try:
-        converted = _converted(value, unit, dimension)
-    except (PintError, ArithmeticError):  # such as a logarithmic unit in a product
-        converted = None
-    if converted is None:
-        raise _MisreadError(f"has the unit {unit:P}")
-    return converted
-
-
-def _converted(value: float, unit: Unit, dimension: Dimension) -> float | None:
-    """Return the SI value; None for another dimension, where an angle is not a plain ratio."""
-    if not dimension.unit:
-        return None
-    wanted = _registry().parse_units(dimension.unit)
-    if _root(unit) != _root(wanted):
-        return None
-    return float(_registry().Quantity(value, unit).to(wanted).magnitude)
+    with suppress(PintError, ArithmeticError):  # such as a logarithmic unit in a product
+        wanted = _registry().parse_units(dimension.unit)
+        if dimension.unit and _root(unit) == _root(wanted):
+            return float(_registry().Quantity(value, unit).to(wanted).magnitude)
+    raise _MisreadError(f"has the unit {unit:P}")
 
 
 @functools.lru_cache(maxsize=1024)
@@ -214,26 +184,23 @@ def _unit(text: str) -> Unit:
         factor = _FACTOR.match(rest)
         if factor is None:
             raise _MisreadError(f"has the unreadable unit {text!r}")
-        _named_unit(factor["name"])
+        _check_unit(factor["name"])
         power = int(factor["power"] or 1) * (-1 if factor["divided"] else 1)
         factors.append(f"{factor['name']}**{power}" if power != 1 else factor["name"])
         rest = rest[factor.end() :]
     return _registry().parse_units("*".join(factors))
 
 
-def _named_unit(name: str) -> Unit:
+def _check_unit(name: str) -> None:
     from pint import PintError
 
     try:
-        return _registry().parse_units(name)
+        _registry().parse_units(name)
     except PintError:
-        nearest = _nearest_unit(name)
+        alike = [unit for unit in _COMMON_UNITS if unit.lower() == name.lower()]
+        alike += difflib.get_close_matches(name, _COMMON_UNITS, n=1)
+        nearest = next(iter(alike), None)
         raise _MisreadError(f"has the unknown unit '{name}'", nearest=nearest) from None
-
-
-def _nearest_unit(name: str) -> str | None:
-    same_letters = [unit for unit in _COMMON_UNITS if unit.lower() == name.lower()]
-    return next(iter(same_letters or difflib.get_close_matches(name, _COMMON_UNITS, n=1)), None)
 
 
 @functools.lru_cache(maxsize=1024)

@@ -24,14 +24,8 @@ def module_name(name: str) -> str:
 def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
     """Write an installable plugin with one grade file or one effect, a test and a README.
 
-    Parameters
-    ----------
-    name : str
-        Of the distribution, the plugin and, with ``_`` for ``-``, the module.
-    folder : Path
-        Does not exist yet.
-    effect : bool
-        Whether it brings an effect instead of a grade.
+    The name is that of the distribution, the plugin and, with ``_`` for ``-``, the module; the
+    folder does not exist yet.
 
     Raises
     ------
@@ -40,7 +34,10 @@ def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
     OutputError
         If the folder exists, or cannot be written.
     """
-    _check_name(name)
+    problem = _problem(name)
+    if problem:
+        expected = "a new name such as acme-ropes: lower-case letters, digits and single '-'"
+        raise InputError([Fault("NAME", None, "", problem, expected)])
     if folder.exists() or folder.is_symlink():
         raise OutputError(f"{folder}: exists already (expected a new folder)")
     with output_folder(folder) as building:
@@ -48,13 +45,6 @@ def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
             target = building / path
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
-
-
-def _check_name(name: str) -> None:
-    problem = _problem(name)
-    if problem:
-        expected = "a new name such as acme-ropes: lower-case letters, digits and single '-'"
-        raise InputError([Fault("NAME", None, "", problem, expected)])
 
 
 def _problem(name: str) -> str:
@@ -81,12 +71,8 @@ def _files(name: str, effect: bool) -> dict[str, str]:
         autoescape=False,  # TOML, Python and YAML; the name is checked
     )
     names = {"name": name, "module": module_name(name)}
-    return {
-        _renamed(path, names): environment.get_template(path).render(names)
-        for path in environment.list_templates(extensions=["j2"])
-    }
-
-
-def _renamed(path: str, names: dict[str, str]) -> str:
-    renamed = path.replace("MODULE", names["module"]).replace("NAME", names["name"])
-    return renamed.removesuffix(".j2")
+    files = {}
+    for path in environment.list_templates(extensions=["j2"]):
+        renamed = path.replace("MODULE", names["module"]).replace("NAME", names["name"])
+        files[renamed.removesuffix(".j2")] = environment.get_template(path).render(names)
+    return files

@@ -31,17 +31,7 @@ from designer.units import (
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """From where to where a number may lie.
-
-    Parameters
-    ----------
-    dimension : Dimension
-        What kind of quantity.
-    least, most : float
-        The ends, which it may reach [SI].
-    reason : str
-        Why not beyond.
-    """
+    """From where to where a number may lie, ends included [SI], and why not beyond."""
 
     dimension: Dimension
     least: float

@@ -23,15 +23,7 @@ _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """What a file should hold, for messages.
-
-    Parameters
-    ----------
-    content : str
-        The whole of it.
-    field : str
-        One of its fields.
-    """
+    """What a file should hold, for messages: the whole of it, and one of its fields."""
 
     content: str
     field: str
@@ -43,18 +35,9 @@ GRADE = FileKind("a grade, as in the files of the shipped catalogue", "id: …")
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A YAML file that is well-formed.
+    """A YAML file that is well-formed, called ``name`` as the user named it.
 
-    Parameters
-    ----------
-    name : str
-        The file as the user named it.
-    sha256 : str
-        Digest of its bytes.
-    root : Node
-        Its outermost mapping.
-    faults : tuple of Fault
-        Fields that are given twice; the first of the two is in the tree.
+    ``faults`` are the fields that are given twice; the first of the two is in the tree.
     """
 
     name: str
@@ -74,14 +57,7 @@ class Document:
 
 
 def read_document(path: Path, kind: FileKind = STUDY) -> Document:
-    """Return the YAML mapping in ``path``.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : FileKind
-        What it should hold.
+    """Return the YAML mapping in ``path``, which should hold a ``kind``.
 
     Raises
     ------
@@ -198,25 +174,19 @@ class _Composer:
             self._add(self._aliased(event))
         elif isinstance(event, yaml.CollectionStartEvent):
             self._check_tag(event)
-            self._start(event)
+            self._start(event, isinstance(event, yaml.MappingStartEvent))
         elif isinstance(event, yaml.CollectionEndEvent):
-            self._close()
+            opened = self._open.pop()
+            node = opened.close()
+            self._check_extent(node)
+            self._add(node, opened.anchor)
 
-    def _start(self, event: yaml.CollectionStartEvent) -> None:
-        import yaml
-
+    def _start(self, event: yaml.CollectionStartEvent, is_mapping: bool) -> None:
         if len(self._open) >= DEEPEST_NESTING:
             self._refuse_nesting(_line(event))
         if self._open and self._open[-1].is_mapping and self._open[-1].key is None:
             _refuse(self._name, _line(event), "a mapping or a list is no field name", "a name")
-        is_mapping = isinstance(event, yaml.MappingStartEvent)
         self._open.append(_Open(_line(event), event.anchor, is_mapping))
-
-    def _close(self) -> None:
-        opened = self._open.pop()
-        node = opened.close()
-        self._check_extent(node)
-        self._add(node, opened.anchor)
 
     def _add(self, node: Node, anchor: str | None = None) -> None:
         if anchor is not None:
@@ -228,36 +198,26 @@ class _Composer:
         if not parent.is_mapping:
             parent.items.append(node)
         elif parent.key is None:
-            parent.key, parent.key_line = self._field_name(node), node.line
+            if not isinstance(node.content, str):
+                _refuse(self._name, node.line, "a mapping or a list is no field name", "a name")
+            parent.key, parent.key_line = node.content, node.line
+        elif parent.key in parent.fields:
+            keys = [one.key or "" if one.is_mapping else len(one.items) for one in self._open]
+            problem = f"is given twice, first in line {parent.fields[parent.key].line}"
+            place = path_text(keys)
+            self.faults.append(Fault(self._name, parent.key_line, place, problem, "once"))
+            parent.key = None
         else:
-            self._set_field(parent, parent.key, node)
-
-    def _field_name(self, node: Node) -> str:
-        if not isinstance(node.content, str):
-            _refuse(self._name, node.line, "a mapping or a list is no field name", "a name")
-        return node.content
-
-    def _set_field(self, parent: _Open, key: str, node: Node) -> None:
-        if key in parent.fields:
-            first = parent.fields[key].line
-            problem = f"is given twice, first in line {first}"
-            self.faults.append(Fault(self._name, parent.key_line, self._place(), problem, "once"))
-        else:
-            parent.fields[key] = replace(node, line=parent.key_line)
-        parent.key = None
-
-    def _place(self) -> str:
-        return path_text(
-            [opened.key or "" if opened.is_mapping else len(opened.items) for opened in self._open]
-        )
+            parent.fields[parent.key] = replace(node, line=parent.key_line)
+            parent.key = None
 
     def _aliased(self, event: yaml.AliasEvent) -> Node:
         anchor = str(event.anchor)
+        alias, line = f"the alias *{printable(anchor)}", _line(event)
         if any(opened.anchor == anchor for opened in self._open):
-            _refuse(self._name, _line(event), f"the alias *{printable(anchor)} contains itself")
+            _refuse(self._name, line, f"{alias} contains itself")
         if anchor not in self._anchors:
-            problem = f"the alias *{printable(anchor)} has no anchor before it"
-            _refuse(self._name, _line(event), problem)
+            _refuse(self._name, line, f"{alias} has no anchor before it")
         return self._anchors[anchor]
 
     def _check_extent(self, node: Node) -> None:
@@ -280,13 +240,10 @@ class _Composer:
         mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
         reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
         line = None if mark is None else mark.line + 1
-        if line is not None and self._is_indented_by_tab(line):
+        text = "" if line is None else "".join(self._lines[line - 1 : line])
+        if "\t" in text[: len(text) - len(text.lstrip())]:
             _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
         _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
-
-    def _is_indented_by_tab(self, line: int) -> bool:
-        text = self._lines[line - 1] if line <= len(self._lines) else ""
-        return "\t" in text[: len(text) - len(text.lstrip())]
 
 
 def _events(text: str) -> Iterator[yaml.Event]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any, get_args, get_origin
+from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import Tag, ValidationError
 from pydantic.fields import FieldInfo
@@ -39,23 +39,28 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
 
 def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldInfo]:
     """Return the fields that the schema knows at pydantic's path ``loc``."""
+    section = next(_sections_in(kind_at(schema, loc)), None)
+    return fields_of(section) if section else {}
+
+
+def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
+    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
     kind: Any = schema
     for key in loc:
         kind = _step(kind, key)
-    section = _section_in(kind)
-    return fields_of(section) if section else {}
+    return kind
 
 
 def _step(kind: Any, key: Key) -> Any:
     """Return what the schema holds one step further; a place in a list keeps its kind."""
-    if get_origin(kind) is dict:
-        return get_args(kind)[1]
+    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+    if get_origin(plain) is dict:
+        return get_args(plain)[1]
     branch = _branch(kind, key)
     if branch is not None:
         return branch
-    section = _section_in(kind)
-    info = fields_of(section).get(str(key)) if section else None
-    return kind if info is None else info.rebuild_annotation()
+    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
+    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
 
 
 def _branch(kind: Any, label: Key) -> Any:
@@ -66,12 +71,14 @@ def _branch(kind: Any, label: Key) -> Any:
     return next((found for part in parts if (found := _branch(part, label)) is not None), None)
 
 
-def _section_in(kind: Any) -> AnySection | None:
+def _sections_in(kind: Any) -> Iterator[AnySection]:
     if isinstance(kind, ReadAs):
-        return kind.section
-    if isinstance(kind, type) and issubclass(kind, Section | FileValue):
-        return kind
-    return next((found for part in get_args(kind) if (found := _section_in(part))), None)
+        yield kind.section
+    elif isinstance(kind, type) and issubclass(kind, Section | FileValue):
+        yield kind
+    else:
+        for part in get_args(kind):
+            yield from _sections_in(part)
 
 
 def _misspelt_fields(

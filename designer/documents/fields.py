@@ -46,18 +46,9 @@ class Reader:
 
 @dataclass(frozen=True)
 class QuantityField(Reader):
-    """Annotation of a float that the file gives as a quantity.
+    """Annotation of a float that the file gives as a quantity, and its limits [SI].
 
-    Parameters
-    ----------
-    dimension : Dimension
-        What kind of quantity.
-    above : float or None
-        Limit that the SI value must exceed.
-    at_least, at_most : float or None
-        Limits that the SI value may reach.
-    reason : str
-        Why not beyond them; empty where that is plain.
+    It must exceed ``above`` and may reach the others; ``reason`` says why not beyond.
     """
 
     dimension: Dimension
@@ -137,13 +128,7 @@ class FormatOf(Reader):
 
 @dataclass(frozen=True, slots=True)
 class ReadAs:
-    """Annotation of a value that the file gives as a section of another form.
-
-    Parameters
-    ----------
-    section : type of Section
-        The form; its method ``value`` makes the value.
-    """
+    """Annotation of a value that the file gives as a section, whose ``value()`` it is."""
 
     section: type[Section]
 

@@ -34,10 +34,8 @@ class Node:
         Text as written, items, or fields.
     is_plain : bool
         Whether a text stands without quotes, so that it may be a number or a truth value.
-    size : int
-        Number of values below this one and itself, aliases expanded.
-    height : int
-        Levels of nesting below this one, aliases expanded.
+    size, height : int
+        Values and levels of nesting below this one, aliases expanded; itself is counted as a value.
     """
 
     line: int

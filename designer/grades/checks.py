@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import get_args
 
-from designer.documents.bounds import BOUNDS, Bound
-from designer.grades.flaw import Flaw, Keys, within
+from designer.documents.bounds import BOUNDS
 from designer.grades.grade import Grade, RopeMaterial, Trust
+from designer.grades.materials import Flaw, Keys, within
 from designer.grades.parts import Basis, ComputedColumn, ReferenceArea
 from designer.grades.proportions import proportion_flaws
 
@@ -93,31 +93,24 @@ def _elasticity(grade: Grade) -> Iterator[Flaw]:
         if not 0.0 <= grade.elasticity.uncertainty < 1.0:
             problem = f"is {grade.elasticity.uncertainty:g}"
             yield Flaw((name, "uncertainty"), problem, "a fraction from 0 to below 1")
-
-
-def _modulus(grade: Grade) -> Iterator[Flaw]:
     modulus = grade.modulus
     if modulus is not None and not within(modulus.value_Pa, _MODULUS_PA):
         problem = f"{modulus.value_Pa / 1e9:.4g} GPa is no rope's"
         yield Flaw(("modulus", "value"), problem, "0.1 to 250 GPa")
-
-
-def _stiffness(grade: Grade) -> Iterator[Flaw]:
     if grade.stiffness is None:
         return
     loads, ratios = grade.stiffness.load_fraction, grade.stiffness.ea_over_breaking_load
+    given_loads, given_ratios = (
+        ", ".join(f"{value:g}" for value in values) or "(none)" for values in (loads, ratios)
+    )
     if len(ratios) != max(len(loads), 1) or not all(within(r, _EA_OVER_MBL) for r in ratios):
         lowest, highest = _EA_OVER_MBL
         expected = f"{lowest:g} to {highest:g}, for each load fraction"
-        yield Flaw(("stiffness",), f"has the ratios {_list(ratios)}", expected)
+        yield Flaw(("stiffness",), f"has the ratios {given_ratios}", expected)
     is_ascending = all(low < high for low, high in pairwise(loads))
     if not (is_ascending and all(0.0 < load <= 1.0 for load in loads)):
-        problem = f"has the load fractions {_list(loads)}"
+        problem = f"has the load fractions {given_loads}"
         yield Flaw(("stiffness",), problem, "ascending ones, above 0 and up to 1")
-
-
-def _list(values: tuple[float, ...]) -> str:
-    return ", ".join(f"{value:g}" for value in values) or "(none)"
 
 
 def _extras(grade: Grade) -> Iterator[Flaw]:
@@ -131,15 +124,10 @@ def _extras(grade: Grade) -> Iterator[Flaw]:
     if factor is not None and not 0.0 < factor.value <= _LARGEST_AREA_FACTOR:
         problem = f"{factor.value:g} is no share of d²"
         yield Flaw(("area_factor", "value"), problem, "more than 0, at most pi/4")
-
-
-def _limits(grade: Grade) -> Iterator[Flaw]:
     limits = grade.limits
-    if limits is None:
-        return
-    if limits.temperature_C is None and limits.creep is None:
+    if limits and limits.temperature_C is None and limits.creep is None:
         yield Flaw(("limits",), "sets no limit", "temperature_C or creep")
-    if limits.temperature_C is not None:
+    if limits and limits.temperature_C is not None:
         lowest, highest = limits.temperature_C
         if not -273.15 <= lowest < highest <= 2000.0:
             problem = f"is {lowest:g} to {highest:g}"
@@ -166,15 +154,12 @@ def _figures(grade: Grade) -> Iterator[Flaw]:
             if not (math.isfinite(value) and value > 0.0):
                 yield Flaw(("sizes", index, name), f"is {value:g}", "a positive number")
             elif not within(value, (bound.least, bound.most)):
-                problem = f"{value:g} {bound.dimension.unit}".rstrip() + " is no rope's"
-                yield Flaw(("sizes", index, name), problem, _range(name, bound))
-
-
-def _range(name: str, bound: Bound) -> str:
-    if name == "diameter":
-        return f"{1e3 * bound.least:g} mm to {1e3 * bound.most:g} mm; check the unit"
-    unit = f" {bound.dimension.unit}".rstrip()
-    return f"{bound.least:g} to {bound.most:g}{unit}; check the unit"
+                unit = f" {bound.dimension.unit}".rstrip()
+                ends = f"{bound.least:g} to {bound.most:g}{unit}"
+                if name == "diameter":
+                    ends = f"{1e3 * bound.least:g} mm to {1e3 * bound.most:g} mm"
+                problem = f"{value:g}{unit} is no rope's"
+                yield Flaw(("sizes", index, name), problem, f"{ends}; check the unit")
 
 
 def _order(grade: Grade) -> Iterator[Flaw]:
@@ -206,10 +191,7 @@ _CHECKS = (
     _identity,
     _choices,
     _elasticity,
-    _modulus,
-    _stiffness,
     _extras,
-    _limits,
     _prices,
     _figures,
     _order,

@@ -20,16 +20,7 @@ class GradeError(ValueError):
 
 
 def family_of(wanted: GradeFamily, catalogues: Sequence[Path], plugins: Plugins) -> Material:
-    """Return the material that a grade of the catalogue stands for.
-
-    Parameters
-    ----------
-    wanted : GradeFamily
-        The grade and its safety factor.
-    catalogues : sequence of Path
-        Files or folders that the study adds to the catalogue.
-    plugins : Plugins
-        Those that were found.
+    """Return the material that a grade of the catalogue, or of ``catalogues``, stands for.
 
     Raises
     ------

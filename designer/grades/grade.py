@@ -128,14 +128,8 @@ class Size(FileValue):
 class FamilyFit:
     """The continuous family of a grade, on the nominal circle, and how well its sizes follow it.
 
-    Parameters
-    ----------
-    density_kg_per_m3, youngs_modulus_Pa, breaking_stress_Pa : float
-        The family; the stress is the breaking one, without a safety factor.
-    n_fitted : int
-        Number of sizes the fit is taken from.
-    linear_density_spread, breaking_load_spread : tuple of float
-        Lowest and highest deviation of any size from the family, relative to the family.
+    The stress is the breaking one, without a safety factor. The spreads are the lowest and the
+    highest deviation of any size from the family, relative to the family.
     """
 
     density_kg_per_m3: float
@@ -320,7 +314,10 @@ class Grade(GradeSheet):
         of the loads themselves would follow the two or three thickest sizes alone, a fit of the
         ratios the worst misprint.
         """
-        trusted = self._trusted_sizes()
+        # A doubt that most of a table shares is about the table, and the few sizes that are left
+        # would be its exceptions rather than its rule.
+        certain = tuple(size for size in self.sizes if size.doubt is None)
+        trusted = certain if 2 * len(certain) >= len(self.sizes) else self.sizes
         density = median(size.density_kg_per_m3 for size in trusted)
         stress = median(size.breaking_stress_Pa for size in trusted)
         return FamilyFit(
@@ -334,15 +331,6 @@ class Grade(GradeSheet):
             linear_density_spread=_spread([s.density_kg_per_m3 / density for s in self.sizes]),
             breaking_load_spread=_spread([s.breaking_stress_Pa / stress for s in self.sizes]),
         )
-
-    def _trusted_sizes(self) -> tuple[Size, ...]:
-        """Sizes without doubt; all, where more than half are doubted.
-
-        A doubt that most of a table shares is about the table, and the few sizes that are left
-        would be its exceptions rather than its rule.
-        """
-        certain = tuple(size for size in self.sizes if size.doubt is None)
-        return certain if 2 * len(certain) >= len(self.sizes) else self.sizes
 
 
 def _spread(ratios: list[float]) -> tuple[float, float]:

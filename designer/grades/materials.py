@@ -11,6 +11,24 @@ from dataclasses import dataclass, replace
 
 from designer.grades.grade import Grade
 
+Keys = tuple[str | int, ...]
+"""A path in a grade file, such as ``("sizes", 3, "linear_mass")``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flaw:
+    """One thing that is wrong with a grade: where in a file, what was found and expected."""
+
+    keys: Keys
+    problem: str
+    expected: str = ""
+
+
+def within(value: float, bounds: tuple[float, float]) -> bool:
+    """Tell whether a value lies between two bounds, or on one of them."""
+    return bounds[0] <= value <= bounds[1]
+
+
 STEEL_DENSITY_KG_PER_M3 = 7850.0
 MASS_OVER_METALLIC_AREA_KG_PER_M3 = 9170.0
 """Of a stranded rope: wires run at an angle, and core and grease weigh something.
@@ -30,14 +48,8 @@ _STRAND = re.compile(r"\b1x\d|spiral|locked|\brod\b|\bsolid\b", re.IGNORECASE)
 class Bounds:
     """Bounds of a rope's figures over the nominal circle, each lowest and highest.
 
-    Parameters
-    ----------
-    density_kg_per_m3, breaking_stress_Pa : tuple of float
-        Mass and breaking load.
-    ea_over_breaking_load : tuple of float
-        Axial stiffness over breaking load.
-    outlier : float
-        By which part a size may stand off its neighbours in mass or breaking load over d².
+    ``outlier`` is by which part a size may stand off its neighbours in mass or breaking load over
+    d².
     """
 
     density_kg_per_m3: tuple[float, float]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -134,9 +134,9 @@ class SheaveRatio(FileValue):
 class Limits(FileValue):
     """What a rope bears beside load: lowest and highest temperature of use [°C], and its creep."""
 
+    temperature_C: TemperatureRange | None = field(default=None, kw_only=True)
+    creep: Line | None = field(default=None, kw_only=True)
     source: Annotated[Line, Field(description="where the limits come from")]
-    temperature_C: TemperatureRange | None = None
-    creep: Line | None = None
 
 
 @dataclass(frozen=True, slots=True)

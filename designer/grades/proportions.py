@@ -11,13 +11,14 @@ import re
 from collections.abc import Iterator, Sequence
 from statistics import median
 
-from designer.grades.flaw import Flaw, within
 from designer.grades.grade import Grade, Size
 from designer.grades.materials import (
     MASS_OVER_METALLIC_AREA_KG_PER_M3,
     STEEL_DENSITY_KG_PER_M3,
+    Flaw,
     bounds_of,
     metallic_modulus_bounds_Pa,
+    within,
 )
 
 LARGEST_FACTOR_OF_DOUBT = 1.6
@@ -112,7 +113,7 @@ def _strength(grade: Grade) -> Iterator[Flaw]:
         return
     strength_Pa = 1e6 * float(wire_grade[1])
     for index, size in enumerate(grade.sizes):
-        aggregate_N = strength_Pa * _most_metal_m2(grade, size)
+        aggregate_N = strength_Pa * _metal_m2(grade, size, STEEL_DENSITY_KG_PER_M3)
         if size.minimum_breaking_load_N > _AGGREGATE_MARGIN * aggregate_N:
             problem = f"is {size.minimum_breaking_load_N / 1e3:.4g} kN"
             expected = (
@@ -128,10 +129,9 @@ def _strength(grade: Grade) -> Iterator[Flaw]:
             yield Flaw(("sizes", index, "minimum_breaking_load"), problem, expected)
 
 
-def _most_metal_m2(grade: Grade, size: Size) -> float:
-    """Return the metallic area; where it is not known, as if all of the mass were wire [m²]."""
-    known_m2 = grade.metallic_area_m2(size)
-    return known_m2 or size.linear_density_kg_per_m / STEEL_DENSITY_KG_PER_M3
+def _metal_m2(grade: Grade, size: Size, density_kg_per_m3: float) -> float:
+    """Return the metallic area; where it is not known, that of the mass at this density [m²]."""
+    return grade.metallic_area_m2(size) or size.linear_density_kg_per_m / density_kg_per_m3
 
 
 def _metallic_areas(grade: Grade) -> Iterator[Flaw]:
@@ -162,7 +162,8 @@ def _elasticity(grade: Grade) -> Iterator[Flaw]:
 def _metallic_modulus(grade: Grade, bounds: tuple[float, float]) -> Iterator[Flaw]:
     """What a modulus on the nominal circle is on the metal, and whether metal can be that."""
     value_Pa = median(
-        grade.axial_stiffness_N(size) / _likely_metal_m2(grade, size) for size in grade.sizes
+        grade.axial_stiffness_N(size) / _metal_m2(grade, size, MASS_OVER_METALLIC_AREA_KG_PER_M3)
+        for size in grade.sizes
     )
     if not within(value_Pa, bounds):
         problem = f"is {value_Pa / 1e9:.0f} GPa on the metallic area"
@@ -171,9 +172,3 @@ def _metallic_modulus(grade: Grade, bounds: tuple[float, float]) -> Iterator[Fla
             f"{grade.construction}; check value and reference_area"
         )
         yield Flaw(("modulus", "value") if grade.modulus else ("stiffness",), problem, expected)
-
-
-def _likely_metal_m2(grade: Grade, size: Size) -> float:
-    """Return the metallic area, by the mass where it is not known [m²]."""
-    known_m2 = grade.metallic_area_m2(size)
-    return known_m2 or size.linear_density_kg_per_m / MASS_OVER_METALLIC_AREA_KG_PER_M3

@@ -31,14 +31,8 @@ _OUR_PLUGINS = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}
 class CatalogueSource:
     """Where grades came from.
 
-    Parameters
-    ----------
-    name : str
-        Name of the plugin, ``user folder``, or name of the file or folder.
-    source : str
-        The plugin's distribution and version, or the path.
-    n_grades : int
-        Number of grades that came in from there.
+    ``name`` is that of a plugin, ``user folder``, or that of a file or folder; ``source`` the
+    plugin's distribution and version, or the path.
     """
 
     name: str
@@ -113,7 +107,8 @@ class Catalogue:
     def _alike(self, text: str) -> str:
         """Return the ids whose construction or name has this in it, else those nearly so called."""
         part = _letters(text)
-        alike = [g for g in self.grades if part and _has(part, g.construction, g.id)]
+        has = re.compile(rf"(?<![a-z0-9]){re.escape(part)}").search  # 9x7 is not in 19x7
+        alike = [g for g in self.grades if part and has(_letters(f"{g.construction}|{g.id}"))]
         names = [g.id for g in sorted(alike, key=lambda g: g.is_nominal)]
         if not names:
             nearest = difflib.get_close_matches(text, [grade.id for grade in self.grades], n=3)
@@ -125,12 +120,6 @@ class Catalogue:
 
 def _letters(text: str) -> str:
     return "".join(text.casefold().replace("×", "x").split())
-
-
-def _has(part: str, *names: str) -> bool:
-    """Tell whether one of the names has this in it; ``9x7`` is not in ``19x7``."""
-    pattern = re.compile(rf"(?<![a-z0-9]){re.escape(part)}")
-    return any(pattern.search(_letters(name)) for name in names)
 
 
 def load_catalogue(
@@ -164,7 +153,8 @@ def load_catalogue(
         shelf.add_offer(offer)
     user_folder = user_catalogue_folder()
     if plugins.with_others and user_folder.is_dir():
-        shelf.add_offer(_offer_of(user_folder))
+        label = f"user folder ({user_folder})"
+        shelf.add_offer(Offer("user folder", str(user_folder), label, (user_folder,)))
     shelf.add_paths(paths)
     return Catalogue(
         tuple(shelf.grades.values()),
@@ -179,10 +169,6 @@ def user_catalogue_folder() -> Path:
     from platformdirs import user_data_path
 
     return user_data_path("cdpr-designer", appauthor=False) / "catalog"
-
-
-def _offer_of(folder: Path) -> Offer:
-    return Offer("user folder", str(folder), f"user folder ({folder})", (folder,))
 
 
 @dataclass(slots=True)

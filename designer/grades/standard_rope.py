@@ -21,6 +21,7 @@ from designer.grades.parts import (
     ComputedFigure,
     Modulus,
     Reference,
+    ReferenceArea,
     SheaveRatio,
     ThermalExpansion,
 )
@@ -40,25 +41,17 @@ DIAMETERS_M = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Factors:
-    """Factors of EN 12385-4 for one construction.
+    """Factors of EN 12385-4 for one construction, such as ``6x36 WS`` with the core ``IWRC``.
 
-    Parameters
-    ----------
-    construction, core : str
-        Such as ``6x36 WS`` and ``IWRC``.
-    breaking_force : float
-        K, breaking force over d² Rr.
-    metallic_area : float
-        C, metallic area over d².
-    mass : float
-        W, mass over length and d² [kg per 100 m and mm²].
+    K is breaking force over d² Rr, C metallic area over d², W mass over length and d² [kg per
+    100 m and mm²].
     """
 
     construction: str
     core: str
-    breaking_force: float
-    metallic_area: float
-    mass: float
+    breaking_force: float  # K
+    metallic_area: float  # C
+    mass: float  # W
 
     def size(self, diameter_m: float, wire_grade_MPa: float) -> Size:
         """Return the size of this nominal diameter [m]."""
@@ -112,18 +105,12 @@ _SOURCE = Reference(
 _STRETCH = "https://strandcore.com/resources/technical-resources/wire-rope-stretch/"
 
 
-def _stretch_modulus(value_GPa: float, factor: str, lender: str) -> Modulus:
-    source = f"Strand Core, stretch factor G = {factor} of galvanised {lender}; {_STRETCH}"
-    return Modulus(value_GPa * 1e9, "nominal", "borrowed", source, 0.15)
-
-
-def _metallic_modulus(value_GPa: float, factor: str, lender: str, area: str) -> Modulus:
-    """Modulus of an aircraft cable, which holds more metal in its circle than the standard asks."""
-    source = (
-        f"Strand Core, stretch factor G = {factor} of galvanised {lender}, over a metallic area "
-        f"of {area} d^2 (USITT, third hand); {_STRETCH}"
-    )
-    return Modulus(value_GPa * 1e9, "metallic", "borrowed", source, 0.15)
+def _stretch_modulus(value_GPa: float, factor: str, lender: str, area: str = "") -> Modulus:
+    """Modulus on the circle, or on the metal of an aircraft cable, which has more of it there."""
+    over = f", over a metallic area of {area} d^2 (USITT, third hand)" if area else ""
+    source = f"Strand Core, stretch factor G = {factor} of galvanised {lender}{over}; {_STRETCH}"
+    kind: ReferenceArea = "metallic" if area else "nominal"
+    return Modulus(value_GPa * 1e9, kind, "borrowed", source, 0.15)
 
 
 _FIBRE_CORE = Modulus(
@@ -143,10 +130,10 @@ _ANY_ROPE = Modulus(
     0.2,
 )
 _MODULI = {
-    ("6x7", "WSC"): _metallic_modulus(136.8, "1.07e-5", "7x7", "0.471"),
+    ("6x7", "WSC"): _stretch_modulus(136.8, "1.07e-5", "7x7", "0.471"),
     ("6x19", "IWRC"): _stretch_modulus(64.5, "1.36e-5", "6x19 IWRC"),
     ("6x19M", "IWRC"): _stretch_modulus(64.5, "1.36e-5", "6x19 IWRC"),
-    ("6x19M", "WSC"): _metallic_modulus(104.3, "1.40e-5", "7x19", "0.472"),
+    ("6x19M", "WSC"): _stretch_modulus(104.3, "1.40e-5", "7x19", "0.472"),
     ("6x36 WS", "IWRC"): _stretch_modulus(61.0, "1.44e-5", "6x37 IWRC"),
     ("6x35N", "IWRC"): _stretch_modulus(61.0, "1.44e-5", "6x37 IWRC"),
     ("6x37M", "IWRC"): _stretch_modulus(61.0, "1.44e-5", "6x37 IWRC"),
@@ -179,9 +166,9 @@ def standard_rope(
     factors : Factors
         One of `FACTORS`, or factors of your own.
     wire_grade_MPa : int
-        Tensile grade of the wires, one of `WIRE_GRADES_MPA`.
+        One of `WIRE_GRADES_MPA`.
     diameters_m : sequence of float
-        Nominal diameters, ascending [m].
+        Ascending.
 
     Raises
     ------

@@ -72,14 +72,10 @@ def silence_broken_output() -> None:
         try:
             stream.flush()
         except OSError:
-            _silence(stream)
-
-
-def _silence(stream: TextIO) -> None:
-    with suppress(OSError, ValueError, AttributeError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, stream.fileno())
-        os.close(nowhere)
+            with suppress(OSError, ValueError, AttributeError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, stream.fileno())
+                os.close(nowhere)
 
 
 def _streams() -> list[TextIO]:

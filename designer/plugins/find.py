@@ -27,17 +27,7 @@ _OWN_MODULES = tuple(entry.value for entry in OWN_ENTRIES)
 
 @dataclass(frozen=True, slots=True)
 class Plugin:
-    """A plugin that could be loaded.
-
-    Parameters
-    ----------
-    name : str
-        Name of its entry point.
-    source : str
-        Its distribution and version.
-    hooks : mapping of str to callable
-        What it implements, by the names of the hooks.
-    """
+    """A plugin that could be loaded: its entry point, its distribution, its hooks by name."""
 
     name: str
     source: str
@@ -51,16 +41,10 @@ class Plugin:
 
 @dataclass(frozen=True, slots=True)
 class Plugins:
-    """All plugins that could be loaded.
+    """All plugins that could be loaded: ours first, then the others by name.
 
-    Parameters
-    ----------
-    found : tuple of Plugin
-        Ours first, then the others by name.
-    problems : tuple of str
-        One line for each that could not be loaded.
-    with_others : bool
-        Whether others than ours were looked for.
+    ``problems`` has a line for each that could not be loaded; ``with_others`` tells whether others
+    than ours were looked for.
     """
 
     found: tuple[Plugin, ...]
@@ -70,19 +54,7 @@ class Plugins:
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """What one plugin, or the user's folder, has to offer.
-
-    Parameters
-    ----------
-    name : str
-        Name of the plugin.
-    source : str
-        Its distribution and version, or the path of the folder.
-    label : str
-        Both, for a line about a problem.
-    items : tuple
-        What the hook gave, not looked at yet.
-    """
+    """What one plugin, or the user's folder, has to offer; ``items`` are not looked at yet."""
 
     name: str
     source: str
@@ -91,13 +63,7 @@ class Offer:
 
 
 def find_plugins(with_plugins: bool = True) -> Plugins:
-    """Load the entry points, ours first.
-
-    Parameters
-    ----------
-    with_plugins : bool
-        False: only our own.
-    """
+    """Load the entry points, ours first; without plugins, ours alone."""
     problems: list[str] = []
     found: dict[str, Plugin] = {}
     for entry in _entries(with_plugins):

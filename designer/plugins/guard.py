@@ -9,7 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 Value = TypeVar("Value")
 
@@ -30,62 +30,35 @@ def one_line(text: object) -> str:
 def attempt(
     action: Callable[[], Value], label: str, failure: str, problems: list[str]
 ) -> Value | None:
-    """Return what a stranger's code gives; None, and a line in ``problems``, where it fails.
+    """Return what a stranger's code gives; None where it fails.
 
-    Parameters
-    ----------
-    action : callable
-        The stranger's code.
-    label : str
-        Whose it is.
-    failure : str
-        What to say that it did, such as ``cannot be loaded``.
-    problems : list of str
-        Gets a line for a failure, and one for what was written to standard output.
+    ``problems`` gets a line for a failure, which says whose it is and what it did (``label``
+    ``failure``, such as "cannot be loaded"), and one for what was written to standard output.
     """
+    answers: list[tuple[Value | None, BaseException | None]] = []
+
+    def run() -> None:
+        try:
+            answers.append((action(), None))
+        except BaseException as error:  # it may raise anything, and ask Python to exit
+            answers.append((None, error))
+
     caught = io.StringIO()
     with _descriptor_to_stderr(), redirect_stdout(caught):
-        answer = _Answer(action)
-        answer.wait(label)
-    error, value = answer.error, answer.value
+        # In a thread of its own: nothing can end one that hangs, but it can be left behind, and as
+        # a daemon it does not keep the program alive.
+        thread = threading.Thread(target=run, name=label, daemon=True)
+        thread.start()
+        thread.join(LONGEST_WAIT_S)
+        late = TimeoutError(f"no answer within {LONGEST_WAIT_S:g} s")
+        value, error = answers[0] if answers else (None, late)
     if error is not None:
-        value = None  # one that came after all, too late
-        problems.append(f"{label} {failure}: {_told(error)}: left out")
+        told = ": ".join(filter(None, (type(error).__name__, one_line(error))))
+        problems.append(f"{label} {failure}: {told}: left out")
     printed = "" if caught.closed else caught.getvalue()
     if printed:
         problems.append(f"{label} wrote to standard output: {one_line(printed)!r}")
     return value
-
-
-def _told(error: BaseException) -> str:
-    words = one_line(error)
-    return f"{type(error).__name__}: {words}" if words else type(error).__name__
-
-
-class _Answer(Generic[Value]):
-    """What an action gave, or why it gave nothing."""
-
-    def __init__(self, action: Callable[[], Value]) -> None:
-        self._action = action
-        self.value: Value | None = None
-        self.error: BaseException | None = None
-
-    def wait(self, label: str) -> None:
-        """Run the action in a thread of its own: one that hangs can be left behind.
-
-        Nothing can end a thread from outside; as a daemon it does not keep the program alive.
-        """
-        thread = threading.Thread(target=self._run, name=label, daemon=True)
-        thread.start()
-        thread.join(LONGEST_WAIT_S)
-        if thread.is_alive():
-            self.error = TimeoutError(f"no answer within {LONGEST_WAIT_S:g} s")
-
-    def _run(self) -> None:
-        try:
-            self.value = self._action()
-        except BaseException as error:  # it may raise anything, and ask Python to exit
-            self.error = error
 
 
 @contextmanager

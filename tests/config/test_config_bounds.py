@@ -72,6 +72,11 @@ MISTAKES = [
     ("pose: [15, 9, 4]", "pose: [150000, 9, 4]", "pose: lies 1.5e+05 m from the exit points"),
     ("z: [1, 8]", "z: [1, 800000]", "workspace.region.z: lies 8e+05 m from"),
     ("12]]", "12], [1e6, 1e6, 12]]", "the exit points are 1e+06 m apart"),
+    (
+        "{prism: anchors, inset: 3 m, z: [1, 8]}",
+        "{rectangle: [[0, 0], [900000, 0]], z: [1, 8]}",
+        "workspace.region.rectangle: lies 9e+05 m from the exit points",
+    ),
     ("pose: [15, 9, 4]", "surroundings: {temperature: 5000}", "a bare number is in degC"),
     (
         "pose: [15, 9, 4]",

@@ -155,7 +155,7 @@ def test_a_grade_made_in_python_is_checked_alike():
         ({"material": "wood"}, "material", "'wood' is not known"),
         ({"currency": "euro"}, "currency", "no currency"),
         ({"limits": Limits("a sheet")}, "limits", "sets no limit"),
-        ({"limits": Limits("a sheet", (80.0, -40.0))}, "limits", "is 80 to -40"),
+        ({"limits": Limits("a sheet", temperature_C=(80.0, -40.0))}, "limits", "is 80 to -40"),
         ({"computed": (ComputedFigure("colour", "by eye"),)}, "computed", "'colour'"),
         (
             {"thermal_expansion": ThermalExpansion(1e-5, "guessed", "a test")},

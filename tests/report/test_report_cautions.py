@@ -69,7 +69,7 @@ def test_no_steel_rope_holds(solve: Solve) -> None:
     [
         (Limits("S", creep="high"), {"Creep of yale-ultrex-hmpe"}),
         (None, {"Creep of yale-ultrex-hmpe"}),
-        (Limits("S", (-40.0, 70.0)), {"Creep of yale-ultrex-hmpe", "Temperature"}),
+        (Limits("S", temperature_C=(-40.0, 70.0)), {"Creep of yale-ultrex-hmpe", "Temperature"}),
     ],
 )
 def test_limits_of_the_grade_are_cautions(

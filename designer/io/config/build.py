@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 from designer.arrays import frozen_array
+from designer.documents.document import Document
 from designer.effects.known import KnownEffects
+from designer.errors import InputError
 from designer.io.config.columns import log_column
 from designer.io.config.effects import read_effects
 from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.schema import (
     BoxSection,
+    CableSection,
     MeasurementsSection,
     PointsSection,
     PoseSection,
@@ -27,8 +31,10 @@ from designer.model.machine import Surroundings
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
+from designer.plugins.find import Plugins, find_plugins
 from designer.study import (
     CableGroup,
+    Entry,
     GradeFamily,
     Measurements,
     Selection,
@@ -36,24 +42,29 @@ from designer.study import (
     Study,
     Workspace,
 )
+from designer.units import DENSITY, STRESS, format_SI
 
 
 def build_study(
-    section: StudySection,
-    source: Source,
-    known: KnownEffects,
-    material: Material,
-    family: GradeFamily | None,
-) -> Study:
-    """Return the study that the config describes, with a material that was made for it."""
+    section: StudySection, source: Source, document: Document, known: KnownEffects,
+    plugins: Plugins | None,
+) -> Study:  # fmt: skip
+    """Return the study that the config describes.
+
+    Raises
+    ------
+    InputError
+        If its cable is of a grade that there is not, or that lacks figures.
+    """
     folder = source.path.parent
     robot = _robot(section.robot)
+    material, family = _material_and_family(section, document, plugins)
     declared = read_effects(section.effects, robot.n_cables, known.by_id)
     return Study(
         name=section.name or source.path.stem,
         robot=robot,
         material=material,
-        source=source,
+        source=replace(source, entries=_with_family(source.entries, material, family)),
         pose=_pose(section.pose),
         workspace=_workspace(section.workspace, robot),
         selection=_selection(section.selection),
@@ -64,6 +75,42 @@ def build_study(
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
     )
+
+
+def _material_and_family(
+    section: StudySection, document: Document, plugins: Plugins | None
+) -> tuple[Material, GradeFamily | None]:
+    """Return the material, and the grade it is of; its safety factor may be the selection's."""
+    cable = section.cable
+    if isinstance(cable, CableSection):
+        return Material(cable.density, cable.youngs_modulus, cable.allowable_stress), None
+    from designer.grades.family import GradeError, family_of  # most studies name no grade
+
+    usual = (section.selection or SelectionSection()).safety_factor
+    family = GradeFamily(cable.grade, cable.safety_factor or usual)
+    files = [Path(document.name).parent / name for name in section.catalogues]
+    try:
+        return family_of(family, files, plugins or find_plugins(with_plugins=False)), family
+    except GradeError as error:
+        fault = document.fault(("cable", "grade"), error.problem, error.expected)
+        raise InputError([fault]) from None
+
+
+def _with_family(
+    entries: tuple[Entry, ...], material: Material, family: GradeFamily | None
+) -> tuple[Entry, ...]:
+    """Return the table of inputs with what a grade stands for."""
+    if family is None:
+        return entries
+    meaning = {
+        "cable.grade": (
+            f"{format_SI(material.density_kg_per_m3, DENSITY)}, "
+            f"modulus {format_SI(material.youngs_modulus_Pa, STRESS)}, "
+            f"allowable {format_SI(material.allowable_stress_Pa, STRESS)}, on the nominal circle"
+        ),
+        "cable.safety_factor": f"{family.safety_factor:g}",
+    }
+    return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
 
 
 def _robot(section: RobotSection) -> Robot:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from designer.documents.fields import Text, bounded, mapping, refusal
 from designer.documents.section import Section
@@ -52,7 +51,9 @@ class ColumnSection(Section):
         """Return scale and offset from the log's numbers to ours."""
         dimension = dimension_of(self.to)
         if dimension is None:
-            self._refuse_conversion()
+            given = self.model_fields_set - {"to"}
+            if given:
+                raise refusal(f"'{self.to}' takes no {sorted(given)[0]}", f"'{self.to}' alone")
             return 1.0, 0.0
         scale, offset = self._scale(dimension)
         return scale, offset + self._offset(dimension)
@@ -66,11 +67,6 @@ class ColumnSection(Section):
         shift = f" {'-' if offset < 0 else '+'} {abs(offset):.10g}" if offset else ""
         return f"{self.to} = {scale:.10g} · reading{shift}"
 
-    def _refuse_conversion(self) -> None:
-        given = self.model_fields_set - {"to"}
-        if given:
-            raise refusal(f"'{self.to}' takes no {sorted(given)[0]}", f"'{self.to}' alone")
-
     def _scale(self, dimension: Dimension) -> tuple[float, float]:
         if self.scale is not None and self.unit is not None:
             raise refusal("both a unit and a scale are given", "one of the two")
@@ -81,7 +77,10 @@ class ColumnSection(Section):
         try:
             zero, one = (read_quantity(f"{number} {self.unit}", dimension) for number in (0, 1))
         except QuantityError as error:
-            raise _no_such_unit(self.unit, dimension, error) from None
+            _, mark, hint = error.expected.partition("; did you mean")
+            expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
+            problem = f"{describe(self.unit)} is no unit of {dimension.noun}"
+            raise refusal(problem, f"{expected}{mark}{hint}") from None
         return one - zero, zero
 
     def _offset(self, dimension: Dimension) -> float:
@@ -91,12 +90,6 @@ class ColumnSection(Section):
             return 0.0 if self.offset is None else read_quantity(self.offset, kind)
         except QuantityError as error:
             raise refusal(f"the offset {error.problem}", error.expected) from None
-
-
-def _no_such_unit(unit: str, dimension: Dimension, error: QuantityError) -> PydanticCustomError:
-    _, mark, hint = error.expected.partition("; did you mean")
-    expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
-    return refusal(f"{describe(unit)} is no unit of {dimension.noun}", f"{expected}{mark}{hint}")
 
 
 Columns = Annotated[dict[str, ColumnSection], BeforeValidator(mapping)]

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any, get_args
 
 from pydantic import BaseModel
-from pydantic.fields import FieldInfo
 
 from designer.documents.fields import QuantityField
 from designer.documents.node import Key, Node, path_text
@@ -26,15 +25,21 @@ def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = 
     entries: list[Entry] = []
     for name, info in type(section).model_fields.items():
         value = getattr(section, name)
-        below = None if node is None else _given(node, name, section)
+        below = None if node is None else _field(node, name, section)
         if isinstance(value, BaseModel):
             entries += all_entries(value, below, (*place, name))
         else:
-            entries += _entries(value, below, (*place, name), _dimension(info))
+            quantity = _quantity_in((info.annotation, *info.metadata))
+            dimension = quantity.dimension if quantity else NUMBER
+            entries += _entries(value, below, (*place, name), dimension)
     return entries
 
 
-def _given(node: Node, name: str, section: BaseModel) -> Node | None:
+def _given(node: Node | None) -> str:
+    return DEFAULT if node is None else node.as_written()
+
+
+def _field(node: Node, name: str, section: BaseModel) -> Node | None:
     """Return the field's node; a list in place of a section gives the section's first field."""
     is_shorthand = not isinstance(node.content, dict)
     is_first = name == next(iter(type(section).model_fields))
@@ -49,12 +54,10 @@ def _entries(
         yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
     elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
         for index, item in enumerate(value):
-            below = node.child(index)
-            given = DEFAULT if below is None else below.as_written()
-            yield Entry(path_text((*place, index)), given, str(item))
+            yield Entry(path_text((*place, index)), _given(node.child(index)), str(item))
     elif isinstance(value, dict) and value:
         yield from _map_entries(value, node, place)
-    elif not _has_rows(value):
+    elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
     elif len(value) > _MOST_ROWS:
         ends = f"{_in_SI(value[0], dimension)} … {_in_SI(value[-1], dimension)}"
@@ -66,16 +69,10 @@ def _entries(
 
 def _map_entries(value: dict[str, Any], node: Node, place: tuple[Key, ...]) -> Iterator[Entry]:
     for name, item in value.items():
-        if isinstance(item, ColumnSection):
-            below = node.child(name)
-            given = DEFAULT if below is None else below.as_written()
-            yield Entry(path_text((*place, name)), given, item.meaning)
-        elif isinstance(item, tuple):
+        if isinstance(item, tuple):
             yield from _entries(item, node.child(name), (*place, name), NUMBER)
-
-
-def _has_rows(value: object) -> bool:
-    return isinstance(value, tuple) and bool(value) and isinstance(value[0], tuple)
+        elif isinstance(item, ColumnSection):
+            yield Entry(path_text((*place, name)), _given(node.child(name)), item.meaning)
 
 
 def _in_SI(value: Any, dimension: Dimension) -> str:
@@ -90,13 +87,8 @@ def _in_SI(value: Any, dimension: Dimension) -> str:
     return str(value)
 
 
-def _dimension(info: FieldInfo) -> Dimension:
-    """Return the dimension of a field's numbers, wherever in its type it stands."""
-    quantity = _quantity_in((info.annotation, *info.metadata))
-    return NUMBER if quantity is None else quantity.dimension
-
-
 def _quantity_in(parts: tuple[Any, ...]) -> QuantityField | None:
+    """Return the annotation of a field's numbers, wherever in its type it stands."""
     for part in parts:
         found = part if isinstance(part, QuantityField) else _quantity_in(get_args(part))
         if found is not None:

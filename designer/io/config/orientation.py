@@ -34,12 +34,7 @@ def _convention(given: object) -> str:
     return given
 
 
-def only_one_form(given: object) -> object:
-    """Return the mapping of a pose unchanged, or refuse it if it has several orientations."""
-    return only_one_of(given, FORMS, "the pose")
-
-
-def only_one_of(given: object, names: tuple[str, ...], owner: str) -> object:
+def only_one_of(given: object, names: tuple[str, ...] = FORMS, owner: str = "the pose") -> object:
     """Return a mapping unchanged, or refuse it if it has several of these fields."""
     if isinstance(given, dict):
         found = [name for name in names if given.get(name) is not None]
@@ -78,7 +73,7 @@ class OrientationSection(Section):
     @model_validator(mode="before")
     @classmethod
     def _from_list(cls, given: object) -> object:
-        return {"rotation_vector": given} if isinstance(given, list) else only_one_form(given)
+        return {"rotation_vector": given} if isinstance(given, list) else only_one_of(given)
 
     def __str__(self) -> str:
         """Return the rotation vector with its unit, for the table of inputs."""
@@ -116,14 +111,7 @@ def rotation_vector_rad(
 ) -> FloatArray:
     """Return the orientation as a rotation vector (3,) [rad], from the one form that is given.
 
-    Parameters
-    ----------
-    vector : tuple of float
-        Rotation vector [rad]; counts where the others are None.
-    quaternion : tuple of float or None
-        From body to world, scalar first; scaled to unit length.
-    euler : EulerSection or None
-        Angles and the axes that they turn about.
+    The quaternion is from body to world, scalar first; it is scaled to unit length.
     """
     if quaternion is not None:
         scalar_last = np.roll(quaternion, -1)

@@ -19,36 +19,10 @@ from pydantic import (
     model_validator,
 )
 
+from designer.documents import fields
 from designer.documents.bounds import MOST_SAMPLES
 from designer.documents.fields import (
-    AxialStiffness,
-    BreakingLoad,
-    Clearance,
-    Corner,
-    Density,
-    Direction,
-    Distance,
-    Efficiency,
-    Forces,
     FormatOf,
-    FreeMapping,
-    Interval,
-    Length,
-    LengthNoise,
-    LinearDensity,
-    Mass,
-    Modulus,
-    Moments,
-    Point,
-    RopeDiameter,
-    Rotation,
-    SafetyFactor,
-    SearchTime,
-    SheaveDiameter,
-    Stress,
-    Temperature,
-    Tension,
-    TensionNoise,
     Text,
     WholeNumber,
     different,
@@ -67,7 +41,6 @@ from designer.io.config.orientation import (
     OrientationRangeSection,
     OrientationSection,
     Quaternion,
-    only_one_form,
     only_one_of,
 )
 from designer.model.region import Sampling
@@ -86,12 +59,12 @@ _positions = list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
 _ends = list_of(2, 2, _ENDS)
 _box = list_of(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
 
-Anchors = Annotated[tuple[Point, ...], _points]
-Attachments = Annotated[tuple[Point, ...], _points]
-Corners = Annotated[tuple[Corner, ...], _corners]
-Ends = Annotated[tuple[Corner, Corner], _ends]
-Positions = Annotated[tuple[Point, ...], _positions]
-Box = Annotated[tuple[Interval, Interval, Interval], _box]
+Anchors = Annotated[tuple[fields.Point, ...], _points]
+Attachments = Annotated[tuple[fields.Point, ...], _points]
+Corners = Annotated[tuple[fields.Corner, ...], _corners]
+Ends = Annotated[tuple[fields.Corner, fields.Corner], _ends]
+Positions = Annotated[tuple[fields.Point, ...], _positions]
+Box = Annotated[tuple[fields.Interval, fields.Interval, fields.Interval], _box]
 Objectives = Annotated[
     tuple[Objective, ...],
     list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -139,16 +112,16 @@ GradeIds = Annotated[
 class WrenchSection(Section):
     """Constant load beside gravity, along the axes of the world frame."""
 
-    force: Forces = (0.0, 0.0, 0.0)
-    moment: Moments = (0.0, 0.0, 0.0)
+    force: fields.Forces = (0.0, 0.0, 0.0)
+    moment: fields.Moments = (0.0, 0.0, 0.0)
 
 
 class PlatformSection(Section):
     """What the cables carry."""
 
-    mass: Mass = Field(description="a mass such as '4000 kg'")
+    mass: fields.Mass = Field(description="a mass such as '4000 kg'")
     attachments: Attachments | None = None
-    centre_of_mass: Point = (0.0, 0.0, 0.0)
+    centre_of_mass: fields.Point = (0.0, 0.0, 0.0)
     hull: Box | None = None
     wrench: WrenchSection = WrenchSection()
 
@@ -158,24 +131,24 @@ class RobotSection(Section):
 
     anchors: Anchors = Field(description="at least 3 exit points [x, y, z]")
     platform: PlatformSection = Field(description="a mapping with the platform's mass")
-    gravity: Direction = (0.0, 0.0, -1.0)
+    gravity: fields.Direction = (0.0, 0.0, -1.0)
     planar: StrictBool = False
-    tension_min: Tension = 0.0
+    tension_min: fields.Tension = 0.0
 
 
 class CableSection(Section):
     """The continuous family of cables in which the optimum is computed."""
 
-    density: Density = Field(description="a density such as '7800 kg/m^3'")
-    youngs_modulus: Modulus = Field(description="a modulus such as '200 GPa'")
-    allowable_stress: Stress = Field(description="a stress such as '180 MPa'")
+    density: fields.Density = Field(description="a density such as '7800 kg/m^3'")
+    youngs_modulus: fields.Modulus = Field(description="a modulus such as '200 GPa'")
+    allowable_stress: fields.Stress = Field(description="a stress such as '180 MPa'")
 
 
 class GradeCableSection(Section):
     """The continuous family of a rope grade."""
 
     grade: Text = Field(description="a grade id from `designer catalog list`")
-    safety_factor: SafetyFactor | None = None
+    safety_factor: fields.SafetyFactor | None = None
 
 
 def _cable_tag(given: object) -> str:
@@ -193,8 +166,8 @@ ConfiguredCable = Annotated[
 class PoseSection(Section):
     """One pose of the platform."""
 
-    position: Point = Field(description="three lengths [x, y, z]")
-    rotation_vector: Rotation = (0.0, 0.0, 0.0)
+    position: fields.Point = Field(description="three lengths [x, y, z]")
+    rotation_vector: fields.Rotation = (0.0, 0.0, 0.0)
     quaternion: Quaternion | None = None
     euler: EulerSection | None = None
 
@@ -203,15 +176,15 @@ class PoseSection(Section):
     def _from_list(cls, given: object) -> object:
         if in_brackets(given):
             raise refusal(f"{describe(given)} is not a list", "[x, y, z]" + in_brackets(given))
-        return {"position": given} if isinstance(given, list) else only_one_form(given)
+        return {"position": given} if isinstance(given, list) else only_one_of(given)
 
 
 class PrismSection(Section):
     """An upright prism over the anchors or over corners of one's own."""
 
     prism: PrismBase = Field(description=_CORNERS)
-    inset: Distance = 0.0
-    z: Interval = Field(description="[lower, upper]")
+    inset: fields.Distance = 0.0
+    z: fields.Interval = Field(description="[lower, upper]")
 
 
 class BoxSection(Section):
@@ -230,8 +203,8 @@ class RectangleSection(Section):
     """An upright rectangle over the line between two corners, or over anchors on a line."""
 
     rectangle: RectangleBase = Field(description=_ENDS)
-    inset: Distance = 0.0
-    z: Interval = Field(description="[lower, upper]")
+    inset: fields.Distance = 0.0
+    z: fields.Interval = Field(description="[lower, upper]")
 
 
 REGION_KINDS: dict[str, type[Section]] = {
@@ -282,8 +255,8 @@ class WorkspaceSection(Section):
     sampling: Sampling = "low_discrepancy"
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
     hangs_below: HangsBelow = "include"
-    clearance: Clearance | None = None
-    floor: Length | None = None
+    clearance: fields.Clearance | None = None
+    floor: fields.Length | None = None
     orientation: OrientationSection | None = None
     orientations: TurnList | None = None
     orientation_range: OrientationRangeSection | None = None
@@ -298,10 +271,10 @@ class SelectionSection(Section):
     """How a product is chosen."""
 
     grades: GradeIds = "all"
-    safety_factor: SafetyFactor = 5.0
+    safety_factor: fields.SafetyFactor = 5.0
     objectives: Objectives = ("mass", "drum_diameter", "max_tension")
-    termination_efficiency: Efficiency = 1.0
-    sheave_diameter: SheaveDiameter | None = None
+    termination_efficiency: fields.Efficiency = 1.0
+    sheave_diameter: fields.SheaveDiameter | None = None
     groups: Groups | None = None
     max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
 
@@ -309,17 +282,17 @@ class SelectionSection(Section):
 class MeasuredCableSection(Section):
     """The cable that is on the machine."""
 
-    linear_mass: LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
-    axial_stiffness: AxialStiffness = Field(description="a force such as '3.3 MN'")
-    diameter: RopeDiameter | None = None
-    minimum_breaking_load: BreakingLoad | None = None
+    linear_mass: fields.LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
+    axial_stiffness: fields.AxialStiffness = Field(description="a force such as '3.3 MN'")
+    diameter: fields.RopeDiameter | None = None
+    minimum_breaking_load: fields.BreakingLoad | None = None
 
 
 class NoiseSection(Section):
     """Standard deviations of the measured values."""
 
-    length: LengthNoise | None = None
-    tension: TensionNoise | None = None
+    length: fields.LengthNoise | None = None
+    tension: fields.TensionNoise | None = None
     estimated: Readings = ()
 
 
@@ -329,16 +302,16 @@ class MeasurementsSection(Section):
     file: Text = Field(description="the name of a CSV file")
     columns: Columns = Field(default_factory=dict)
     settled: StrictBool = True
-    unknown: Names = ()  # checked by designer.io.config.measured_checks
+    unknown: Names = ()  # checked by designer.io.config.checks
     cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
     noise: NoiseSection = NoiseSection()
-    search_time: SearchTime = 600.0
+    search_time: fields.SearchTime = 600.0
 
 
 class SurroundingsSection(Section):
     """What the laws of effects are given in a design."""
 
-    temperature: Temperature = 20.0
+    temperature: fields.Temperature = 20.0
 
 
 class StudySection(Section):
@@ -354,6 +327,7 @@ class StudySection(Section):
     selection: SelectionSection | None = None
     catalogues: Names = ()
     measurements: MeasurementsSection | None = None
-    effects: FreeMapping = Field(default_factory=dict)  # checked by designer.io.config.effects
+    # designer.io.config.effects checks what is in it
+    effects: fields.FreeMapping = Field(default_factory=dict)
     surroundings: SurroundingsSection = SurroundingsSection()
     format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1

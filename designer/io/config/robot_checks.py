@@ -1,0 +1,283 @@
+"""Checks of the robot that need several of its fields: geometry, load, and the plane it is in.
+
+Each check looks only at parts that are valid in themselves, so that all faults of a file come out
+together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.documents.bounds import BOUNDS
+from designer.errors import Fault
+from designer.io.config.orientation import OrientationSection
+from designer.io.config.parts import Parts
+from designer.io.config.schema import ORIENTATION_KINDS
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.robot import vertical_frame
+
+_COINCIDENT = 1e-9
+"""Distance of two cables' ends that counts as none, over the extent of the robot."""
+_FLAT = 1e-6
+"""What counts as on one line or in one plane, over the extent of the points."""
+_WEIGHTLESS = 1e-9
+_LARGEST_STRAIN = 0.5
+"""Linear elasticity says nothing beyond; the softest rope of the catalogue breaks before."""
+LARGEST = BOUNDS["distance"]
+AT_MOST = f"at most {LARGEST.most:g} m: {LARGEST.reason}; check the unit"
+_ANCHORS = "robot.anchors"
+_ATTACHMENTS = "robot.platform.attachments"
+_NO_POINT_MASS = "robot.platform.attachments, or leave it out"
+
+
+def distinct_cables(parts: Parts) -> Iterator[Fault]:
+    """No two cables have both of their ends in common."""
+    anchors, attachments = parts.array(_ANCHORS), parts.array(_ATTACHMENTS)
+    if anchors is None or (attachments is not None and len(attachments) != len(anchors)):
+        return
+    if attachments is None:
+        if not parts.is_point_mass:
+            return
+        attachments = np.zeros_like(anchors)
+    ends = np.hstack([anchors, attachments])
+    near = _COINCIDENT * np.linalg.norm(np.ptp(ends, axis=0))
+    for first, second in combinations(range(len(ends)), 2):
+        if np.linalg.norm(ends[first] - ends[second]) <= near:
+            alike = ", and so are their attachments" if attachments.any() else ""
+            problem = f"is the same point as robot.anchors[{first}]{alike}"
+            yield parts.fault(_ANCHORS, problem, "distinct cables", second)
+            return
+
+
+def anchors_span_area(parts: Parts) -> Iterator[Fault]:
+    """Seen from above, the exit points are not on one line, except in a plane."""
+    anchors = parts.array(_ANCHORS)
+    if anchors is None or parts.is_planar or any(distinct_cables(parts)):
+        return
+    if len(anchors) > 2 and rank(np.unique(parts.seen_from_above(anchors), axis=0)) < 2:
+        problem = "all anchors lie on one line when seen from above"
+        yield parts.fault(_ANCHORS, problem, "anchors that span an area in x and y")
+
+
+def moved_anchors_span_area(parts: Parts) -> Iterator[Fault]:
+    """The exit points are not on one line either where the effects say that they are."""
+    anchors = parts.array(_ANCHORS)
+    if anchors is None or parts.is_planar or any(anchors_span_area(parts)):
+        return
+    moved = anchors.copy()
+    for _, effect in parts.declared.effects:
+        if effect.id == "anchor_offset" and effect.cable is not None:
+            values = effect.parameters
+            moved[effect.cable - 1] += [values.get(name, 0.0) for name in ("x_m", "y_m", "z_m")]
+    if (moved != anchors).any() and rank(parts.seen_from_above(moved)) < 2:
+        problem = "moves the anchors onto one line, seen from above"
+        expected = "anchors that span an area in x and y"
+        yield parts.fault("effects.anchor_offset", problem, expected)
+
+
+def attachments_fit(parts: Parts) -> Iterator[Fault]:
+    """Each cable has its attachment, and the platform cannot turn freely about all of them."""
+    anchors, attachments = parts.read(_ANCHORS), parts.array(_ATTACHMENTS)
+    if attachments is None:
+        return
+    if anchors and len(anchors) != len(attachments):
+        problem = f"{len(attachments)} attachments for {len(anchors)} anchors"
+        expected = "one attachment for each anchor, in their order"
+        yield parts.fault(_ATTACHMENTS, problem, expected)
+    if rank(attachments) < (1 if parts.is_planar else 2):
+        where = "on one line" if rank(attachments) else "at one point"
+        problem = f"all attachments lie {where}, so nothing keeps the platform from turning"
+        yield parts.fault(_ATTACHMENTS, problem, "attachments apart, or none for a point mass")
+
+
+def least_tension_is_a_choice(parts: Parts) -> Iterator[Fault]:
+    """Only spare cables leave tensions to choose."""
+    anchors, least_N = parts.read(_ANCHORS), parts.read("robot.tension_min")
+    if not anchors or not least_N:
+        return
+    turning = 0 if parts.is_point_mass else (1 if parts.is_planar else 3)
+    freedoms = (2 if parts.is_planar else 3) + turning
+    if len(anchors) <= freedoms:
+        problem = (
+            f"{len(anchors)} cables and {freedoms} degrees of freedom leave no tension to choose"
+        )
+        expected = "more cables than degrees of freedom, or leave it out"
+        yield parts.fault("robot.tension_min", problem, expected)
+
+
+def point_mass_has_no_body(parts: Parts) -> Iterator[Fault]:
+    """A point mass has no body, takes no moment and has no orientations."""
+    if not parts.is_point_mass:
+        return
+    meaningless = "has no meaning for a point mass"
+    for path, first in (
+        ("robot.platform.centre_of_mass", 0),
+        ("robot.platform.hull", 0),
+        ("pose.rotation_vector", 0),
+        ("pose.quaternion", 1),  # the first number is 1 where nothing turns
+        ("pose.euler.angles", 0),
+        ("robot.platform.wrench.moment", 0),
+    ):
+        value = parts.read(path)
+        if value is not None and any(value[first:]):
+            yield parts.fault(path, meaningless, _NO_POINT_MASS)
+    for kind in ORIENTATION_KINDS:
+        if parts.raw(f"workspace.{kind}") is not None:
+            yield parts.fault(f"workspace.{kind}", meaningless, _NO_POINT_MASS)
+
+
+def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
+    """The wrench, with what the effects add, leaves a load: without one there is no diameter."""
+    force, mass_kg = parts.array("robot.platform.wrench.force"), parts.read("robot.platform.mass")
+    if force is None or mass_kg is None:
+        return
+    mass_kg += sum(
+        one.parameters.get("offset_kg", 0.0)
+        for _, one in parts.declared.effects
+        if one.id == "platform_mass"
+    )
+    weight = mass_kg * STANDARD_GRAVITY_M_PER_S2 * parts.down / np.linalg.norm(parts.down)
+    moment, lever = (
+        np.zeros(3) if found is None else found
+        for found in map(
+            parts.array, ("robot.platform.wrench.moment", "robot.platform.centre_of_mass")
+        )
+    )
+    size_N = _WEIGHTLESS * float(np.linalg.norm(weight))
+    left = (force + weight, moment + np.cross(lever, weight))
+    if all(np.linalg.norm(part) <= size_N for part in left):
+        problem = "cancels the platform's weight, so there is nothing for the cables to hold"
+        yield parts.fault("robot.platform.wrench.force", problem, "a load that is left")
+
+
+def strain_stays_small(parts: Parts) -> Iterator[Fault]:
+    """The allowable stress is well below the modulus; else one of them is in another unit."""
+    stress_Pa, modulus_Pa = map(parts.read, ("cable.allowable_stress", "cable.youngs_modulus"))
+    if stress_Pa is None or modulus_Pa is None or stress_Pa <= _LARGEST_STRAIN * modulus_Pa:
+        return
+    problem = f"stretches the cable by {stress_Pa / modulus_Pa:.0%}"
+    expected = f"at most {_LARGEST_STRAIN:.0%}; check the unit, also that of cable.youngs_modulus"
+    yield parts.fault("cable.allowable_stress", problem, expected)
+
+
+def robot_has_a_size(parts: Parts) -> Iterator[Fault]:
+    """Exit points lie within some kilometres, and what belongs to the platform between them."""
+    anchors, hull = parts.array(_ANCHORS), parts.array("robot.platform.hull")
+    if anchors is not None and float(np.ptp(anchors, axis=0).max()) > LARGEST.most:
+        problem = f"the exit points are {np.ptp(anchors, axis=0).max():.4g} m apart"
+        yield parts.fault(_ANCHORS, problem, AT_MOST)
+    if hull is not None and anchors is not None:
+        size_m = float(np.linalg.norm(np.ptp(hull, axis=1)))
+        room_m = float(np.linalg.norm(np.ptp(anchors, axis=0)))
+        if size_m > room_m:
+            problem = f"is {size_m:.3g} m from corner to corner, the exit points {room_m:.3g} m"
+            expected = "a box that fits between them; check the unit"
+            yield parts.fault("robot.platform.hull", problem, expected)
+    for name in ("attachments", "centre_of_mass", "hull"):
+        values = parts.array(f"robot.platform.{name}")
+        if values is not None and float(np.abs(values).max()) > LARGEST.most:
+            problem = f"reaches {np.abs(values).max():.4g} m from the platform's origin"
+            yield parts.fault(f"robot.platform.{name}", problem, AT_MOST)
+
+
+def enough_anchors(parts: Parts) -> Iterator[Fault]:
+    """Only in a plane two cables can hold anything."""
+    anchors = parts.read(_ANCHORS)
+    if anchors is not None and len(anchors) < 3 and not parts.is_planar:
+        yield parts.fault(_ANCHORS, "the list has 2 values", "at least 3 points, or planar: true")
+
+
+def lies_in_plane(parts: Parts) -> Iterator[Fault]:
+    """Everything of a planar robot lies in the vertical plane of its anchors."""
+    anchors = parts.array(_ANCHORS)
+    if anchors is None or not parts.is_planar:
+        return
+    size = float(np.linalg.norm(np.ptp(anchors, axis=0)))
+    normal = _normal(parts, anchors, size)
+    if normal is None:
+        problem = "the anchors do not lie in one vertical plane, as robot.planar asks"
+        yield parts.fault(_ANCHORS, problem, "anchors on one line, seen from above")
+        return
+    for path, values in _vectors(parts, anchors[0], size):
+        off = np.abs(values @ normal)
+        if off.max() > _FLAT * size:
+            expected = "what lies in the vertical plane of the anchors, as robot.planar asks"
+            yield parts.fault(path, f"leaves that plane by {off.max():.3g}", expected)
+    for path, turns in _turns(parts):
+        if np.linalg.norm(np.cross(turns, normal), axis=1).max() > _FLAT:
+            yield parts.fault(path, "turns the platform out of the plane", "a turn in the plane")
+
+
+def _normal(parts: Parts, anchors: FloatArray, size: float) -> FloatArray | None:
+    """Return the normal (3,) of the vertical plane of the anchors, None where there is none."""
+    plan = parts.seen_from_above(anchors)
+    _, spread, axes = np.linalg.svd(plan - plan.mean(axis=0))
+    on_line = len(spread) < 2 or spread[1] <= _FLAT * size
+    if not (spread[0] > _FLAT * size and on_line):
+        return None
+    across = np.array([-axes[0, 1], axes[0, 0], 0.0])
+    return np.asarray(across @ vertical_frame(parts.down))
+
+
+def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[str, FloatArray]]:
+    """Yield where vectors stand, and the vectors (n, 3), positions from a point of the plane."""
+    for path in ("robot.platform.centre_of_mass", _ATTACHMENTS):
+        values = parts.array(path)
+        if values is not None:
+            yield path, np.atleast_2d(values)
+    pose, points = parts.read("pose"), parts.array("workspace.region.points")
+    if pose is not None:
+        yield "pose", np.array([pose.position]) - origin
+    if points is not None:
+        yield "workspace.region.points", points - origin
+    ends = parts.array("workspace.region.rectangle")
+    if ends is not None:
+        yield "workspace.region.rectangle", np.column_stack([ends, [origin[2]] * 2]) - origin
+    force = parts.array("robot.platform.wrench.force")
+    if force is not None and force.any():
+        yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
+
+
+def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
+    """Yield where turns and moments stand, and their axes (n, 3)."""
+    pose = parts.read("pose")
+    if pose is not None:
+        turn = OrientationSection(
+            rotation_vector=pose.rotation_vector, quaternion=pose.quaternion, euler=pose.euler
+        )
+        yield "pose", turn.turn_rad[None]
+    one, several, between = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
+    if one is not None:
+        yield "workspace.orientation", one.turn_rad[None]
+    if several is not None:
+        yield "workspace.orientations", np.array([each.turn_rad for each in several])
+    if between is not None:
+        yield "workspace.orientation_range", between.bounds_rad
+    moment = parts.array("robot.platform.wrench.moment")
+    if moment is not None and moment.any():
+        yield "robot.platform.wrench.moment", moment[None] / np.linalg.norm(moment)
+
+
+def rank(points: FloatArray) -> int:
+    """Return 0 for one point, 1 for a line, 2 or more otherwise."""
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return int(np.sum(spread > _FLAT * max(spread[0], np.finfo(float).tiny)))
+
+
+ROBOT_CHECKS = (
+    distinct_cables,
+    anchors_span_area,
+    moved_anchors_span_area,
+    attachments_fit,
+    least_tension_is_a_choice,
+    point_mass_has_no_body,
+    enough_anchors,
+    lies_in_plane,
+    load_is_not_cancelled,
+    strain_stays_small,
+    robot_has_a_size,
+)
