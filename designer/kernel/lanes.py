@@ -88,7 +88,7 @@ def assemble(
     """
     n = cables.shape[0]
     for m in range(rows.size):
-        level, lift, is_level = LEVEL + rows[m], LIFT + rows[m], rows[m] < 2
+        level, lift, is_level = LEVEL + rows[m], LIFT + rows[m], rows[m] in (0, 1, 5)
         rest = A[m, n]
         rest[:] = 0.0
         A[m, n + 1] = poses[LOAD + rows[m]]
