@@ -57,10 +57,12 @@ def place(cables: FloatArray, poses: FloatArray, situation: Situation, lane: Int
 
     Cables are straight, with half of their weight at the platform: the first guess.
     """
+    for i in range(cables.shape[0]):
+        row = cables[i]
+        for j in range(LANES):
+            place_cable(row, j, situation, lane[j], i)
+            straighten(row, j, 0.5)
     for j in range(LANES):
-        for i in range(cables.shape[0]):
-            place_cable(cables[i], j, situation, lane[j], i)
-            straighten(cables[i], j, 0.5)
         load = load_of(situation, lane[j])
         for axis in range(6):
             poses[LOAD + axis, j] = load[axis]
@@ -86,12 +88,17 @@ def assemble(
     """
     n = cables.shape[0]
     for m in range(rows.size):
-        level, lift = LEVEL + rows[m], LIFT + rows[m]
+        level, lift, is_level = LEVEL + rows[m], LIFT + rows[m], rows[m] in (0, 1, 5)
         rest = A[m, n]
         rest[:] = 0.0
         A[m, n + 1] = poses[LOAD + rows[m]]
         for i in range(n):
             row, w, slope = cables[i], weights[i], A[m, i]
+            if is_level:  # nothing to lift: the same, but quicker
+                for j in range(LANES):
+                    slope[j] = w * row[level, j]
+                    rest[j] -= slope[j] * row[P, j]
+                continue
             for j in range(LANES):
                 slope[j] = w * (row[level, j] + row[lift, j] * row[V_P, j])
                 rest[j] -= w * (row[level, j] * row[P, j] + row[lift, j] * row[V, j])
