@@ -67,11 +67,6 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     """Return what the diagnosis starts from.
 
     An effect that is declared and unknown is fitted like any unknown.
-
-    Parameters
-    ----------
-    study, measurements, measured
-        As read.
     """
     estimated = measurements.estimated_noise
     if estimated:  # by a diagnosis before: nobody declared it

@@ -58,11 +58,6 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     )
 
 
-def choice(study: Study, grades: Sequence[Grade]) -> Choice:
-    """Size the workspace and choose a product, with the effects that the study declares."""
-    return _selected(study, grades).choice
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Selected:
     """A choice, the product behind it, and the machine that it was chosen for."""
@@ -73,6 +68,7 @@ class _Selected:
 
 
 def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
+    """Size the workspace and choose a product, with the effects that the study declares."""
     assert study.workspace is not None
     assert study.selection is not None
     built = as_built_by(study)

@@ -11,7 +11,7 @@ from designer.arrays import BoolArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.errors_of import Stage, outliers_of, stage
-from designer.diagnosis.fit import Fit, fit
+from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.hold import (
     Gain,
@@ -205,12 +205,14 @@ def _doubts(case: Case, model: Fit) -> Iterator[str]:
 
 
 def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
-    std = iter(model.std.tolist())
     return {
         setting.effect.key: {
-            name: Estimate(value, next(std)) for name, value in setting.values.items()
+            name: Estimate(value, std)
+            for (name, value), std in zip(
+                setting.values.items(), model.std[own].tolist(), strict=True
+            )
         }
-        for setting in model.settings
+        for setting, own in with_places(model.settings)
     }
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.fit import Fit, jacobian
+from designer.diagnosis.fit import Fit, jacobian, with_places
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Withdrawn
-from designer.diagnosis.structure import SIGNIFICANCE, Structure, beside
+from designer.diagnosis.structure import SIGNIFICANCE, Structure, beside, covariates_of
 from designer.effects.effect import Effect, Readings
 
 _CHANCE = 1e-5
@@ -31,7 +31,6 @@ def drifting(
     model: Fit,
     found: Sequence[Effect],
     structure: Structure,
-    covariates: Mapping[str, FloatArray],
     rows: BoolArray,
 ) -> Withdrawn | None:
     r"""Return the found effect that drifts most with a covariate that the residual goes with.
@@ -50,15 +49,13 @@ def drifting(
     orthonormal = _orthonormal(slopes[taken])
     left = beside(orthonormal, residual[taken])
     unexplained = model.loss - model.n_data
+    predicted = problem.surroundings(model.settings)
+    covariates = covariates_of(problem.measured, predicted)
     worst: Withdrawn | None = None
-    at = 0
-    for setting in model.settings:
-        own = slice(at, at + len(setting.effect.parameters))
-        at = own.stop
+    for setting, own in with_places(model.settings):
         if setting.effect.key not in keys:
             continue
         size = np.sqrt(_gain_of(problem, model, setting.effect, slopes, own, taken))
-        predicted = problem.surroundings(model.settings)
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., own] * z[..., None])[taken]
             drift = _significant_gain(orthonormal, moved, left, model.variance)

@@ -129,12 +129,9 @@ def find_common(
     common = [c for c in (min(kind, default=None) for kind in kinds) if c and c[0] < SIGNIFICANCE]
     if not common:
         return None
-    text = ", ".join(text for _, _, text in common)
-    return Event(
-        f"the {count} readings that stand off: {text}",
-        max(share for _, share, _ in common),
-        min(chance for chance, _, _ in common),
-    )
+    chances, shares, texts = zip(*common, strict=True)
+    text = f"the {count} readings that stand off: {', '.join(texts)}"
+    return Event(text, max(shares), min(chances))
 
 
 def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -80,6 +80,14 @@ def settings_at(effects: Sequence[Effect], vector: FloatArray) -> tuple[Setting,
     return tuple(
         Setting(effect, {p.name: next(values) for p in effect.parameters}) for effect in effects
     )
+
+
+def with_places(settings: Sequence[Setting]) -> Iterator[tuple[Setting, slice]]:
+    """Yield each setting with the place of its values in the vector of all."""
+    at = 0
+    for setting in settings:
+        yield setting, slice(at, at + len(setting.values))
+        at += len(setting.values)
 
 
 def starting_vector(
@@ -239,10 +247,8 @@ def _doubts(
     plain = variance * bread
     clustered = [bread @ one @ bread for one in score_covariances(unit, residual)]
     spread = np.max([np.diag(one) for one in (plain, *clustered)], axis=0)
-    inflation, wald, at = {}, {}, 0
-    for setting in settings:
-        own = slice(at, at + len(setting.values))
-        at = own.stop
+    inflation, wald = {}, {}
+    for setting, own in with_places(settings):
         away = [setting.values[p.name] - p.neutral for p in setting.effect.parameters] * scale[own]
         wald[setting.effect.key] = min(
             float(away @ np.linalg.pinv(one[own, own], rcond=1e-9, hermitian=True) @ away)

@@ -92,14 +92,8 @@ def search_and_hold(
 ) -> Outcome:
     """Search; withdraw what does not hold, and fit the rest anew.
 
-    Where sensors are on each other's plugs there is nothing to search for.
-
-    Parameters
-    ----------
-    problem, candidates, given, rows
-        As for `Searcher`.
-    progress : Pace
-        Told in a few words what is being done; ends the search where its time is spent.
+    Where sensors are on each other's plugs there is nothing to search for. Parameters as for
+    `Searcher`.
     """
     searcher = Searcher(problem, candidates, given, rows, progress)
     unsearched = searcher.fit([], thorough=True)
@@ -192,8 +186,7 @@ def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
     least = min(gains, key=gains.__getitem__)
     if gains[least] < _SMALL * left:
         return Withdrawn(least, reason=Reason.SMALL)
-    covariates = covariates_of(problem.measured, problem.surroundings(model.settings))
-    return drifting(problem, model, found, structure, covariates, rows)
+    return drifting(problem, model, found, structure, rows)
 
 
 def _not_to_be_believed(search: Search) -> list[Withdrawn]:

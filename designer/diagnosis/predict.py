@@ -131,8 +131,7 @@ class Predictor:
         return self._slopes[key]
 
     def _physical(self, settings: Sequence[Setting], _: Noise) -> tuple[Readings, Readings]:
-        machine = self.built(settings)
-        readings = readings_of(machine, self._measured.poses, self._measured)
+        readings = readings_of(self.built(settings), self._measured.poses, self._measured)
         return readings, readings
 
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:

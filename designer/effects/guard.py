@@ -19,15 +19,7 @@ Value = TypeVar("Value")
 
 
 def guarded(effect: Effect, label: str) -> Effect:
-    """Return the same effect; whatever goes wrong in it is raised as an `EffectError`.
-
-    Parameters
-    ----------
-    effect : Effect
-        Of a plugin.
-    label : str
-        Which plugin it is.
-    """
+    """Return the same effect; whatever goes wrong in it is an `EffectError` with a label."""
 
     def fail(problem: object) -> EffectError:
         line = f"{label}: effect {effect.id!r} fails at work: {one_line(problem)}"

@@ -14,7 +14,7 @@ _LARGEST_NORM_ERROR = 0.01
 
 
 def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
-    """Return rotations from body to world.
+    """Return rotations from body to world (n_rows, 3, 3).
 
     Parameters
     ----------
@@ -23,10 +23,6 @@ def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
         the axes and whether these turn with the body (``intrinsic``) or not (``extrinsic``).
     values : array (n_rows, 3 or 4)
         The columns; angles in radians. Quaternions are scaled to unit length.
-
-    Returns
-    -------
-    array (n_rows, 3, 3)
     """
     if columns == ROTATION_VECTOR:
         rotation = Rotation.from_rotvec(values)

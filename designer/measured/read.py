@@ -28,11 +28,6 @@ def read_measured(study: Study) -> Measured:
     Columns go by the names of `designer.measured.names`; the config's ``measurements.columns``
     translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing.
 
-    Parameters
-    ----------
-    study : Study
-        With ``measurements``.
-
     Raises
     ------
     InputError

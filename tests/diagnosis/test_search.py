@@ -49,7 +49,7 @@ def test_it_ends_where_pruning_undoes_what_was_added(searcher, monkeypatch) -> N
 def test_what_does_not_foretell_is_left_out(searcher) -> None:
     by_id = {effect.id: effect for effect in searcher._candidates}
     both = [by_id["platform_mass"], by_id["tension_bias"]]
-    kept = searcher._foretelling(both, searcher.fit(both))
+    kept = searcher._predicting(both, searcher.fit(both))
     assert [effect.id for effect in kept] == ["platform_mass"]
 
 

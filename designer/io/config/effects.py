@@ -53,17 +53,7 @@ class Found:
 
 
 def read_effects(data: Data, n_cables: int, known: Mapping[str, Effect]) -> Found:
-    """Return what the section ``effects`` says.
-
-    Parameters
-    ----------
-    data : Data
-        What the file holds there.
-    n_cables : int
-        Number of cables of the robot.
-    known : mapping of str to Effect
-        Every effect by its id.
-    """
+    """Return what the section ``effects`` says, of all effects that are known by their ids."""
     found = Found(n_cables)
     for effect_id, given in data.items() if isinstance(data, dict) else ():
         effect = known.get(effect_id)
