@@ -80,9 +80,8 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     """
     assert study.workspace is not None
     region = study.workspace.region
-    if isinstance(region, Rectangle) or study.robot.is_planar:
-        return None
-    if study.robot.gravity_direction[:2].any():
+    is_tilted = study.robot.gravity_direction[:2].any()
+    if isinstance(region, Rectangle) or study.robot.is_planar or is_tilted:
         return None
     hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
     if isinstance(region, Prism):

@@ -14,7 +14,7 @@ _OPENING_RAD = np.radians(100.0)
 
 def centroid_m(polygon_m: FloatArray) -> FloatArray:
     """Return the centre of area of a polygon (n_corners, 2), (2,) [m]."""
-    origin = polygon_m.mean(axis=0)  # coordinates from here, so that no digits are lost
+    origin = polygon_m[0]  # far from the frame's origin the products would cancel
     a, b = polygon_m - origin, np.roll(polygon_m, -1, axis=0) - origin
     twice_area = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
     weighted = ((a + b) * twice_area[:, None]).sum(axis=0)

@@ -406,7 +406,7 @@ class TestStepsOverDecades:
     ],
 )
 def test_significant_digits(value: float, text: str) -> None:
-    assert fmt.number(value) == text.replace(" ", "\N{NARROW NO-BREAK SPACE}")
+    assert canvas.significant(value) == text.replace(" ", "\N{NARROW NO-BREAK SPACE}")
 
 
 def test_short_numbers() -> None:

@@ -1,4 +1,4 @@
 """Every figure of the report: charts as vector graphics, scenes as bitmaps, one scene to turn.
 
-``maps`` computes, ``charts_*`` and ``*_scene`` draw; nothing here decides anything.
+What they show is computed in ``designer.analysis``; nothing here decides anything.
 """

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
+from designer.report import format as fmt
 from designer.report.figures import palette
 
 if TYPE_CHECKING:
@@ -85,6 +86,11 @@ def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
 def decimals(ticks: ArrayLike) -> int:
     """Return how many decimals it takes to write every tick."""
     return max(len(f"{tick:.6f}".rstrip("0").split(".")[1]) for tick in np.asarray(ticks))
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """Return a number to so many significant digits, but none before the point is rounded off."""
+    return fmt.number(value, max(digits, len(f"{abs(value):.0f}")))
 
 
 def halo() -> list[AbstractPathEffect]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from designer.analysis.edge import EdgeProfile
 from designer.analysis.maps import Focus, WorkspaceMaps
-from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 
@@ -37,17 +36,17 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         end = profile.region_distance_m
         if end is not None and _is_visible(end, start):
             axes.axvline(end, color=palette.INK, linewidth=0.8, linestyle=canvas.DASHES)
-            text = f"region ends, {fmt.number(end, 3)} m"
+            text = f"region ends, {canvas.significant(end, 3)} m"
             _upright(axes, end, text, palette.INK, 3.0 if end > 0.9 * start else -3.0)
         value, at = 1e3 * float(focus.field.diameter_m), profile.focus_distance_m
         if np.isfinite(value) and value <= top:
             axes.plot(at, value, **canvas.RING, markersize=6, zorder=5)
-            text = f"{focus.label}, {fmt.number(value, 3)} mm"
+            text = f"{focus.label}, {canvas.significant(value, 3)} mm"
             offset, ha = ((8, 6), "left") if at > 0.6 * start else ((-16, 6), "right")
             style = {"ha": ha, "va": "bottom", "fontweight": "bold"}
             canvas.note(axes, text, (at, value), offset, path_effects=canvas.halo(), **style)
         canvas.grid_lines(axes)
-        height = fmt.number(focus.position_m[2], 3)
+        height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
         axes.set_xlabel("distance to the edge of the exit points' hull, along the line [m]")
         return canvas.svg(figure, "edge", shown)
@@ -103,7 +102,7 @@ def _zones(axes: Axes, profile: EdgeProfile, start: float) -> None:
     if end is None or not _is_visible(end, start):
         return
     axes.axvline(end, color=palette.WARNING, linewidth=0.9)
-    distance = f"{fmt.number(end, 2 if end < 100.0 else 3)} m"
+    distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m"
     none = "no cable holds" if profile.is_proved else "none found"
     text = f"{none} within {distance} of the edge"
     if profile.holds_again:

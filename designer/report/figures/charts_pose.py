@@ -8,7 +8,6 @@ import numpy as np
 
 from designer.analysis.analyse import PoseAnalysis
 from designer.arrays import FloatArray
-from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.sizing.loop import Iterate
@@ -61,14 +60,14 @@ def _panel(axes: Axes, values: FloatArray, limit: float, unit: str) -> None:
 
     if np.isfinite(limit):
         axes.axhline(limit, color=palette.SAG, linewidth=0.9, linestyle=canvas.DASHES)
-        text, frame = f"optimum {fmt.number(limit)} {unit}", ("axes fraction", "data")
+        text, frame = f"optimum {canvas.significant(limit)} {unit}", ("axes fraction", "data")
         style = {"ha": "right", "va": "bottom", "color": palette.SAG}
         canvas.note(axes, text, (1.0, limit), (0, 4), xycoords=frame, **style)
     marker = "o" if len(values) <= 40 else ""  # more would run together
     axes.plot(values, color=palette.SAG, marker=marker, markersize=3.2)
     rim = {"markeredgecolor": palette.MASSLESS, "markeredgewidth": 1.3}
     axes.plot(0, values[0], **(canvas.RING | rim), markersize=5.5)
-    text = f"massless {fmt.number(values[0])} {unit}"
+    text = f"massless {canvas.significant(values[0])} {unit}"
     canvas.note(axes, text, (0, values[0]), (9, -3), va="top", color=palette.MASSLESS)
     low, high = np.nanmin([*values, limit]), np.nanmax([*values, limit])
     room = max(0.16 * (high - low), 0.05 * high)  # does not magnify a sag that hardly matters

@@ -127,7 +127,7 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
     colour = palette.WARNING
     if outcome.best is not None:
         mass_kg, colour = outcome.best.total_mass_kg, palette.INK
-        mass = fmt.number(mass_kg, max(3, len(f"{mass_kg:.0f}")))
+        mass = canvas.significant(mass_kg, 3)
         text = f"{outcome.best.size.id}, {mass} kg"
     elif np.isfinite(outcome.continuous_diameter_m):
         text = f"ends at {outcome.grade.thickest.id}"

@@ -76,7 +76,7 @@ def _curve(
 def _needed(axes: Axes, needed_m: float, what: str, colour: str, side: int) -> None:
     if np.isfinite(needed_m):
         axes.axvline(1e3 * needed_m, color=colour, linewidth=0.9, linestyle=canvas.DASHES)
-        text = f"{what}: {fmt.number(1e3 * needed_m, 3)} mm"
+        text = f"{what}: {canvas.significant(1e3 * needed_m, 3)} mm"
         style: Style = {"ha": "left" if side > 0 else "right", "va": "bottom", "color": colour}
         canvas.note(axes, text, (1e3 * needed_m, 3.0), (3 * side, 0), rotation=90, **style)
 
@@ -88,7 +88,7 @@ def _unserved(axes: Axes, served: Served) -> None:
         return
     low = 100.0 * (1.0 - served.unserved)
     axes.axhspan(low, 100.0, **canvas.HATCHED, linewidth=0)
-    text = f"no cable serves {fmt.number(100.0 * served.unserved, 2)} %"
+    text = f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %"
     style = {"va": "top", "color": palette.WARNING, "bbox": canvas.paper(0.8, 0.85)}
     frame = ("axes fraction", "data")
     canvas.note(axes, text, (0.0, max(low, 20.0)), (6, -3), xycoords=frame, **style)

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from designer.analysis.field import Field
 from designer.analysis.maps import Focus
 from designer.arrays import FloatArray, IntArray
-from designer.report import format as fmt
-from designer.report.figures import palette
+from designer.report.figures import canvas, palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,7 +59,7 @@ class MapQuantity:
         if not np.isfinite(value):
             return focus.label
         digits = 4 if self.unit in ("N", "kN") else 3
-        return f"{focus.label}, {fmt.number(value, digits)} {self.unit}".strip()
+        return f"{focus.label}, {canvas.significant(value, digits)} {self.unit}".strip()
 
 
 DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)

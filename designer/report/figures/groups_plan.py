@@ -12,7 +12,7 @@ from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Poses, Robot
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
-from designer.report.figures.sections import mark_exit_points
+from designer.report.figures.sections import set_limits
 from designer.selection.groups.result import Assigned, GroupChoice
 
 if TYPE_CHECKING:
@@ -49,9 +49,7 @@ def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assig
                 axes.plot(*line.T, solid_capstyle="round", label=label, **look)
                 label = ""
         _platform(axes, ends[:, plane])
-        mark_exit_points(axes, exits[:, plane])
-        axes.set_aspect("equal")
-        axes.margins(0.08)  # room for the names of the exit points
+        set_limits(axes, np.concatenate([exits, region.bounds_m])[:, plane], exits[:, plane])
         axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
         figure.legend(loc="outside right upper", handlelength=2.6)
         return canvas.svg(figure, "groups", "The robot from above with the cables of each group")

@@ -132,7 +132,7 @@ def _label_robot(axes: Axes, view: View, statics: Statics, curves: FloatArray) -
         ends: Style = {"color": palette.INK, "shrinkA": 0.0, "shrinkB": 0.0}
         axes.annotate("", low, top, arrowprops=arrow | ends)
     short = sag.depth_m < 1.0
-    length = fmt.millimetres(sag.depth_m) if short else f"{fmt.number(sag.depth_m, 3)} m"
+    length = fmt.millimetres(sag.depth_m) if short else f"{canvas.significant(sag.depth_m, 3)} m"
     overlay.write_clear(axes, view, sag.on_cable_m, f"sag {length}", clear, (6.0, 18.0, 30.0))
     style: Style = {"color": palette.SAG, "fontsize": palette.FONT_POINTS - 0.5}
     for curve, tension_N in zip(curves, statics.exit_tension_N, strict=True):
@@ -207,7 +207,7 @@ def colours(layers: Layers) -> list[tuple[float, ...]]:
 def _layers_legend(figure: Figure, layers: Layers, usable: Usable) -> None:
     looks: list[tuple[str, Style]] = []
     for one, colour in zip(layers.sizes, colours(layers), strict=True):
-        share = "all" if one.fraction == 1.0 else f"{fmt.number(100.0 * one.fraction, 2)} %"
+        share = "all" if one.fraction == 1.0 else f"{canvas.significant(100.0 * one.fraction, 2)} %"
         looks.append((f"{one.size.id}, {share}", {"facecolor": colour}))
     if all(one.fraction < 1.0 for one in layers.sizes):
         looks.append(("none of these", {"facecolor": palette.WARNING_PALE}))

@@ -112,7 +112,7 @@ def section_map(
             bold: Style = {"colors": palette.WARNING, "linewidths": 1.6}
             axes.contour(*np.moveaxis(flat, -1, 0), values, levels=[limit], **bold)
         _outline(axes, flat)
-        _set_limits(axes, flat, corners)
+        set_limits(axes, flat, corners)
         axes.set(xlabel="x [m]", ylabel="y [m]")
         axes.set_title(f"section at {place}", loc="left")
         if steps is not None:
@@ -162,7 +162,7 @@ def _slice(
         _outline(axes, flat)
     else:
         _scatter(axes, flat, field, quantity.of(field), steps)
-    _set_limits(axes, flat, maps.flat_m(maps.study.robot.exit_points_m))
+    set_limits(axes, flat, maps.flat_m(maps.study.robot.exit_points_m))
     _mark_focus(axes, maps, flat, quantity)
     right, up = maps.axis_labels
     axes.set(xlabel=right, ylabel=up)
@@ -259,14 +259,18 @@ def _scatter(
     axes.scatter(x[left], y[left], marker="o", s=10, color=palette.LEFT_OUT)
 
 
-def _set_limits(axes: Axes, flat: FloatArray, corners: FloatArray) -> None:
-    """Set the limits, around the exit points as well unless the region would be a speck."""
+def set_limits(axes: Axes, flat: FloatArray, corners: FloatArray) -> None:
+    """Set the limits, around the exit points, with their names, unless the region were a speck."""
     middle, half, shows_corners = _frame(flat, corners)
     axes.set_aspect("equal")
     (left, low), (right, high) = middle - half, middle + half
     axes.set(xlim=(left, right), ylim=(low, high))
-    if shows_corners:
-        mark_exit_points(axes, corners)
+    if not shows_corners:
+        return
+    axes.plot(*corners.T, "^", markersize=5, color=palette.INK, clip_on=False)
+    centre = corners.mean(axis=0)
+    for text, place in canvas.names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
+        _write_away(axes, text, place, place - centre, 6.0)
 
 
 def _height_over_width(flat: FloatArray, corners: FloatArray) -> float:
@@ -285,14 +289,6 @@ def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatAr
     half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
     half = np.maximum(half, 0.35 * half.max())  # no slivers
     return 0.5 * (low + high), half, shows_corners
-
-
-def mark_exit_points(axes: Axes, corners: FloatArray) -> None:
-    """Mark and name the exit points (n_cables, 2) [m]."""
-    axes.plot(*corners.T, "^", markersize=5, color=palette.INK, clip_on=False)
-    middle = corners.mean(axis=0)
-    for text, place in canvas.names_of(corners, 0.06 * float(np.ptp(corners, axis=0).max())):
-        _write_away(axes, text, place, place - middle, 6.0)
 
 
 def _mark_focus(axes: Axes, maps: WorkspaceMaps, flat: FloatArray, quantity: MapQuantity) -> None:
