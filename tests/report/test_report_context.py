@@ -273,6 +273,7 @@ def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     outcome = next(o for o in selection.outcomes if o.best is not None)
     many = dataclasses.replace(selection, outcomes=(outcome,) * (MOST_ROWS + 3))
     best = best_table(many)
+    assert best is not None
     assert len(best.groups[0].rows) == MOST_ROWS
     assert "3\u00a0more grades are in candidates.csv." in best.caption
     thin = thin_table([dataclasses.replace(outcome, outcome="too_thin", best=None)] * 9)
