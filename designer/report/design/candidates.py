@@ -68,17 +68,13 @@ def best_table(selection: SelectionResult) -> Table | None:
     """Return the best size of each grade that holds, the best first; None where none holds."""
     title = MEANINGS[selection.objectives[0]].title
     caption = f"The best size of each grade that holds everywhere, by {title}."
-    return _table_of_best(selection, selection.outcomes, caption, lambda n: _more(n, "grade"))
+    return _table_of_best(selection, selection.outcomes, caption, are_allowed=True)
 
 
 def alternatives_table(selection: SelectionResult) -> Table | None:
     """Return the grades that the study does not allow, but that would hold; None without any."""
     caption = "Grades that the study does not allow, but that would hold the whole workspace."
-
-    def rest(amount: int) -> str:
-        return f"{fmt.plural(amount, 'more grade')} would hold as well."
-
-    return _table_of_best(selection, selection.alternatives, caption, rest)
+    return _table_of_best(selection, selection.alternatives, caption, are_allowed=False)
 
 
 def _more(amount: int, noun: str) -> str:
@@ -91,7 +87,8 @@ def _table_of_best(
     selection: SelectionResult,
     outcomes: Sequence[GradeOutcome],
     caption: str,
-    rest: Callable[[int], str],
+    *,
+    are_allowed: bool,
 ) -> Table | None:
     """Return the best size of each grade that holds, the chosen one and then the best first."""
     first = selection.objectives[0]
@@ -99,19 +96,21 @@ def _table_of_best(
     best.sort(key=lambda c: (c.standing != "chosen", c.figures.burden(first)))
     if not best:
         return None
-    if len(best) > MOST_ROWS:
-        caption += f" {rest(len(best) - MOST_ROWS)}"
+    more = len(best) - MOST_ROWS
+    if more > 0:
+        rest = f"{fmt.plural(more, 'more grade')} would hold as well."
+        caption += f" {_more(more, 'grade') if are_allowed else rest}"
     head: _Columns = [
         ("Grade", lambda c: c.grade.id),
         ("Material", lambda c: c.grade.material or "not stated"),
     ]
     columns, cells = zip(*head, *_columns(selection, best[:MOST_ROWS], full=False), strict=True)
-    rows = (_row(c, cells) for c in best[:MOST_ROWS])
+    rows = (_row(c, cells, marks=are_allowed) for c in best[:MOST_ROWS])
     return Table.of(caption, columns, *rows, kind="candidates best long")
 
 
-def _row(one: Candidate, cells: Iterable[_Cell]) -> Row:
-    tone: Tone = "good" if one.standing == "chosen" else ""
+def _row(one: Candidate, cells: Iterable[_Cell], *, marks: bool = True) -> Row:
+    tone: Tone = "good" if marks and one.standing == "chosen" else ""
     return Row(tuple(cell(one) for cell in cells), tone, fmt.doubtful(one.size.doubt))
 
 
