@@ -47,8 +47,8 @@ SCENE = Picture(
 )
 BLOCKS: tuple[Block, ...] = (
     "A paragraph with <i>.",
-    Markup("One with a <a href='#top'>link</a>."),
-    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#top"))),
+    Markup("One with a <a href='#every'>link</a>."),
+    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#every"))),
     Statement("Title", "Text of it.", "bad"),
     Bullets(("one thing", "another thing")),
     Listing("effects:\n  creep: 1\n"),
@@ -93,8 +93,8 @@ def test_every_kind_of_block_has_its_macro(reports: dict[str, Report[FirstPage]]
     html = render_html(with_pictures(reports["pose_only"]))
     section = html[html.index('<h2 id="every">') :]
     assert "<p>A paragraph with &lt;i&gt;.</p>" in section
-    assert "<a href='#top'>link</a>" in section
-    assert '<a href="#top">https://x.y</a>' in section
+    assert "<a href='#every'>link</a>" in section
+    assert '<a href="#every">https://x.y</a>' in section
     assert '<p class="statement bad"><strong>Title.</strong> Text of it.</p>' in section
     assert re.search(r'<div class="keep">\s*<figure class="picture ">', section)
     assert '<h3 id="below">' in section
