@@ -9,7 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
-from typing import ClassVar, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, Literal, TypeVar
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import Provenance
+    from designer.study import Study
 
 MOST_ROWS = 8
 """As many rows of a ranking as a reader takes in; files beside the report have the rest."""
@@ -237,6 +241,30 @@ class Report(Generic[Page]):
     first_page: Page
     sections: tuple[Section, ...]
     missing: str = ""
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        document: str,
+        study: Study,
+        provenance: Provenance,
+        first_page: Page,
+        sections: Iterable[Section | None],
+        missing: str = "",
+    ) -> Report[Page]:
+        """Return a report on a study; sections that are None are left out."""
+        return cls(
+            name,
+            study.name,
+            document,
+            f"cdpr-designer {provenance.version}",
+            shown_time(provenance.created),
+            provenance.created.isoformat(timespec="seconds"),
+            first_page,
+            tuple(section for section in sections if section is not None),
+            missing,
+        )
 
     def section(self, section_id: str) -> Section:
         """Return a section that this report has."""

@@ -26,20 +26,11 @@ REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "w
 def environment(user_folder: Path | None = None) -> Environment:
     """Return the template environment: escaping on, and every undefined name an error.
 
-    Parameters
-    ----------
-    user_folder : Path, optional
-        Templates that come before the shipped ones of the same name; there, the shipped ones are
-        also known under ``default/``, so that ``page.html.j2`` can extend
-        ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
+    Templates of ``user_folder`` come before the shipped ones of the same name; there, the shipped
+    ones are also known under ``default/``, so that ``page.html.j2`` can extend
+    ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
     """
-    from jinja2 import (
-        ChoiceLoader,
-        Environment,
-        FileSystemLoader,
-        PrefixLoader,
-        StrictUndefined,
-    )
+    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
 
     shipped = FileSystemLoader(data_folder("reports"))
     own = [FileSystemLoader(user_folder)] if user_folder is not None else []
@@ -57,14 +48,8 @@ def render_html(
 ) -> str:
     """Return a report as one self-contained HTML page.
 
-    Parameters
-    ----------
-    report : Report
-        What to show; the templates know it by this name.
-    paged : bool
-        For paper: without scenes to turn.
-    user_folder : Path, optional
-        Templates that replace or extend the shipped ones, see `environment`.
+    With ``paged`` it is meant for paper: without scenes to turn. For ``user_folder`` see
+    `environment`.
 
     Raises
     ------
@@ -109,14 +94,8 @@ def render_pdf(html: str) -> bytes:
 def write_report(analysis: Analysis, folder: Path | str) -> None:
     """Write the report and all results into a folder, as `designer report` does; all or nothing.
 
-    Where this machine cannot draw in space, the report says which pictures are left out.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        What to report.
-    folder : Path or str
-        May exist; an earlier report in it is replaced.
+    An earlier report in the folder is replaced. Where this machine cannot draw in space, the report
+    says which pictures are left out.
 
     Raises
     ------

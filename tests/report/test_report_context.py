@@ -47,8 +47,8 @@ SCENE = Picture(
 )
 BLOCKS: tuple[Block, ...] = (
     "A paragraph with <i>.",
-    Markup("One with a <a href='#top'>link</a>."),
-    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#top"))),
+    Markup("One with a <a href='#every'>link</a>."),
+    Facts((Fact("Length", "3 m", "paid out"), Fact("Source", "a table", "https://x.y", "#every"))),
     Statement("Title", "Text of it.", "bad"),
     Bullets(("one thing", "another thing")),
     Listing("effects:\n  creep: 1\n"),
@@ -93,8 +93,8 @@ def test_every_kind_of_block_has_its_macro(reports: dict[str, Report[FirstPage]]
     html = render_html(with_pictures(reports["pose_only"]))
     section = html[html.index('<h2 id="every">') :]
     assert "<p>A paragraph with &lt;i&gt;.</p>" in section
-    assert "<a href='#top'>link</a>" in section
-    assert '<a href="#top">https://x.y</a>' in section
+    assert "<a href='#every'>link</a>" in section
+    assert '<a href="#every">https://x.y</a>' in section
     assert '<p class="statement bad"><strong>Title.</strong> Text of it.</p>' in section
     assert re.search(r'<div class="keep">\s*<figure class="picture ">', section)
     assert '<h3 id="below">' in section
@@ -273,6 +273,7 @@ def test_long_rankings_show_their_best_rows_and_say_where_the_rest_is(
     outcome = next(o for o in selection.outcomes if o.best is not None)
     many = dataclasses.replace(selection, outcomes=(outcome,) * (MOST_ROWS + 3))
     best = best_table(many)
+    assert best is not None
     assert len(best.groups[0].rows) == MOST_ROWS
     assert "3\u00a0more grades are in candidates.csv." in best.caption
     thin = thin_table([dataclasses.replace(outcome, outcome="too_thin", best=None)] * 9)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from designer.report import format as fmt
 from designer.report.blocks import MOST_ROWS, Column, Group, Row, Table, Tone
@@ -36,7 +36,7 @@ def pareto_table(selection: SelectionResult) -> Table:
     columns, cells = zip(*_columns(selection, shown), strict=True)
     groups = (
         Group(
-            rows=(Row(tuple(cell(c) for cell in cells), _tone(c), fmt.doubtful(c.size.doubt)),),
+            rows=(_row(c, cells),),
             title=c.grade.id,
             remark=f"{c.grade.construction} {c.grade.core}, trust {c.grade.trust}: {c.reason}",
             tone="good" if c.standing == "chosen" else "",
@@ -64,32 +64,17 @@ def front_sentence(selection: SelectionResult) -> str:
     )
 
 
-def best_table(selection: SelectionResult) -> Table:
-    """Return the best size of each grade that holds, the best first."""
-    best = _best(selection, selection.outcomes)
+def best_table(selection: SelectionResult) -> Table | None:
+    """Return the best size of each grade that holds, the best first; None where none holds."""
     title = MEANINGS[selection.objectives[0]].title
     caption = f"The best size of each grade that holds everywhere, by {title}."
-    if len(best) > MOST_ROWS:
-        caption += f" {_more(len(best) - MOST_ROWS, 'grade')}"
-    return _table_of_best(selection, best, caption, _tone)
+    return _table_of_best(selection, selection.outcomes, caption, are_allowed=True)
 
 
 def alternatives_table(selection: SelectionResult) -> Table | None:
     """Return the grades that the study does not allow, but that would hold; None without any."""
-    best = _best(selection, selection.alternatives)
-    if not best:
-        return None
     caption = "Grades that the study does not allow, but that would hold the whole workspace."
-    if len(best) > MOST_ROWS:
-        caption += f" {fmt.plural(len(best) - MOST_ROWS, 'more grade')} would hold as well."
-    return _table_of_best(selection, best, caption, lambda _: "")
-
-
-def _best(selection: SelectionResult, outcomes: Sequence[GradeOutcome]) -> list[Candidate]:
-    """Return the best size of each grade that holds, the chosen one and then the best first."""
-    first = selection.objectives[0]
-    best = [o.best for o in outcomes if o.best is not None]
-    return sorted(best, key=lambda c: (c.standing != "chosen", c.figures.burden(first)))
+    return _table_of_best(selection, selection.alternatives, caption, are_allowed=False)
 
 
 def _more(amount: int, noun: str) -> str:
@@ -100,20 +85,33 @@ def _more(amount: int, noun: str) -> str:
 
 def _table_of_best(
     selection: SelectionResult,
-    best: Sequence[Candidate],
+    outcomes: Sequence[GradeOutcome],
     caption: str,
-    tone: Callable[[Candidate], Tone],
-) -> Table:
-    shown = best[:MOST_ROWS]
+    *,
+    are_allowed: bool,
+) -> Table | None:
+    """Return the best size of each grade that holds, the chosen one and then the best first."""
+    first = selection.objectives[0]
+    best = [o.best for o in outcomes if o.best is not None]
+    best.sort(key=lambda c: (c.standing != "chosen", c.figures.burden(first)))
+    if not best:
+        return None
+    more = len(best) - MOST_ROWS
+    if more > 0:
+        rest = f"{fmt.plural(more, 'more grade')} would hold as well."
+        caption += f" {_more(more, 'grade') if are_allowed else rest}"
     head: _Columns = [
         ("Grade", lambda c: c.grade.id),
         ("Material", lambda c: c.grade.material or "not stated"),
     ]
-    columns, cells = zip(*head, *_columns(selection, shown, full=False), strict=True)
-    rows = (
-        Row(tuple(cell(c) for cell in cells), tone(c), fmt.doubtful(c.size.doubt)) for c in shown
-    )
+    columns, cells = zip(*head, *_columns(selection, best[:MOST_ROWS], full=False), strict=True)
+    rows = (_row(c, cells, marks=are_allowed) for c in best[:MOST_ROWS])
     return Table.of(caption, columns, *rows, kind="candidates best long")
+
+
+def _row(one: Candidate, cells: Iterable[_Cell], *, marks: bool = True) -> Row:
+    tone: Tone = "good" if marks and one.standing == "chosen" else ""
+    return Row(tuple(cell(one) for cell in cells), tone, fmt.doubtful(one.size.doubt))
 
 
 def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
@@ -212,10 +210,6 @@ def _columns(
 
 def _known(value: float, decimals: int) -> str:
     return fmt.fixed(value, decimals) if math.isfinite(value) else fmt.MISSING
-
-
-def _tone(candidate: Candidate) -> Tone:
-    return "good" if candidate.standing == "chosen" else ""
 
 
 def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:

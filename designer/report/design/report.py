@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from designer.analysis.analyse import Analysis
-from designer.report.blocks import Report, Section, shown_time
+from designer.report.blocks import Report, Section
 from designer.report.design import (
     assumptions,
     clearance,
@@ -42,17 +42,8 @@ def design_report(analysis: Analysis, *, draws: bool = True) -> Report[FirstPage
 
 def report_from(source: Source) -> Report[FirstPage]:
     """Return the report from what its sections are made from."""
-    provenance, page = source.analysis.provenance, first_page(source)
+    analysis, page = source.analysis, first_page(source)
     answer = Section("answer", "The answer", kind=f"first-page{'' if page.reasons else ' alone'}")
-    found = (make(source) for make in SECTIONS)
-    return Report(
-        name="report",
-        title=source.analysis.study.name,
-        document="Cable design report",
-        generator=f"cdpr-designer {provenance.version}",
-        created=shown_time(provenance.created),
-        created_iso=provenance.created.isoformat(timespec="seconds"),
-        first_page=page,
-        sections=(answer, *(section for section in found if section is not None)),
-        missing=source.missing,
-    )
+    sections = (answer, *(make(source) for make in SECTIONS))
+    about = "Cable design report", analysis.study, analysis.provenance
+    return Report.of("report", *about, page, sections, source.missing)

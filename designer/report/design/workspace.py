@@ -151,13 +151,6 @@ def _census(census: Census) -> Table:
     return Table.of(f"Verdicts of all samples.{rest}", columns, *rows)
 
 
-def _comes_from_below(robot: Robot, region: Region) -> bool:
-    """Tell whether an exit point lies below all positions of the platform."""
-    up = robot.upright[2]
-    corners = np.array(list(product(*region.bounds_m.T)))
-    return bool((robot.exit_points_m @ up).min() < (corners @ up).min())
-
-
 def _hanging(
     robot: Robot, workspace: Workspace, found: WorkspaceMap, other: OtherPolicy | None
 ) -> Statement:
@@ -169,7 +162,9 @@ def _hanging(
         f"In {fmt.share(census.hangs_below, census.samples)} of the samples a cable hangs below "
         "the platform: it may touch the ground or what stands on it."
     )
-    if _comes_from_below(robot, workspace.region):
+    up = robot.upright[2]
+    corners = np.array(list(product(*workspace.region.bounds_m.T)))
+    if (robot.exit_points_m @ up).min() < (corners @ up).min():
         text += " Cables that come from below, as some of this robot do, are among them."
     if workspace.hangs_below == "include":
         text += " All results of this report include them."

@@ -7,7 +7,7 @@ from pathlib import Path
 from designer.analysis.analyse import Provenance
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
-from designer.report.blocks import Box, Fact, Facts, Report, Section, shown_time
+from designer.report.blocks import Box, Fact, Facts, Report, Section
 from designer.report.design.provenance import facts_of
 from designer.report.diagnosis import (
     assumptions,
@@ -37,21 +37,13 @@ SECTIONS = (
 
 def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report[FirstPage]:
     """Return the report on a diagnosis."""
-    sections = (make(diagnosis) for make in SECTIONS)
-    return Report(
-        name="diagnosis",
-        title=diagnosis.study.name,
-        document="Diagnosis of measured data",
-        generator=f"cdpr-designer {provenance.version}",
-        created=shown_time(provenance.created),
-        created_iso=provenance.created.isoformat(timespec="seconds"),
-        first_page=first_page(diagnosis),
-        sections=(
-            Section("answer", "What was wrong", kind="first-page"),
-            *(section for section in sections if section is not None),
-            _provenance(diagnosis, provenance),
-        ),
+    sections = (
+        Section("answer", "What was wrong", kind="first-page"),
+        *(make(diagnosis) for make in SECTIONS),
+        _provenance(diagnosis, provenance),
     )
+    about = "Diagnosis of measured data", diagnosis.study, provenance
+    return Report.of("diagnosis", *about, first_page(diagnosis), sections)
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:

@@ -59,15 +59,12 @@ def _row(trial: Trial, is_added: bool) -> Row:
 
 
 def _values(trial: Trial) -> str:
-    at = 0
+    stds = iter(trial.fit.std)  # of all parameters of all settings, in their order
     for setting in trial.fit.settings:
-        names = list(setting.values)
+        estimates = {
+            name: Estimate(value, float(std))
+            for (name, value), std in zip(setting.values.items(), stds, strict=False)
+        }
         if setting.effect.key == trial.effect.key:
-            std = trial.fit.std[at : at + len(names)]
-            estimates = {
-                name: Estimate(setting.values[name], float(s))
-                for name, s in zip(names, std, strict=True)
-            }
             return words.values(trial.effect, estimates)
-        at += len(names)
     return ""

@@ -15,28 +15,31 @@ from designer.report.diagnosis.quantity import quantities
 _MUCH = 1.5
 
 
-def trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
-    """Return the trial in which an effect was found; None where it came by exchange."""
-    key = finding.effect.key
-    for step in diagnosis.steps:
-        if step.added is not None and step.added.key == key:
-            return next(t for t in step.trials if t.effect.key == key)
-    return None
-
-
 def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
     """Yield statements on significance, rivals, warnings, what was withdrawn, and noise."""
-    if diagnosis.not_tried:
-        left_out = "; ".join(diagnosis.not_tried)
-        yield Statement("Out of time", f"The search ended early. Not tried: {left_out}.", "bad")
-    for group in words.grouped(diagnosis.findings):
+    findings, not_tried = diagnosis.findings, diagnosis.not_tried
+    if not_tried:
+        text = f"The search ended early. Not tried: {'; '.join(not_tried)}."
+        yield Statement("Out of time", text, "bad")
+    for group in words.grouped(findings):
         yield _significance(diagnosis, group)
-    yield from _without_rivals(
-        [f for f in diagnosis.findings if not f.rivals and not _is_left_open(diagnosis, f)]
-    )
-    for finding in diagnosis.findings:
+    alone = [
+        f
+        for f in findings
+        if not f.rivals
+        and not any(what.startswith(f"rivals of {f.effect.key}:") for what in not_tried)
+    ]
+    if alone:
+        keys = fmt.listing((words.key_of(group) for group in words.grouped(alone)), "or")
+        text = f"No other single effect explains the data as well in place of {keys}."
+        yield Statement("No rivals", text, "good")
+    for finding in findings:
         if finding.rivals:
-            yield _rivals(finding)
+            text = (
+                f"These data cannot tell {finding.effect.key} from "
+                f"{fmt.listing(finding.rivals, 'or')}. Poses that would are proposed below."
+            )
+            yield Statement("Rivals", text, "doubt")
         for warning in finding.warnings:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")
     for gone in diagnosis.withdrawn:
@@ -46,11 +49,6 @@ def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
     yield _left(diagnosis)
     yield from _lasting(diagnosis)
     yield _noise(diagnosis)
-
-
-def _is_left_open(diagnosis: Diagnosis, finding: Finding) -> bool:
-    """Tell whether there was no time to try all rivals."""
-    return any(what.startswith(f"rivals of {finding.effect.key}:") for what in diagnosis.not_tried)
 
 
 def withdrawal(gone: Withdrawn) -> str:
@@ -73,8 +71,17 @@ def withdrawal(gone: Withdrawn) -> str:
     )
 
 
+def _trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
+    """Return the trial in which an effect was found; None where it came by exchange."""
+    key = finding.effect.key
+    for step in diagnosis.steps:
+        if step.added is not None and step.added.key == key:
+            return next(t for t in step.trials if t.effect.key == key)
+    return None
+
+
 def _significance(diagnosis: Diagnosis, group: Sequence[Finding]) -> Statement:
-    trials = [trial_of(diagnosis, finding) for finding in group]
+    trials = [_trial_of(diagnosis, finding) for finding in group]
     chances = [trial.chance for trial in trials if trial is not None]
     accident = "It took the place of another effect during the search."
     if chances:
@@ -90,21 +97,6 @@ def _significance(diagnosis: Diagnosis, group: Sequence[Finding]) -> Statement:
         takes = "they take, each by itself," if len(gains) > 1 else "it takes"
         gain = f" On held-out rows, {takes} {shares} off the mean square."
     return Statement(f"Significance of {words.key_of(group)}", accident + gain)
-
-
-def _without_rivals(findings: Sequence[Finding]) -> Iterator[Statement]:
-    if findings:
-        keys = fmt.listing((words.key_of(group) for group in words.grouped(findings)), "or")
-        text = f"No other single effect explains the data as well in place of {keys}."
-        yield Statement("No rivals", text, "good")
-
-
-def _rivals(finding: Finding) -> Statement:
-    text = (
-        f"These data cannot tell {finding.effect.key} from {fmt.listing(finding.rivals, 'or')}. "
-        "Poses that would are proposed below."
-    )
-    return Statement("Rivals", text, "doubt")
 
 
 def _left(diagnosis: Diagnosis) -> Statement:
