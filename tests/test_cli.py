@@ -259,6 +259,7 @@ def test_catalog_list_show_check(designer) -> None:
     assert checked.err.startswith("rope.yaml:")
 
 
+@pytest.mark.slow
 def test_report_end_to_end(designer) -> None:
     Path("study.yaml").write_text(STUDY + WORKSPACE)
     told = designer("report", "study.yaml")

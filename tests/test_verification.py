@@ -14,6 +14,7 @@ from designer.io.config import read_study
 from designer.model.robot import Poses
 from designer.physics import catenary
 from designer.physics.quadrature import end_position_m
+from designer.report.design.verification import verification_statement
 from designer.resources import example_file, example_names
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import solve_sagging
@@ -34,6 +35,7 @@ def test_shipped_robots_are_found_again(name: str) -> None:
     study, sizing = worst_sampled(name)
     found = verify("here", study.material, sizing)
     assert [one.remark for one in found] == ["", ""]
+    assert all(one.agrees for one in found)
     diameter, cables = found
     assert abs(diameter.difference) < 1e-6 * diameter.ours
     assert cables.theirs < 1e-9
@@ -48,6 +50,12 @@ def test_a_wrong_answer_is_seen() -> None:
     thin = replace(sizing, diameter_m=0.99 * sizing.diameter_m)
     diameter, _ = verify("here", study.material, thin)
     assert diameter.difference == pytest.approx(0.01 * sizing.diameter_m, rel=1e-3)
+    assert not told.agrees
+    assert not diameter.agrees
+    told_of = verification_statement((told, diameter))
+    assert told_of.tone == "bad"
+    assert "by quadrature" in told_of.text
+    assert "by SLSQP" in told_of.text
 
 
 def test_pulleys_are_known_by_the_quadrature_alone() -> None:

@@ -11,6 +11,11 @@ from designer.physics.quadrature import end_position_m
 from designer.sizing.newton import Sizing
 from designer.statics.inverse import Statics
 
+_SAME_DIAMETER = 1e-6
+"""Of the diameter: what the optimisers reach."""
+_SAME_END = 1e-8
+"""Of the longest cable: a micrometre on 100 m; the quadrature itself is good to 1e-12."""
+
 
 @dataclass(frozen=True, slots=True)
 class SecondAnswer:
@@ -26,8 +31,10 @@ class SecondAnswer:
         Of both, SI.
     ours, theirs : float
         NaN where the other method found nothing, see ``remark``.
+    tolerance : float
+        Difference up to which the two agree.
     remark : str
-        Why there is nothing to compare, or what the other answer is worth.
+        Why there is nothing to compare; empty where there is.
     """
 
     method: str
@@ -35,12 +42,18 @@ class SecondAnswer:
     unit: str
     ours: float
     theirs: float
+    tolerance: float
     remark: str = ""
 
     @property
     def difference(self) -> float:
         """Theirs less ours."""
         return self.theirs - self.ours
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the two agree, or there is nothing to compare."""
+        return bool(self.remark) or abs(self.difference) <= self.tolerance
 
 
 def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:
@@ -81,7 +94,8 @@ def _diameter(name: str, material: Material, sizing: Sizing) -> SecondAnswer:
     except ValueError as error:
         remark = str(error)
     remark = "" if np.isfinite(theirs) else remark
-    return SecondAnswer(method, f"needed diameter, {name}", "m", ours, theirs, remark)
+    what = f"needed diameter, {name}"
+    return SecondAnswer(method, what, "m", ours, theirs, _SAME_DIAMETER * ours, remark)
 
 
 def verify_cables(name: str, statics: Statics) -> SecondAnswer:
@@ -108,4 +122,5 @@ def verify_cables(name: str, statics: Statics) -> SecondAnswer:
         "m",
         0.0,
         farthest,
+        _SAME_END * float(statics.free_length_m.max()),
     )

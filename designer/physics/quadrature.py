@@ -12,7 +12,10 @@ from __future__ import annotations
 
 from math import hypot
 
+import numpy as np
+
 _ACCURACY = 1e-12
+_DECADES = 12
 
 
 def end_position_m(
@@ -31,8 +34,11 @@ def end_position_m(
     """
     from scipy.integrate import quad
 
-    lowest_m = length_m - force_z_N / weight_N_per_m
-    turns_m = [lowest_m] if 0.0 < lowest_m < length_m else None  # a slack cable has a sharp bend
+    # A slack cable bends over a length of F_x / w about its lowest point, on one side or both.
+    bend_m, lowest_m = force_x_N / weight_N_per_m, length_m - force_z_N / weight_N_per_m
+    steps_m = bend_m * 10.0 ** np.arange(_DECADES)
+    ends_m = np.concatenate([lowest_m - steps_m, [lowest_m], lowest_m + steps_m])
+    pieces_m = ends_m[(ends_m > 0.0) & (ends_m < length_m)]
 
     def slopes(s_m: float) -> tuple[float, float]:
         upward_N = force_z_N + weight_N_per_m * (s_m - length_m)
@@ -45,7 +51,7 @@ def end_position_m(
             lambda s, k=k: slopes(s)[k],
             0.0,
             length_m,
-            points=turns_m,
+            points=pieces_m if len(pieces_m) else None,
             epsabs=_ACCURACY * length_m,
             epsrel=_ACCURACY,
             limit=500,

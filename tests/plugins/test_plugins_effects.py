@@ -108,6 +108,7 @@ def test_a_plugin_may_bring_grades_and_effects(site) -> None:
     assert "load_cell_drift" in known().by_id
 
 
+@pytest.mark.slow
 def test_the_diagnosis_finds_it_and_the_config_keeps_it(site, tmp_path) -> None:
     install_plugin(site, "acme-drift", plugin(DRIFT))
     rivals = ("pulley_radius", "thermal_expansion", "tension_bias", "load_cell_drift")

@@ -14,6 +14,7 @@ from designer.report.design.scope import (
     pose_statement,
     strength_statement,
 )
+from designer.report.design.verification import verification_statement
 from designer.report.material_class import class_of
 from designer.selection.result import Candidate
 from designer.statics.task import LONG
@@ -30,6 +31,8 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
     grades = {grade.id: grade for grade, _ in ropes}.values()
     yield from pose_statement(analysis)
+    if not all(one.agrees for one in analysis.verification):
+        yield verification_statement(analysis.verification)
     yield from _margin(analysis, findings)
     yield from _sampling(analysis)
     yield from orientation_statement(analysis.study)

@@ -14,6 +14,7 @@ from designer.report.design import (
     provenance,
     selection,
     stiffness,
+    verification,
     workspace,
 )
 from designer.report.design.first_page import FirstPage, first_page
@@ -27,6 +28,7 @@ SECTIONS = (
     groups.section,
     stiffness.section,
     clearance.section,
+    verification.section,
     left_out.section,
     assumptions.section,
     assumptions.nomenclature,

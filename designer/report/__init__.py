@@ -1,0 +1,1 @@
+"""The two documents as data, their figures, and how they become HTML and PDF."""
