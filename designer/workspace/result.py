@@ -74,7 +74,7 @@ class WorkspaceMap:
     sagging: Extreme | None
     sampled: Extreme | None  # The worst solved sample; None if no sample is solved
     # The worst pose of the region with straight weightless cables; None if none can be held
-    massless: Extreme | None
+    massless: Extreme | None  # None where straight cables hold no sample
     # (3,): A position without a finite cable, where there is one [m]
     infeasible_example_m: FloatArray | None
     # Stress at infinite section over allowable stress at the worst pose; 1 is the boundary beyond

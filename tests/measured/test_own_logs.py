@@ -1,4 +1,4 @@
-"""Logs of our own making, which go the ways of the public ones in `test_real_logs`."""
+"""Logs of our own making, which go the ways of the public ones."""
 
 from __future__ import annotations
 

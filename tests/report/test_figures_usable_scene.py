@@ -32,7 +32,18 @@ def steel_grade() -> Grade:
         sizes.append(Size(f"{d:g} mm", d / 1e3, load, member.linear_density_kg_per_m))
     modulus = Modulus(STEEL.youngs_modulus_Pa, "nominal", "printed", "by law", 0.1)
     source = Reference("a", "b")
-    return Grade("steel", "m", "p", "rod", "-", "-", tuple(sizes), source, "A", modulus)
+    return Grade(
+        id="steel",
+        manufacturer="m",
+        product="p",
+        construction="rod",
+        core="-",
+        finish="-",
+        sizes=tuple(sizes),
+        source=source,
+        trust="A",
+        modulus=modulus,
+    )
 
 
 def usable_of(case: str) -> Usable:

@@ -45,7 +45,18 @@ def rope(diameters_mm: list[float], name: str = "rope", modulus_Pa: float = 62.7
     )
     modulus = Modulus(modulus_Pa, "nominal", "borrowed", "a like rope", 0.15)
     source = Reference("a", "b")
-    return Grade(name, "maker", "rope", "7x19", "WSC", "bright", sizes, source, "B", modulus)
+    return Grade(
+        id=name,
+        manufacturer="maker",
+        product="rope",
+        construction="7x19",
+        core="WSC",
+        finish="bright",
+        sizes=sizes,
+        source=source,
+        trust="B",
+        modulus=modulus,
+    )
 
 
 def products_of(grade: Grade, safety_factor: float = 5.0) -> tuple[Product, ...]:
