@@ -18,12 +18,13 @@ _HOMES = {
     "designer.diagnosis.result": "Diagnosis",
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
+    "designer.model.measurements": "Measurements",
     "designer.model.region": "PointList Prism Rectangle",
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
     "designer.model.verdict": "Verdict",
     "designer.resources": "example_file example_names",
-    "designer.study": "CableGroup DeclaredEffect Measurements Selection Study Workspace",
+    "designer.study": "CableGroup DeclaredEffect Selection Study Workspace",
 }
 """Where the public names are defined, those of each module separated by spaces."""
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
@@ -36,19 +37,13 @@ if TYPE_CHECKING:
     from designer.grades.grade import Grade
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material
+    from designer.model.measurements import Measurements
     from designer.model.region import PointList, Prism, Rectangle
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
     from designer.model.verdict import Verdict
     from designer.resources import example_file, example_names
-    from designer.study import (
-        CableGroup,
-        DeclaredEffect,
-        Measurements,
-        Selection,
-        Study,
-        Workspace,
-    )
+    from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
 
 __all__ = [
     "Analysis",

@@ -17,6 +17,7 @@ from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
 from designer.model.machine import TEMPERATE, Machine, Surroundings
+from designer.model.measurements import Measurements
 from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
@@ -24,7 +25,6 @@ from designer.model.space import Orientations, Space
 _LIKELY_DIAMETER_M = 0.01
 """Of the cable that stands in where none is given yet."""
 HangsBelow = Literal["include", "exclude"]
-Reading = Literal["length", "tension"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
 
@@ -217,51 +217,6 @@ class Source:
 
 IN_PYTHON = Source(Path("study"), "", ())
 """Of a study that no file describes."""
-
-
-@dataclass(frozen=True, slots=True)
-class LogColumn:
-    """What one column of a log is to us: ``scale`` · reading + ``offset``."""
-
-    name: str  # Its name in the log
-    # Our name for it, see `designer.measured.names`; `ignore` or `covariate` for none
-    target: str
-    # From the log's numbers to ours, in the unit that our name ends in
-    scale: float = 1.0
-    offset: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Measurements:
-    """Data measured on the built machine, and what is known about it."""
-
-    file: Path  # Table of measured poses, lengths and tensions
-    linear_density_kg_per_m: float  # Mass per length of the cable on the machine [kg/m]
-    axial_stiffness_N: float  # EA of the cable on the machine [N]
-    # Columns of the file that are not as our names and units say
-    columns: tuple[LogColumn, ...] = ()
-    settled: bool = True  # Whether the rows are poses at rest; False for samples of a slow motion
-    # Ids of what is fitted from the start and not counted as a finding
-    unknown: tuple[str, ...] = ()
-    # Standard deviation of a measured length [m]; None where not given
-    length_noise_m: float | None = None
-    # Standard deviation of a measured tension [N]; None where not given
-    tension_noise_N: float | None = None
-    # Diameter of the cable, for effects of plugins that ask for it, and for bending [m]
-    diameter_m: float | None = None
-    # Of the cable on the machine [N]; None where not given
-    minimum_breaking_load_N: float | None = None
-    # Readings whose noise a diagnosis has estimated; the next one estimates it anew
-    estimated_noise: tuple[Reading, ...] = ()
-    search_time_s: float = 600.0  # What the search for effects may take [s]
-
-    def __post_init__(self) -> None:
-        for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):
-            require_number(name, getattr(self, name), above=0.0)
-        for name in ("tension_noise_N", "diameter_m", "minimum_breaking_load_N"):
-            require_number(name, getattr(self, name), above=0.0)
-        require_number("search_time_s", self.search_time_s, least=0.0)
-        require_one_of("estimated_noise", self.estimated_noise, get_args(Reading))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,18 +12,12 @@ from designer.arrays import frozen_array
 from designer.kernel.batch import solve_batch
 from designer.kernel.calling import situation_of
 from designer.model.cable import Cable, Cables, Material
+from designer.model.measurements import Measurements
 from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.statics.inverse import solve_sagging
-from designer.study import (
-    CableGroup,
-    DeclaredEffect,
-    Measurements,
-    Selection,
-    Study,
-    Workspace,
-)
+from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
 
 EXITS = frozen_array([[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9]])
 BODY = frozen_array([[-1, -1, 0], [1, -1, 0], [1, 1, 1], [-1, 1, 0], [0, -1, 1], [0, 1, 1]])

@@ -13,7 +13,8 @@ from designer.errors import Fault, InputError
 from designer.model.cable import Cable
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
-from designer.study import Measurements, Study, declared_settings
+from designer.model.measurements import Measurements
+from designer.study import Study, declared_settings
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,7 +21,8 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.structure import Structure
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured, Noise
-from designer.study import Measurements, Study
+from designer.model.measurements import Measurements
+from designer.study import Study
 
 CARRIED = "as estimated when diagnosed"
 

@@ -32,7 +32,8 @@ from designer.diagnosis.trends import smooth_correction, whereabouts
 from designer.effects.effect import Effect
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
-from designer.study import Measurements, Study
+from designer.model.measurements import Measurements
+from designer.study import Study
 
 _NOISE_ROUNDS = 2
 """Searches at most: the second has the noise that the first one's model leaves."""

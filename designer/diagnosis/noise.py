@@ -14,7 +14,7 @@ from designer.diagnosis.problem import Problem
 from designer.diagnosis.robust import spread
 from designer.effects.effect import Effect
 from designer.model.measured_data import Measured, Noise
-from designer.study import Measurements
+from designer.model.measurements import Measurements
 
 _ROUGH_LENGTH, _ROUGH_TENSION = 0.01, 0.1
 """What a model may be off by at first, over a typical reading: mostly their ratio counts, and

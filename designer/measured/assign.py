@@ -20,8 +20,9 @@ from designer.measured.names import (
     tension_names,
 )
 from designer.measured.table import RawColumn, Table
+from designer.model.measurements import LogColumn, Measurements
 from designer.spelling import did_you_mean
-from designer.study import LogColumn, Measurements, Study
+from designer.study import Study
 
 _MAP = "measurements.columns"
 

@@ -14,8 +14,9 @@ from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
 from designer.model.measured_data import Measured
+from designer.model.measurements import Measurements
 from designer.model.robot import Poses
-from designer.study import Measurements, Study
+from designer.study import Study
 
 MOST_FAULTS = 100
 _SAME_PLACE_M = 1e-6

@@ -13,24 +13,43 @@ from designer.model.robot import Poses
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measured:
-    """Rows of measured data, in the order in which the poses were visited."""
+    """Rows of measured data, in the order in which the poses were visited.
 
-    poses: Poses  # Measured poses (n_rows,)
-    # (n_rows, n_cables): Unstrained lengths by the winches' own scales [m]; NaN where missing
+    Parameters
+    ----------
+    poses : Poses
+        Measured poses (n_rows,).
+    length_m : array (n_rows, n_cables)
+        Unstrained lengths by the winches' own scales [m]; NaN where missing.
+    tension_N : array (n_rows, n_cables)
+        Tensions at the winches [N]; NaN where missing.
+    settled : bool
+        Whether each row is a pose at rest; False for samples of a slow motion.
+    time_s, temperature_C : array (n_rows,) or None
+        Time [s] and temperature [°C], where there is such a column.
+    wind_m_per_s : array (n_rows, 3) or None
+        Wind velocity, base frame [m/s].
+    covariates : mapping of str to array (n_rows,)
+        Every other numeric column, by its own name.
+    row_numbers : array (n_rows,)
+        Number of each row in the file, the first row below the head being 1.
+    notes : tuple of str
+        What the reader of a report should know: columns that were left out, and why.
+    sha256 : str
+        Digest of the file's bytes; empty where there is no file.
+    """
+
+    poses: Poses
     length_m: FloatArray
-    tension_N: FloatArray  # (n_rows, n_cables): Tensions at the winches [N]; NaN where missing
-    settled: bool  # Whether each row is a pose at rest; False for samples of a slow motion
-    # (n_rows,): Time [s] and temperature [°C], where there is such a column
+    tension_N: FloatArray
+    settled: bool
     time_s: FloatArray | None = None
     temperature_C: FloatArray | None = None
-    wind_m_per_s: FloatArray | None = None  # (n_rows, 3): Wind velocity, base frame [m/s]
-    # (n_rows,): Every other numeric column, by its own name
+    wind_m_per_s: FloatArray | None = None
     covariates: Mapping[str, FloatArray] = field(default_factory=dict)
-    # (n_rows,): Number of each row in the file, the first row below the head being 1
     row_numbers: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-    # What the reader of a report should know: columns that were left out, and why
     notes: tuple[str, ...] = ()
-    sha256: str = ""  # Digest of the file's bytes; empty where there is no file
+    sha256: str = ""
 
     @property
     def n_rows(self) -> int:
@@ -55,12 +74,19 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Standard deviation of one reading."""
+    """Standard deviation of one reading.
 
-    # Of a length [m] and of a tension [N]
+    Parameters
+    ----------
+    length_m, tension_N : float
+        Of a length [m] and of a tension [N].
+    source : str
+        ``declared``, or how it was estimated.
+    """
+
     length_m: float
     tension_N: float
-    source: str  # `declared`, or how it was estimated
+    source: str
 
 
 EVEN = Noise(1.0, 1.0, "none")

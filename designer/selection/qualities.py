@@ -17,20 +17,39 @@ from designer.workspace.stiffness import StiffnessSurvey, survey_stiffness
 
 @dataclass(frozen=True, slots=True)
 class DesignCable:
-    """The cables that the design comes to."""
+    """The cables that the design comes to.
 
-    cable: Cable | Cables  # As they are on the machine
-    name: str  # What they are, for the reader of a report
+    Parameters
+    ----------
+    cable : Cable or Cables
+        As they are on the machine.
+    name : str
+        What they are, for the reader of a report.
+    """
+
+    cable: Cable | Cables
+    name: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Qualities:
-    """Stiffness and clearances over the workspace."""
+    """Stiffness and clearances over the workspace.
 
-    cable: DesignCable  # With which cables
-    stiffness: StiffnessSurvey | None  # None if no sample is held stably
-    interference: Interference | None  # None if the study asks for no clearance
-    # Cables far longer than their chord, or below the floor
+    Parameters
+    ----------
+    cable : DesignCable
+        With which cables.
+    stiffness : StiffnessSurvey or None
+        None if no sample is held stably.
+    interference : Interference or None
+        None if the study asks for no clearance.
+    hanging : HangingCables
+        Cables far longer than their chord, or below the floor.
+    """
+
+    cable: DesignCable
+    stiffness: StiffnessSurvey | None
+    interference: Interference | None
     hanging: HangingCables = field(default_factory=HangingCables)
 
 

@@ -19,18 +19,37 @@ Standing = Literal["chosen", "undominated", "dominated", "not_comparable", "too_
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
-    """One size of one grade, solved over the whole workspace."""
+    """One size of one grade, solved over the whole workspace.
+
+    Parameters
+    ----------
+    grade, size
+        The product.
+    cable : Cable
+        Its figures as the solver takes them, efficiency and safety factor applied.
+    efficiency : float
+        Share of the breaking load that end fittings and bending leave.
+    continuous_diameter_m : float
+        Optimum in the grade's continuous family [m]; NaN where the family has none.
+    verification : Verification
+        What it meets.
+    figures : Figures
+        What it is compared by.
+    standing : str
+        What became of it.
+    reason : str
+        Why, for the reader of a report.
+    """
 
     grade: Grade
     size: Size
-    cable: Cable  # Its figures as the solver takes them, efficiency and safety factor applied
-    efficiency: float  # Share of the breaking load that end fittings and bending leave
-    # Optimum in the grade's continuous family [m]; NaN where the family has none
+    cable: Cable
+    efficiency: float
     continuous_diameter_m: float
     verification: Verification
-    figures: Figures  # What it is compared by
-    standing: Standing  # What became of it
-    reason: str  # Why, for the reader of a report
+    figures: Figures
+    standing: Standing
+    reason: str
 
     @property
     def verified(self) -> bool:
@@ -59,15 +78,29 @@ class NotTried:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GradeOutcome:
-    """What became of a grade."""
+    """What became of a grade.
+
+    Parameters
+    ----------
+    grade : Grade
+        The grade.
+    family : Material
+        Its continuous family, efficiency and safety factor applied.
+    continuous_diameter_m : float
+        The thinnest member of the family that holds everywhere [m]; NaN where none does.
+    candidates : tuple of Candidate
+        Its sizes, ascending.
+    outcome : str
+        ``fits``, ``too_thin`` (no size holds) or ``no_finite_cable``.
+    best : Candidate or None
+        The best size by the objective that decides, of those that are verified.
+    """
 
     grade: Grade
-    family: Material  # Its continuous family, efficiency and safety factor applied
-    # The thinnest member of the family that holds everywhere [m]; NaN where none does
+    family: Material
     continuous_diameter_m: float
-    candidates: tuple[Candidate, ...]  # Its sizes, ascending
-    outcome: Outcome  # `fits`, `too_thin` (no size holds) or `no_finite_cable`
-    # The best size by the objective that decides, of those that are verified
+    candidates: tuple[Candidate, ...]
+    outcome: Outcome
     best: Candidate | None
 
     @property
@@ -83,20 +116,36 @@ class GradeOutcome:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SelectionResult:
-    """The choice, and why."""
+    """The choice, and why.
 
-    outcomes: tuple[GradeOutcome, ...]  # Every grade that the study allows
-    # The best product by the objective that decides, of those that hold everywhere
+    Parameters
+    ----------
+    outcomes : tuple of GradeOutcome
+        Every grade that the study allows.
+    chosen : Candidate or None
+        The best product by the objective that decides, of those that hold everywhere.
+    reason : str or None
+        Why none was chosen.
+    alternatives : tuple of GradeOutcome
+        Where none was chosen: grades outside the study's list that would hold.
+    objectives : tuple of str
+        What candidates were compared by, the one that decides first.
+    currency : str or None
+        Of the costs; None where nothing has a price.
+    not_tried : tuple of NotTried
+        What was not solved, and why.
+    usable : Usable or None
+        What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
+        most. None where nothing was tried.
+    """
+
+    outcomes: tuple[GradeOutcome, ...]
     chosen: Candidate | None
-    reason: str | None  # Why none was chosen
-    # Where none was chosen: grades outside the study's list that would hold
+    reason: str | None
     alternatives: tuple[GradeOutcome, ...] = ()
-    # What candidates were compared by, the one that decides first
     objectives: tuple[Objective, ...] = ("mass",)
-    currency: str | None = None  # Of the costs; None where nothing has a price
-    not_tried: tuple[NotTried, ...] = ()  # What was not solved, and why
-    # What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
-    # most. None where nothing was tried.
+    currency: str | None = None
+    not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
 
     @property

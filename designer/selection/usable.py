@@ -18,14 +18,27 @@ from designer.workspace.demand import is_left_out
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UsableSize:
-    """What one size serves."""
+    """What one size serves.
+
+    Parameters
+    ----------
+    size : Size
+        The size.
+    cable : Cable
+        Its figures as the solver takes them.
+    fraction : float
+        Share of the samples at which it stays within its allowable tension.
+    volume_m3 : float or None
+        That share of the region [m³]; None for a list of points.
+    lost_fraction : float
+        Share of the samples that a thinner size of the grade serves and this one does not: it may
+        be weaker, or too heavy for what it bears.
+    """
 
     size: Size
-    cable: Cable  # Its figures as the solver takes them
-    fraction: float  # Share of the samples at which it stays within its allowable tension
-    volume_m3: float | None  # That share of the region [m³]; None for a list of points
-    # Share of the samples that a thinner size of the grade serves and this one does not: it may be
-    # weaker, or too heavy for what it bears
+    cable: Cable
+    fraction: float
+    volume_m3: float | None
     lost_fraction: float = 0.0
 
 

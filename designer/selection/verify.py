@@ -30,17 +30,29 @@ _TRIES = 256
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """What a given cable meets in the workspace."""
+    """What a given cable meets in the workspace.
 
-    # (n_coordinates,): Place where its tension is largest, see `designer.model.space` [m, rad]
+    Parameters
+    ----------
+    worst_position_m : array (n_coordinates,)
+        Place where its tension is largest, see `designer.model.space` [m, rad].
+    max_tension_N : float
+        The largest tension there [N]; inf if the pose cannot be held at all.
+    utilisation : float
+        Largest over allowable tension; the cable holds up to 1.
+    longest_m, shortest_m : array (n_cables,)
+        Longest and shortest unstrained length that each cable has [m]; the latter NaN where it was
+        not searched for.
+    is_refined : bool
+        Whether the extremes were searched for between the samples as well.
+    """
+
     worst_position_m: FloatArray
-    max_tension_N: float  # The largest tension there [N]; inf if the pose cannot be held at all
-    utilisation: float  # Largest over allowable tension; the cable holds up to 1
-    # (n_cables,): Longest and shortest unstrained length that each cable has [m]; the latter NaN
-    # where it was not searched for
+    max_tension_N: float
+    utilisation: float
     longest_m: FloatArray
     shortest_m: FloatArray
-    is_refined: bool = True  # Whether the extremes were searched for between the samples as well
+    is_refined: bool = True
 
     @property
     def holds(self) -> bool:
@@ -50,21 +62,33 @@ class Verification:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sampled:
-    """What one cable meets over the samples of a workspace."""
+    """What one cable meets over the samples of a workspace.
 
-    # (n_starts, n_coordinates): Places where it is used most, one for each part of the space, the
-    # worst first; where it is not held if there is such a pose [m, rad]
+    Parameters
+    ----------
+    worst_m : array (n_starts, n_coordinates)
+        Places where it is used most, one for each part of the space, the worst first; where it is
+        not held if there is such a pose [m, rad].
+    utilisation : float
+        Largest over allowable tension; inf if a pose cannot be held, or none counts.
+    longest_m : array (n_cables,)
+        Longest unstrained length that each cable needs [m].
+    samples, counted, overloaded : int
+        Samples tried, those that count, those of them above the allowable tension.
+    not_held : int
+        Samples and landmarks that cannot be held, at least.
+    is_complete : bool
+        Whether every sample was tried; else the figures are those of the samples up to where it
+        was settled that the cable does not serve the workspace.
+    """
+
     worst_m: FloatArray
-    # Largest over allowable tension; inf if a pose cannot be held, or none counts
     utilisation: float
-    longest_m: FloatArray  # (n_cables,): Longest unstrained length that each cable needs [m]
-    # Samples tried, those that count, those of them above the allowable tension
+    longest_m: FloatArray
     samples: int
     counted: int
     overloaded: int
-    not_held: int  # Samples and landmarks that cannot be held, at least
-    # Whether every sample was tried; else the figures are those of the samples up to where it was
-    # settled that the cable does not serve the workspace
+    not_held: int
     is_complete: bool
 
     @property

@@ -18,21 +18,42 @@ from designer.workspace.demand import is_left_out
 
 @dataclass(frozen=True, slots=True)
 class Hanging:
-    """Samples in which a cable hangs too far, and the worst of them."""
+    """Samples in which a cable hangs too far, and the worst of them.
 
-    samples: int  # How many there are
-    extreme: float  # The largest length over chord; or the height of the lowest point [m]
-    cable: int  # Which cable, counted from 1
-    place: tuple[float, ...]  # In which sample, see `designer.model.space` [m, rad]
+    Parameters
+    ----------
+    samples : int
+        How many there are.
+    extreme : float
+        The largest length over chord; or the height of the lowest point [m].
+    cable : int
+        Which cable, counted from 1.
+    place : tuple of float
+        In which sample, see `designer.model.space` [m, rad].
+    """
+
+    samples: int
+    extreme: float
+    cable: int
+    place: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class HangingCables:
-    """What hangs too far over a workspace; None where nothing does."""
+    """What hangs too far over a workspace; None where nothing does.
 
-    samples: int = 0  # Samples looked at: those that are solved and count
-    long: Hanging | None = None  # Cables longer than `LONG` times their chord
-    # Cables that hang below the floor; None also where the study has no floor
+    Parameters
+    ----------
+    samples : int
+        Samples looked at: those that are solved and count.
+    long : Hanging or None
+        Cables longer than `LONG` times their chord.
+    below_floor : Hanging or None
+        Cables that hang below the floor; None also where the study has no floor.
+    """
+
+    samples: int = 0
+    long: Hanging | None = None
     below_floor: Hanging | None = None
 
     def notes(self) -> Iterator[tuple[str, str]]:

@@ -26,16 +26,27 @@ MOST_SAMPLES = 1000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nearest:
-    """The pose in which two things come nearest to each other."""
+    """The pose in which two things come nearest to each other.
 
-    distance_m: float  # How near [m]
-    error_m: float  # The true distance there is smaller by no more than this [m]
-    # Two cables, from 0, or a cable and `designer.workspace.clearance.PLATFORM`
+    Parameters
+    ----------
+    distance_m : float
+        How near [m].
+    error_m : float
+        The true distance there is smaller by no more than this [m].
+    pair : tuple of int
+        Two cables, from 0, or a cable and `designer.workspace.clearance.PLATFORM`.
+    place : array (n_coordinates,)
+        Where the platform is and how it is turned, see `designer.model.space` [m, rad].
+    point_m : array (3,)
+        Where the two are nearest, base frame [m].
+    """
+
+    distance_m: float
+    error_m: float
     pair: tuple[int, int]
-    # (n_coordinates,): Where the platform is and how it is turned, see `designer.model.space` [m,
-    # rad]
     place: FloatArray
-    point_m: FloatArray  # (3,): Where the two are nearest, base frame [m]
+    point_m: FloatArray
 
     @property
     def names(self) -> tuple[str, str]:
@@ -49,15 +60,25 @@ class Nearest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Interference:
-    """Clearances over the workspace."""
+    """Clearances over the workspace.
 
-    clearance_m: float  # What is asked for [m]
-    # Poses that were looked at and solved, and those of them that keep less
+    Parameters
+    ----------
+    clearance_m : float
+        What is asked for [m].
+    samples, violating : int
+        Poses that were looked at and solved, and those of them that keep less.
+    among_cables : Nearest or None
+        Worst pose for two cables; None where no two cables can be compared.
+    to_platform : Nearest or None
+        Worst pose for a cable and the platform; None for a point mass.
+    """
+
+    clearance_m: float
     samples: int
     violating: int
-    # Worst pose for two cables; None where no two cables can be compared
     among_cables: Nearest | None
-    to_platform: Nearest | None  # Worst pose for a cable and the platform; None for a point mass
+    to_platform: Nearest | None
 
     @property
     def worst(self) -> Nearest | None:

@@ -21,12 +21,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Extreme:
-    """The pose that asks for the most."""
+    """The pose that asks for the most.
 
-    position_m: FloatArray  # (3,): Where it is [m]
-    diameter_m: float  # The cable that it needs [m]; for a given cable, the diameter of that cable
-    max_tension_N: float  # The largest tension there [N]
-    # (3,): How the platform is turned there [rad]
+    Parameters
+    ----------
+    position_m : array (3,)
+        Where it is [m].
+    diameter_m : float
+        The cable that it needs [m]; for a given cable, the diameter of that cable.
+    max_tension_N : float
+        The largest tension there [N].
+    rotation_vector_rad : array (3,)
+        How the platform is turned there [rad].
+    """
+
+    position_m: FloatArray
+    diameter_m: float
+    max_tension_N: float
     rotation_vector_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
 
     @classmethod
@@ -47,13 +58,26 @@ class Extreme:
 
 @dataclass(frozen=True, slots=True)
 class Census:
-    """How many samples met with which verdict."""
+    """How many samples met with which verdict.
 
-    samples: int  # All samples
-    statuses: Mapping[str, int]  # Count of each verdict by its label, every label present
-    hangs_below: int  # Solved samples in which a cable hangs below the platform
-    excluded: int  # Those of them that the study leaves out
-    # Those that count in which a cable is far longer than its chord, or hangs below the floor
+    Parameters
+    ----------
+    samples : int
+        All samples.
+    statuses : mapping of str to int
+        Count of each verdict by its label, every label present.
+    hangs_below : int
+        Solved samples in which a cable hangs below the platform.
+    excluded : int
+        Those of them that the study leaves out.
+    hanging : HangingCables
+        Those that count in which a cable is far longer than its chord, or hangs below the floor.
+    """
+
+    samples: int
+    statuses: Mapping[str, int]
+    hangs_below: int
+    excluded: int
     hanging: HangingCables = field(default_factory=HangingCables)
 
     def fraction(self, status: str) -> float:
@@ -63,26 +87,43 @@ class Census:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorkspaceMap:
-    """Sizing over the whole workspace."""
+    """Sizing over the whole workspace.
 
-    census: Census  # Verdict counts
-    # Whether every pose of the region has a finite cable: every sample is solved (or left out on
-    # purpose) and the continuous search met no pose without one
+    Parameters
+    ----------
+    census : Census
+        Verdict counts.
+    is_feasible : bool
+        Whether every pose of the region has a finite cable: every sample is solved (or left out
+        on purpose) and the continuous search met no pose without one.
+    sagging : Extreme or None
+        The worst pose of the region, refined beyond the samples; None if not feasible, because
+        then the needed diameter grows without bound toward the infeasible part.
+    sampled : Extreme or None
+        The worst solved sample; None if no sample is solved.
+    massless : Extreme or None
+        The worst pose of the region with straight weightless cables; None where they hold no
+        sample.
+    infeasible_example_m : array (3,) or None
+        A position without a finite cable, where there is one [m].
+    limit_ratio : float
+        Stress at infinite section over allowable stress at the worst pose; 1 is the boundary
+        beyond which no cable exists. NaN if not feasible.
+    infeasible_rotation_vector_rad : array (3,) or None
+        How the platform is turned in that position [rad].
+    file : Path or None
+        NetCDF file with every sample, where one was written.
+    """
+
+    census: Census
     is_feasible: bool
-    # The worst pose of the region, refined beyond the samples; None if not feasible, because then
-    # the needed diameter grows without bound toward the infeasible part
     sagging: Extreme | None
-    sampled: Extreme | None  # The worst solved sample; None if no sample is solved
-    # The worst pose of the region with straight weightless cables; None if none can be held
-    massless: Extreme | None  # None where straight cables hold no sample
-    # (3,): A position without a finite cable, where there is one [m]
+    sampled: Extreme | None
+    massless: Extreme | None
     infeasible_example_m: FloatArray | None
-    # Stress at infinite section over allowable stress at the worst pose; 1 is the boundary beyond
-    # which no cable exists. NaN if not feasible.
     limit_ratio: float
-    # (3,): How the platform is turned in that position [rad]
     infeasible_rotation_vector_rad: FloatArray | None = None
-    file: Path | None = None  # NetCDF file with every sample, where one was written
+    file: Path | None = None
 
     def to_xarray(self) -> xr.Dataset:
         """Return every sample along ``sample``, with units in the attributes of each variable.

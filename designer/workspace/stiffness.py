@@ -22,16 +22,25 @@ MOST_SAMPLES, FEW_SAMPLES = 2000, 500
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StiffnessSurvey:
-    """Displacement under a unit force over a workspace, cables of fixed length."""
+    """Displacement under a unit force over a workspace, cables of fixed length.
 
-    # Poses that were looked at before the search between them, solved and not left out
+    Parameters
+    ----------
+    samples : int
+        Poses that were looked at before the search between them, solved and not left out.
+    unstable : int
+        Those of them in which the platform would not stay.
+    softest_m_per_N, stiffest_m_per_N : float
+        Largest and smallest displacement under a unit force in its worst direction [m/N]; the
+        former inf where the platform would not stay somewhere.
+    softest_place, stiffest_place : array (n_coordinates,)
+        Where [m, rad].
+    """
+
     samples: int
-    unstable: int  # Those of them in which the platform would not stay
-    # Largest and smallest displacement under a unit force in its worst direction [m/N]; the former
-    # inf where the platform would not stay somewhere
+    unstable: int
     softest_m_per_N: float
     stiffest_m_per_N: float
-    # (n_coordinates,): Where [m, rad]
     softest_place: FloatArray
     stiffest_place: FloatArray
 

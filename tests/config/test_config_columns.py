@@ -8,7 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from designer.errors import Fault
-from designer.study import Entry, LogColumn, Study
+from designer.model.measurements import LogColumn
+from designer.study import Entry, Study
 
 FaultsOf = Callable[[str], list[Fault]]
 StudyOf = Callable[[str], Study]

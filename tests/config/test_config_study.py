@@ -13,9 +13,10 @@ import pytest
 from designer.documents.section import Section
 from designer.errors import InputError
 from designer.io.config import columns, read_study, schema
+from designer.model.measurements import LogColumn
 from designer.model.region import PointList, Prism
 from designer.resources import data_folder, example_file
-from designer.study import Entry, LogColumn, Study
+from designer.study import Entry, Study
 
 StudyOf = Callable[[str], Study]
 

@@ -28,20 +28,12 @@ from designer.io.config.schema import (
 )
 from designer.model.cable import Material
 from designer.model.machine import Surroundings
+from designer.model.measurements import Measurements
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.plugins.find import Plugins, find_plugins
-from designer.study import (
-    CableGroup,
-    Entry,
-    GradeFamily,
-    Measurements,
-    Selection,
-    Source,
-    Study,
-    Workspace,
-)
+from designer.study import CableGroup, Entry, GradeFamily, Selection, Source, Study, Workspace
 from designer.units import DENSITY, STRESS, format_SI
 
 

@@ -43,8 +43,9 @@ from designer.io.config.orientation import (
     Quaternion,
     only_one_of,
 )
+from designer.model.measurements import Reading
 from designer.model.region import Sampling
-from designer.study import HangsBelow, Objective, Reading
+from designer.study import HangsBelow, Objective
 from designer.units import describe
 
 MOST_CABLES = 64

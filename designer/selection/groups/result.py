@@ -17,55 +17,114 @@ GroupObjective = Literal["mass", "cost"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proposal:
-    """An assignment that was tried."""
+    """An assignment that was tried.
 
-    products: tuple[Product, ...]  # Of each group
-    # Mass or cost that it cannot fall below: straight cables stretched as far as they may be
+    Parameters
+    ----------
+    products : tuple of Product
+        Of each group.
+    bound : float
+        Mass or cost that it cannot fall below: straight cables stretched as far as they may be.
+    total : float or None
+        The same with the lengths that it needs; None where that was not computed.
+    outcome : str
+        ``holds``, ``fails``, or ``not_better`` than what was known to hold.
+    group : int or None
+        The group that is used most; None where its loads decided nothing.
+    utilisation : float or None
+        Of that group.
+    place : array (n_coordinates,) or None
+        Where, see `designer.model.space` [m, rad].
+    excluded : int
+        How many assignments the cut excludes, the proposal among them.
+    guided : bool
+        Whether the linearisation had a say in it.
+    """
+
+    products: tuple[Product, ...]
     bound: float
-    total: float | None  # The same with the lengths that it needs; None where that was not computed
-    outcome: Outcome  # `holds`, `fails`, or `not_better` than what was known to hold
-    group: int | None  # The group that is used most; None where its loads decided nothing
-    utilisation: float | None  # Of that group
-    place: FloatArray | None  # (n_coordinates,): Where, see `designer.model.space` [m, rad]
-    excluded: int  # How many assignments the cut excludes, the proposal among them
-    guided: bool  # Whether the linearisation had a say in it
+    total: float | None
+    outcome: Outcome
+    group: int | None
+    utilisation: float | None
+    place: FloatArray | None
+    excluded: int
+    guided: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assigned:
-    """An assignment that holds everywhere."""
+    """An assignment that holds everywhere.
 
-    products: tuple[Product, ...]  # Of each group
+    Parameters
+    ----------
+    products : tuple of Product
+        Of each group.
+    verification : GroupVerification
+        What it meets.
+    total_mass_kg : float
+        Mass of all cables, each at the longest length that it needs [kg].
+    total : float
+        What was minimised: that mass, or the cost of these lengths.
+    """
+
+    products: tuple[Product, ...]
     verification: GroupVerification
-    total_mass_kg: float  # Mass of all cables, each at the longest length that it needs [kg]
-    total: float  # What was minimised: that mass, or the cost of these lengths
+    total_mass_kg: float
+    total: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroupChoice:
-    """The choice for groups, and what is proved of it."""
+    """The choice for groups, and what is proved of it.
+
+    Parameters
+    ----------
+    groups : tuple of CableGroup
+        The groups.
+    most_distinct : int
+        How many different products were allowed.
+    chosen : Assigned or None
+        The lightest (or cheapest) assignment that holds; None if none was found.
+    single : Assigned or None
+        The lightest single product for all cables, where the selection found one.
+    objective : str
+        ``mass`` or ``cost``.
+    unit : str
+        Of the objective: ``kg``, or a currency.
+    bound : float
+        No assignment of what was offered that holds has less of it.
+    proof : str
+        ``optimal``; ``stopped`` at the limit of proposals; ``infeasible``.
+    by_balance : bool
+        Whether the balance of poses excluded assignments (`designer.selection.groups.balance`).
+    by_weight : bool
+        Whether cuts were proved by weight (`designer.selection.groups.blocks`), else by trial.
+    lengths_are_bounds : bool
+        Whether the bound's lengths cannot be undercut. Not so where poses are left out.
+    offered, catalogued : int
+        Products that no other one beats, and all of them.
+    proposals : tuple of Proposal
+        What was tried, in order.
+    trials : int
+        How many times cables were solved at the witnesses.
+    """
 
     groups: tuple[CableGroup, ...]
-    most_distinct: int  # How many different products were allowed
-    # The lightest (or cheapest) assignment that holds; None if none was found
+    most_distinct: int
     chosen: Assigned | None
-    # The lightest single product for all cables, where the selection found one
     single: Assigned | None
-    objective: GroupObjective  # `mass` or `cost`
-    unit: str  # Of the objective: `kg`, or a currency
-    bound: float  # No assignment of what was offered that holds has less of it
-    proof: Proof  # `optimal`; `stopped` at the limit of proposals; `infeasible`
-    # Whether the balance of poses excluded assignments (`designer.selection.groups.balance`)
+    objective: GroupObjective
+    unit: str
+    bound: float
+    proof: Proof
     by_balance: bool
-    # Whether cuts were proved by weight (`designer.selection.groups.blocks`), else by trial
     by_weight: bool
-    # Whether the bound's lengths cannot be undercut. Not so where poses are left out.
     lengths_are_bounds: bool
-    # Products that no other one beats, and all of them
     offered: int
     catalogued: int
-    proposals: tuple[Proposal, ...]  # What was tried, in order
-    trials: int  # How many times cables were solved at the witnesses
+    proposals: tuple[Proposal, ...]
+    trials: int
 
     @property
     def gap(self) -> float | None:

@@ -1,0 +1,85 @@
+"""What a study says of the data measured on the built machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+from designer.arrays import require_number, require_one_of
+
+Reading = Literal["length", "tension"]
+
+
+@dataclass(frozen=True, slots=True)
+class LogColumn:
+    """What one column of a log is to us: ``scale`` · reading + ``offset``.
+
+    Parameters
+    ----------
+    name : str
+        Its name in the log.
+    target : str
+        Our name for it, see `designer.measured.names`; ``ignore`` or ``covariate`` for none.
+    scale, offset : float
+        From the log's numbers to ours, in the unit that our name ends in.
+    """
+
+    name: str
+    target: str
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Measurements:
+    """Data measured on the built machine, and what is known about it.
+
+    Parameters
+    ----------
+    file : Path
+        Table of measured poses, lengths and tensions.
+    linear_density_kg_per_m : float
+        Mass per length of the cable on the machine [kg/m].
+    axial_stiffness_N : float
+        EA of the cable on the machine [N].
+    columns : tuple of LogColumn
+        Columns of the file that are not as our names and units say.
+    settled : bool
+        Whether the rows are poses at rest; False for samples of a slow motion.
+    unknown : tuple of str
+        Ids of what is fitted from the start and not counted as a finding.
+    length_noise_m : float or None
+        Standard deviation of a measured length [m]; None where not given.
+    tension_noise_N : float or None
+        Standard deviation of a measured tension [N]; None where not given.
+    diameter_m : float or None
+        Diameter of the cable, for effects of plugins that ask for it, and for bending [m].
+    minimum_breaking_load_N : float or None
+        Of the cable on the machine [N]; None where not given.
+    estimated_noise : tuple of str
+        Readings whose noise a diagnosis has estimated; the next one estimates it anew.
+    search_time_s : float
+        What the search for effects may take [s].
+    """
+
+    file: Path
+    linear_density_kg_per_m: float
+    axial_stiffness_N: float
+    columns: tuple[LogColumn, ...] = ()
+    settled: bool = True
+    unknown: tuple[str, ...] = ()
+    length_noise_m: float | None = None
+    tension_noise_N: float | None = None
+    diameter_m: float | None = None
+    minimum_breaking_load_N: float | None = None
+    estimated_noise: tuple[Reading, ...] = ()
+    search_time_s: float = 600.0
+
+    def __post_init__(self) -> None:
+        for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):
+            require_number(name, getattr(self, name), above=0.0)
+        for name in ("tension_noise_N", "diameter_m", "minimum_breaking_load_N"):
+            require_number(name, getattr(self, name), above=0.0)
+        require_number("search_time_s", self.search_time_s, least=0.0)
+        require_one_of("estimated_noise", self.estimated_noise, get_args(Reading))
