@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -81,26 +80,48 @@ def find_events(
 def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
     """Return readings of a kind that fit each other's prediction; None where none do.
 
-    Exchanged, they must leave less than a tenth of the mean square that they leave as they are,
-    each about its own mean, since a bias is no exchange.
+    Each reading is given the prediction that suits it best, no two the same. Those that exchange
+    theirs, two or more in a ring, must so leave less than a tenth of the mean square that they
+    leave as they are, each about its own mean, since a bias is no exchange.
 
     Parameters
     ----------
     residual, predicted : array (n_rows, 2 n_cables)
         In units of noise; NaN where not measured.
     """
-    n = residual.shape[1] // 2
-    names = channel_names(n)
+    from scipy.optimize import linear_sum_assignment
+
+    names = channel_names(residual.shape[1] // 2)
+    read = residual + predicted
     texts: list[str] = []
     most = 0.0
-    for one, other in ((i + k, j + k) for i, j in combinations(range(n), 2) for k in (0, n)):
-        gap = predicted[:, other] - predicted[:, one]
-        as_it_is = spread(residual[:, one]) ** 2 + spread(residual[:, other]) ** 2
-        exchanged = spread(residual[:, other] + gap) ** 2 + spread(residual[:, one] - gap) ** 2
-        if as_it_is > 2.0 * _OFF**2 and exchanged < _LEFT * as_it_is:
-            texts.append(f"{names[one]} and {names[other]} exchanged with each other")
-            most = max(most, 1.0 - exchanged / as_it_is)
+    for kind in np.split(np.arange(residual.shape[1]), 2):
+        known = kind[~np.isnan(residual[:, kind]).all(axis=0)]
+        left = np.array([[spread(read[:, i] - predicted[:, j]) ** 2 for j in known] for i in known])
+        if len(known) < 2:
+            continue
+        fits = linear_sum_assignment(left)[1]
+        for ring in _rings(fits):
+            as_it_is, exchanged = left[ring, ring].sum(), left[ring, fits[ring]].sum()
+            if as_it_is > len(ring) * _OFF**2 and exchanged < _LEFT * as_it_is:
+                *others, last = (names[known[k]] for k in sorted(ring))
+                how = "with each other" if len(ring) == 2 else "in a ring"
+                texts.append(f"{', '.join(others)} and {last} exchanged {how}")
+                most = max(most, 1.0 - exchanged / as_it_is)
     return Event(", ".join(texts), most, 0.0) if texts else None
+
+
+def _rings(order: IntArray) -> Iterator[list[int]]:
+    """Yield the rings, of two or more, in which a permutation moves things."""
+    seen: set[int] = set()
+    for start in range(len(order)):
+        at, ring = start, []
+        while at not in seen:
+            seen.add(at)
+            ring.append(at)
+            at = int(order[at])
+        if len(ring) > 1:
+            yield ring
 
 
 def find_common(

@@ -61,6 +61,18 @@ def test_exchanged_sensors_are_told() -> None:
     found = find_swapped(read - predicted, predicted)
     assert found is not None
     assert found.text == "tension 1 and tension 3 exchanged with each other"
+    read[:, [0, 1, 2]] = read[:, [2, 0, 1]]
+    found = find_swapped(read - predicted, predicted)
+    assert found is not None
+    assert found.text == (
+        "length 1, length 2 and length 3 exchanged in a ring, "
+        "tension 1 and tension 3 exchanged with each other"
+    )
+    unread = read - predicted
+    unread[:, 1] = np.nan
+    found = find_swapped(unread, predicted)
+    assert found is not None
+    assert "ring" not in found.text
     biased = residual + 40.0
     assert find_swapped(biased, predicted) is None
 
