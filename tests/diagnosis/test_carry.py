@@ -45,6 +45,7 @@ def drawn(robot, *effects):
     return {effect: robot.draw(effect, size_for(robot, effect, 12.0), 0) for effect in effects}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robot", "effects", "unknown", "noise"),
     [

@@ -60,6 +60,7 @@ def test_poses_measured_badly_are_scatter(tmp_path) -> None:
     assert verdict(found).title == "Scatter larger than the sensors explain"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", [YARD3, HALL8], ids=lambda robot: robot.name)
 def test_rows_held_out_decide_nothing_before_the_last_check(robot, tmp_path) -> None:
     """Noise that is estimated, search and fit are the same whatever is read in those rows."""

@@ -12,6 +12,7 @@ from designer.grades.registry import load_catalogue
 PLUGINS = Path(__file__).parents[2] / "plugins"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("folder", "grade_id"),
     [("guy-strand", "astm-a475-7-wire-ehs"), ("fibre-rope", "hmpe-computed-20c-5y")],

@@ -55,6 +55,7 @@ def test_random_poses_are_solved_and_optimal(weights) -> None:
         assert optimality < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weights", [1.0, 8.0])
 @pytest.mark.parametrize("case", CASES)
 def test_sizing_is_that_of_the_convex_programmes(case, weights) -> None:
@@ -164,6 +165,7 @@ def test_the_sagging_optimum_meets_the_massless_one_at_first_order() -> None:
     assert np.abs(excess[1]).sum() / np.abs(excess[2]).sum() == pytest.approx(2.0, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weights", WEIGHTS)
 def test_no_pose_is_solved_with_a_residual(weights) -> None:
     """Poses anywhere, with closure and balance by the paper's own equations."""

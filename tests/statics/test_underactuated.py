@@ -65,6 +65,7 @@ def random_machine(rng: np.random.Generator) -> tuple[physics.Machine, FloatArra
     return machine, length, position
 
 
+@pytest.mark.slow
 def test_heavy_cables_on_a_large_robot() -> None:
     """34 kg on four cables of 25 kg over 250 m: lengths to a nanometre, tensions to a millinewton.
 
