@@ -52,6 +52,9 @@ def test_a_wrong_answer_is_seen() -> None:
     assert diameter.difference == pytest.approx(0.01 * sizing.diameter_m, rel=1e-3)
     assert not told.agrees
     assert not diameter.agrees
+    thick = replace(diameter, ours=0.9 * diameter.theirs, may_be_more=True)
+    assert thick.agrees
+    assert not replace(thick, may_be_more=False).agrees
     told_of = verification_statement((told, diameter))
     assert told_of.tone == "bad"
     assert "by quadrature" in told_of.text

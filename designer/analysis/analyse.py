@@ -18,6 +18,7 @@ from designer import __version__
 from designer.analysis.verification import SecondAnswer, verify, verify_cables
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
+from designer.model.cable import Material
 from designer.model.robot import Poses
 from designer.progress import SILENT, Reporter
 from designer.selection.groups.choose import choose_groups_of
@@ -43,6 +44,8 @@ class PoseAnalysis:
 
     Parameters
     ----------
+    material : Material
+        The family as built.
     sizing : Sizing
         Optimum by Newton, no leading axes.
     massless : MasslessStatics
@@ -55,6 +58,7 @@ class PoseAnalysis:
         Whether the platform stays there on cables of the optimum; None where there is none.
     """
 
+    material: Material
     sizing: Sizing
     massless: MasslessStatics
     loop: LoopSizing
@@ -244,6 +248,7 @@ def analyse_pose(study: Study) -> PoseAnalysis | None:
         cable = material.cable(float(sizing.diameter_m))
         rest = resting_places(robot, study.pose, cable, sizing.statics.length_m)
     return PoseAnalysis(
+        material=material,
         sizing=sizing,
         massless=solve_massless(robot, study.pose),
         loop=size_by_loop(robot, study.pose, material),
@@ -347,9 +352,7 @@ def _second_answers(
     """Verify the configured pose, the worst pose, and that of the chosen rope."""
     found: list[SecondAnswer] = []
     if pose is not None:
-        section_m = section_of_pose(built, pose.sizing.statics.poses, study.material)
-        material = built.material(study.material, section_m)
-        found += verify("configured pose", material, pose.sizing)
+        found += verify("configured pose", pose.material, pose.sizing)
     if workspace is not None and workspace.sagging is not None:
         material = built.material(study.material)
         sizing = size_poses(built.robot, workspace.sagging.pose, material)

@@ -1,4 +1,7 @@
-"""The governing poses solved a second time, by methods that share no code with the kernel."""
+"""The governing poses solved a second time, by methods other than those of the kernel.
+
+They have in common where cables begin and end, and the straight cables that they start from.
+"""
 
 from __future__ import annotations
 
@@ -35,6 +38,8 @@ class SecondAnswer:
         Difference up to which the two agree.
     remark : str
         Why there is nothing to compare; empty where there is.
+    may_be_more : bool
+        Whether theirs may be larger: a thicker cable that also holds refutes no thinner one.
     """
 
     method: str
@@ -44,6 +49,7 @@ class SecondAnswer:
     theirs: float
     tolerance: float
     remark: str = ""
+    may_be_more: bool = False
 
     @property
     def difference(self) -> float:
@@ -53,7 +59,8 @@ class SecondAnswer:
     @property
     def agrees(self) -> bool:
         """Whether the two agree, or there is nothing to compare."""
-        return bool(self.remark) or abs(self.difference) <= self.tolerance
+        off = -self.difference if self.may_be_more else abs(self.difference)
+        return bool(self.remark) or off <= self.tolerance
 
 
 def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:
@@ -95,7 +102,8 @@ def _diameter(name: str, material: Material, sizing: Sizing) -> SecondAnswer:
         remark = str(error)
     remark = "" if np.isfinite(theirs) else remark
     what = f"needed diameter, {name}"
-    return SecondAnswer(method, what, "m", ours, theirs, _SAME_DIAMETER * ours, remark)
+    has_others = not bool(sizing.is_thinnest)
+    return SecondAnswer(method, what, "m", ours, theirs, _SAME_DIAMETER * ours, remark, has_others)
 
 
 def verify_cables(name: str, statics: Statics) -> SecondAnswer:

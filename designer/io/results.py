@@ -17,7 +17,7 @@ from designer.io.output import write_whole
 def write_results(analysis: Analysis, folder: Path) -> None:
     """Write ``result.json``, ``candidates.csv`` and ``workspace.nc`` into an existing folder.
 
-    The last two only where the study asks for them; each whole or not at all.
+    The last two only where the study asks for them.
     """
     write_whole(folder / "result.json", f"{analysis.to_json()}\n".encode())
     if analysis.selection is not None:

@@ -18,15 +18,16 @@ def section(source: Source) -> Section | None:
         "Solved a second time",
         verification_statement(found),
         Table.of(
-            "Governing poses by methods that share no code with the solver.",
+            "Governing poses by other methods than the solver's.",
             ("What", "Other method", Column("Here", "mm"), Column("There", "mm"),
              Column("Difference", "mm")),
             *map(_row, found),
         ),
         "The optimisers start from straight cables and solve the equations of the cables for the "
-        "thinnest one; they know no pulleys. The quadrature integrates the equilibrium of the "
-        "cable's elements with the lengths and forces found here: a cable that ended elsewhere "
-        "than at its attachment would show a wrong answer.",
+        "thinnest one; they know no pulleys, and where several equilibria hold a pose they may end "
+        "at a thicker one, which refutes nothing. The quadrature integrates the equilibrium of "
+        "the cable's elements with the lengths and forces found here: a cable that ended "
+        "elsewhere than at its attachment would show a wrong answer.",
     )  # fmt: skip
 
 
@@ -35,7 +36,7 @@ def verification_statement(found: tuple[SecondAnswer, ...]) -> Statement:
     against = [one for one in found if not one.agrees]
     if not against:
         return Statement(
-            "Other methods find the same", "Differences are those of rounding.", "good"
+            "Other methods find nothing thinner, and cables end where they should", "", "good"
         )
     text = "; ".join(f"{one.quantity}, by {one.method}" for one in against)
     return Statement("Another method disagrees", f"{fmt.capital(text)}.", "bad")
