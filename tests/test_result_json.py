@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from designer.analysis.analyse import Analysis, analyse, analyse_pose
-from designer.analysis.result_json import json_text, result_dict, size_dict
+from designer.analysis.result_json import result_dict, size_dict
+from designer.documents.plain import json_text
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.io.results import write_results

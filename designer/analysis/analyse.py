@@ -181,7 +181,7 @@ class Analysis:
 
     def to_json(self) -> str:
         """Return what ``result.json`` holds, as text."""
-        from designer.analysis.result_json import json_text
+        from designer.documents.plain import json_text
 
         return json_text(self.to_dict())
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis, PoseAnalysis
-from designer.analysis.selection_json import finite, groups_dict, selection_dict
+from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
 from designer.model.space import turn_of
@@ -79,11 +78,6 @@ def size_dict(study: Study, pose: PoseAnalysis) -> Json:
     """Return what ``designer size --json`` prints: the pose alone, under the same names."""
     pose_alone = {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
     return {"format": RESULT_FORMAT, **pose_alone}
-
-
-def json_text(values: Mapping[str, Any]) -> str:
-    """Return results as JSON text."""
-    return json.dumps(finite(values), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def _origin(study: Study) -> Json:

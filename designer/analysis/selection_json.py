@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
+from designer.documents.plain import finite
 from designer.model.space import turn_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.result import Candidate, GradeOutcome, SelectionResult
@@ -66,20 +64,6 @@ _CHOICE = {
     "offered": "offered",
     "trials": "trials",
 }
-
-
-def finite(values: Any) -> Any:
-    """Return the same as plain values, with None for each number that is not finite.
-
-    JSON cannot hold those. Mappings, sequences, arrays and numbers.
-    """
-    if isinstance(values, dict):
-        return {key: finite(value) for key, value in values.items()}
-    if isinstance(values, np.ndarray | np.generic):
-        values = values.tolist()
-    if isinstance(values, list | tuple):
-        return [finite(value) for value in values]
-    return None if isinstance(values, float) and not math.isfinite(values) else values
 
 
 def _plain(thing: object, table: Mapping[str, str]) -> Json:

@@ -153,9 +153,10 @@ def size(
 
     Example:  designer size fast.yaml
     """
-    from designer.analysis.result_json import json_text, size_dict
+    from designer.analysis.result_json import size_dict
     from designer.cli.tables import print_pose
     from designer.cli.terminal import announce_compiling
+    from designer.documents.plain import json_text
     from designer.plugins.find import find_plugins
     from designer.study import require_enough_cables
 
@@ -242,7 +243,7 @@ def diagnose(
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
         write_diagnosis(diagnosis, building)
-        (building / "diagnosis.json").write_text(diagnosis.to_json(), encoding="utf-8")
+        (building / "diagnosis.json").write_text(f"{diagnosis.to_json()}\n", encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
         written = file_names(building)
@@ -263,7 +264,7 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     announce_compiling()
     with output_folder(folder) as building, Spinner("checking") as spinner:
         found = check(study, study.measurements, measured, spinner)
-        (building / "diagnosis.json").write_text(found.to_json(), encoding="utf-8")
+        (building / "diagnosis.json").write_text(f"{found.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     print_check(found, folder, written)
     if not found.is_positive:

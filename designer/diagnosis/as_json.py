@@ -106,11 +106,6 @@ def check_dict(check: Check) -> Json:
     return _plain(answer)
 
 
-def json_text(answer: Json) -> str:
-    """Return the text of ``diagnosis.json``."""
-    return json.dumps(answer, indent=1, allow_nan=False) + "\n"
-
-
 def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
     """Return the table ``effects`` of a config: by id; those of single cables become lists."""
     answer: Json = {}

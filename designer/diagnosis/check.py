@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.as_json import check_dict, json_text
+from designer.diagnosis.as_json import check_dict
 from designer.diagnosis.blocks import block_of
 from designer.diagnosis.case import case_of
 from designer.diagnosis.errors_of import Interval, Outlier, bootstrap, outliers_of
@@ -19,6 +19,7 @@ from designer.diagnosis.hold import structure_left
 from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.structure import Structure
+from designer.documents.plain import json_text
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements

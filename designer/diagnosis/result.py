@@ -9,13 +9,14 @@ from enum import Enum
 from typing import Any
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.as_json import diagnosis_dict, json_text
+from designer.diagnosis.as_json import diagnosis_dict
 from designer.diagnosis.errors_of import Outlier, Stage
 from designer.diagnosis.foretell import Foretold
 from designer.diagnosis.propose import Proposal
 from designer.diagnosis.search import Step
 from designer.diagnosis.structure import Structure
 from designer.diagnosis.trends import Correction, Whereabouts
+from designer.documents.plain import json_text
 from designer.effects.effect import Effect, Readings, Setting
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured, Noise

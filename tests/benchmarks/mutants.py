@@ -26,7 +26,8 @@ from pathlib import Path
 from types import FrameType
 
 from designer.analysis.analyse import analyse, analyse_pose
-from designer.analysis.result_json import json_text, result_dict, size_dict
+from designer.analysis.result_json import result_dict, size_dict
+from designer.documents.plain import json_text
 from designer.errors import DesignerError
 from designer.grades.files import read_grade
 from designer.grades.registry import Catalogue, load_catalogue

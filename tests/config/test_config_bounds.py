@@ -13,9 +13,9 @@ from typing import Any, get_args
 import pytest
 from benchmarks.mutants import NUMBERS, no_longer_than, spoilt
 
-from designer.analysis.selection_json import finite
 from designer.documents.bounds import BOUNDS
 from designer.documents.fields import QuantityField, ReadAs
+from designer.documents.plain import finite
 from designer.documents.section import AnySection, FileValue, Section, fields_of
 from designer.errors import Fault, InputError
 from designer.grades.files import read_grade
