@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import subprocess
 import sys
@@ -58,17 +59,23 @@ def _has_drawn(window: str) -> bool:
     try:
         return process.wait(_LONGEST_S) == 0
     except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+        _end(process)
         return False
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.kill()
+    process.wait()
 
 
 @cache
 def _probe(window: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
+    process = subprocess.Popen(
         [sys.executable, "-P", "-c", _DRAW],
         env={**os.environ, _CHOICE: window} if window else None,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
+    atexit.register(_end, process)  # where nobody asks what it found
+    return process
