@@ -182,6 +182,66 @@ def size(
 
 
 @app.command()
+def lengths(
+    config: Config,
+    poses: Annotated[
+        Path,
+        typer.Option(
+            "--poses",
+            parser=path_of,
+            metavar="CSV",
+            help="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            parser=path_of,
+            metavar="FILE",
+            help="File to write, CONFIG-lengths.csv if left out.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
+
+    Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
+
+    Example:  designer lengths crane.yaml --poses path.csv -o winches.csv
+
+    Exit status 0: every pose is held. 1: some are not, or no rope was found. 2: the input is wrong.
+    """
+    from designer.cli.lengths_table import print_lengths
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
+    from designer.io.output import write_file
+    from designer.io.poses import read_poses
+    from designer.plugins.find import find_plugins
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = _study(config, plugins)
+    table = read_poses(poses, study.robot)
+    catalogue = _catalogue(study, plugins)
+    announce_compiling()
+
+    from designer.analysis.analyse import analyse
+    from designer.analysis.lengths import lengths_of
+
+    with ProgressBars() as bars:
+        found = lengths_of(analyse(study, catalogue, reporter=bars), table.poses)
+    if found is None:
+        show("No rope serves this study, so there are no lengths: see designer report.")
+        raise typer.Exit(NEGATIVE_ANSWER)
+    path = output or Path(f"{config.stem}-lengths.csv")
+    write_file(path, found.to_csv(table.names, table.values))
+    print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
+    print_lengths(found, path)
+    if not found.holds.all():
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
 def diagnose(
     config: Config,
     output: Annotated[Path | None, output_option("diagnosis")] = None,

@@ -29,7 +29,7 @@ _MOST_TURNS = 12
 _WIDEST = 1e9
 _MEASURED = (("length", 1e3, "mm"), ("tension", 1.0, "N"))
 """What is measured: its name, and the unit that its errors are shown in."""
-_bad = "[bold red]{}[/]".format
+bad = "[bold red]{}[/]".format
 
 Row = tuple[str, ...]
 
@@ -57,13 +57,13 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
         sizing = analysis.pose.sizing
         yield "pose", _extreme(float(sizing.diameter_m), float(sizing.statics.largest_tension_N))
         if analysis.study.pose_outside:
-            yield "", _bad(analysis.study.pose_outside)
+            yield "", bad(analysis.study.pose_outside)
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
     for label, text in analysis.hanging.notes():
-        yield label, _bad(text)
+        yield label, bad(text)
     if analysis.selection is not None:
         label = "cable" if analysis.groups is None else "one for all"
         yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
@@ -75,7 +75,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
 def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
     census = workspace.census
     if not workspace.is_feasible:
-        yield "worst pose", _bad(f"none: {_why_none(census)}")
+        yield "worst pose", bad(f"none: {_why_none(census)}")
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
             yield label, _placed(extreme)
@@ -103,8 +103,8 @@ def _placed(extreme: Extreme) -> str:
 def _extreme(diameter_m: float, tension_N: float) -> str:
     if not np.isfinite(diameter_m):
         return "no cable"
-    force = f"{tension_N:.4g} N" if tension_N < 1e3 else f"{_figure(tension_N / 1e3, 2)} kN"
-    return f"{_figure(1e3 * diameter_m, 3)} mm, {force}"
+    force = f"{tension_N:.4g} N" if tension_N < 1e3 else f"{figure(tension_N / 1e3, 2)} kN"
+    return f"{figure(1e3 * diameter_m, 3)} mm, {force}"
 
 
 def _summary_of_selection(
@@ -112,7 +112,7 @@ def _summary_of_selection(
 ) -> Iterator[Row]:
     chosen = selection.chosen
     if chosen is None:
-        yield label, f"{_bad('none')}: {escape(selection.reason or '')}"
+        yield label, f"{bad('none')}: {escape(selection.reason or '')}"
         return
     assert asked is not None
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
@@ -132,12 +132,12 @@ def _clearance(found: Interference) -> str:
     nearest = f"{1e3 * worst.distance_m:.4g} mm between {escape(' and '.join(worst.names))}"
     if not found.is_violated:
         return f"kept, {nearest}"
-    return f"{_bad('not kept')}: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
+    return f"{bad('not kept')}: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
 
 
 def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
     if choice.chosen is None:
-        yield "groups", f"{_bad('none')}: {escape(choice.proof_sentence)}"
+        yield "groups", f"{bad('none')}: {escape(choice.proof_sentence)}"
         return
     found = zip(choice.groups, choice.chosen.products, strict=True)
     n_products = len({*choice.chosen.products})
@@ -178,7 +178,7 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
 
 def _sizing_rows(pose: PoseAnalysis) -> Iterator[Row]:
     def figures(diameter_m: float, tension_N: float) -> Row:
-        return _figure(1e3 * diameter_m, 5), _figure(tension_N, 2)
+        return figure(1e3 * diameter_m, 5), figure(tension_N, 2)
 
     sizing = pose.sizing
     yield "massless", *figures(float(sizing.massless_diameter_m), float(sizing.massless_tension_N))
@@ -203,14 +203,14 @@ def _print_cables(pose: PoseAnalysis) -> None:
         statics.exit_tension_N, statics.platform_tension_N,
     )  # fmt: skip
     for index, (length, *forces) in enumerate(zip(*columns, strict=True), 1):
-        table.add_row(str(index), _figure(length, 8), *(_figure(force, 3) for force in forces))
+        table.add_row(str(index), figure(length, 8), *(figure(force, 3) for force in forces))
     show(table)
     closure = float(pose.sizing.closure_residual_m)
     balance = float(pose.sizing.equilibrium_residual_N)
     show(f"residuals: closure {closure:.1e} m, equilibrium {balance:.1e} N")
 
 
-def _figure(value: float, decimals: int) -> str:
+def figure(value: float, decimals: int) -> str:
     """Return a figure as wide as a column can take; "none" where there is none."""
     if not np.isfinite(value):
         return "none"
@@ -238,19 +238,19 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     if not diagnosis.findings:
         yield "effects", "none found"
     for what in diagnosis.not_tried:
-        yield _bad("no time for"), escape(what)
+        yield bad("no time for"), escape(what)
     for event in diagnosis.structure_after.events:
-        yield _bad("unexplained"), escape(f"goes with {event.text}")
+        yield bad("unexplained"), escape(f"goes with {event.text}")
     for carrier in diagnosis.structure_after.present[:1]:
         share = f"{carrier.fraction_of_variance:.0%} of its variance"
-        yield _bad("unexplained"), escape(f"goes with {carrier.name}, {share}")
+        yield bad("unexplained"), escape(f"goes with {carrier.name}, {share}")
         if place := diagnosis.left_in:
             yield "  most in", escape(f"{place.reading}, rows {', '.join(in_runs(place.rows))}")
     if diagnosis.is_scattered:
         times = max(diagnosis.scatter.values())
-        yield _bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
+        yield bad("scatter"), f"{times:.2g} times the noise: more than the sensors explain"
     for doubt in diagnosis.doubts:
-        yield _bad("not plausible"), escape(doubt)
+        yield bad("not plausible"), escape(doubt)
     for gone in diagnosis.withdrawn:
         yield "withdrawn", escape(f"{gone.effect}: {gone.reason.value}")
 
@@ -273,7 +273,7 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
     uses = (("  the one before", diagnosis.kept), ("on the machine", diagnosis.mounted_after))
     for label, use in uses:
         if use is not None:
-            too_much = "" if use.utilisation <= 1.0 else f": {_bad('too much')}"
+            too_much = "" if use.utilisation <= 1.0 else f": {bad('too much')}"
             yield label, f"{use.utilisation:.1%} used{too_much}"
 
 

@@ -171,6 +171,18 @@ def write_whole(path: Path, content: bytes) -> None:
         unfinished.unlink(missing_ok=True)
 
 
+def write_file(path: Path, text: str) -> None:
+    """Write a file, whole or not at all, over what it was.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    with _explained(path):
+        write_whole(path, text.encode())
+
+
 def write_new_file(path: Path, text: str) -> None:
     """Write a file that must not exist yet.
 

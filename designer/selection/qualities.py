@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Cables, Material
 from designer.selection.groups.result import GroupChoice
 from designer.selection.result import SelectionResult
@@ -25,10 +29,25 @@ class DesignCable:
         As they are on the machine.
     name : str
         What they are, for the reader of a report.
+    products : tuple of (Grade, Size)
+        One for all cables, or each cable's; empty where they are of the configured family.
     """
 
     cable: Cable | Cables
     name: str
+    products: tuple[tuple[Grade, Size], ...] = ()
+
+    @property
+    def turn_m(self) -> FloatArray:
+        """Rope on one turn of the drum that its grade suggests (1 or n_cables,) [m].
+
+        About the centre of the rope, in one layer; NaN where no drum is suggested.
+        """
+        drums = [
+            (grade.sheave_ratio.suggested + 1.0) * size.diameter_m if grade.sheave_ratio else np.nan
+            for grade, size in self.products
+        ]
+        return np.pi * np.array(drums or [np.nan])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,10 +90,15 @@ def design_cable(
         }
         products = [of_cable[cable] for cable in sorted(of_cable)]
         names = dict.fromkeys(f"{one.grade.id} {one.size.id}" for one in products)
-        return DesignCable(Cables(tuple(one.cable for one in products)), ", ".join(names))
+        return DesignCable(
+            Cables(tuple(one.cable for one in products)),
+            ", ".join(names),
+            tuple((one.grade, one.size) for one in products),
+        )
     if selection is not None and selection.chosen is not None:
         chosen = selection.chosen
-        return DesignCable(chosen.cable, f"{chosen.grade.id} {chosen.size.id}")
+        name = f"{chosen.grade.id} {chosen.size.id}"
+        return DesignCable(chosen.cable, name, ((chosen.grade, chosen.size),))
     if found.sagging is None:
         return None
     diameter_m = found.sagging.diameter_m

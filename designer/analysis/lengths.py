@@ -1,0 +1,97 @@
+"""Unstrained lengths and tensions at given poses, with the cables of the design."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.analysis.analyse import Analysis
+from designer.arrays import BoolArray, FloatArray
+from designer.measured.names import length_names, tension_names
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
+from designer.selection.qualities import DesignCable
+from designer.statics.inverse import Statics, solve_sagging
+
+_FULL = 1.0 + 1e-9
+"""Utilisation where a cable was made for a pose, with what rounding adds."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lengths:
+    """What the winches have to pay out.
+
+    Parameters
+    ----------
+    cable : DesignCable
+        With which cables.
+    statics : Statics
+        The poses (n_poses), solved.
+    outside : array (n_poses,) of bool
+        Which poses lie outside the study's region.
+    """
+
+    cable: DesignCable
+    statics: Statics
+    outside: BoolArray
+
+    @property
+    def utilisation(self) -> FloatArray:
+        """Largest over allowable tension of each cable (n_poses, n_cables); NaN if not solved."""
+        return np.asarray(self.statics.cable_tension_N / self.cable.cable.allowable_tension_N)
+
+    @property
+    def holds(self) -> BoolArray:
+        """Which poses (n_poses,) are solved, with no cable beyond its allowable tension."""
+        return np.asarray(self.statics.is_solved & ~(self.utilisation > _FULL).any(axis=-1))
+
+    @property
+    def stroke_m(self) -> FloatArray:
+        """Longest less shortest unstrained length of each cable (n_cables,) [m]."""
+        length = self.statics.length_m[self.statics.is_solved]
+        return np.ptp(length, axis=0) if len(length) else np.full(length.shape[1], np.nan)
+
+    def to_csv(self, names: Sequence[str], values: FloatArray) -> str:
+        """Return a table with the given columns (n_poses, n_names) first.
+
+        Then the unstrained lengths, the tensions at the exit points, and the verdict; empty cells
+        where a pose is not solved.
+        """
+        n_cables = self.statics.robot.n_cables
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow([*names, *length_names(n_cables), *tension_names(n_cables), "verdict"])
+        found = np.hstack([self.statics.length_m, self.statics.exit_tension_N])
+        for given, row, verdict in zip(values, found, self.statics.verdict, strict=True):
+            numbers = [*map(_exactly, given), *("" if np.isnan(x) else f"{x:.10g}" for x in row)]
+            writer.writerow([*numbers, Verdict(int(verdict)).label])
+        return text.getvalue()
+
+
+def _exactly(value: float) -> str:
+    return "" if np.isnan(value) else repr(float(value))
+
+
+def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
+    """Solve poses (n_poses,) with the cables of the design; None if there is no such cable.
+
+    The cables are the products for groups, else the chosen rope, else the thinnest of the
+    configured family that holds the workspace or, where there is none, the configured pose.
+    """
+    if analysis.qualities is not None:
+        cable = analysis.qualities.cable
+    elif analysis.workspace is None and analysis.pose is not None and analysis.has_cable:
+        diameter_m = float(analysis.pose.sizing.diameter_m)
+        name = f"{1e3 * diameter_m:.4g} mm of the configured family"
+        cable = DesignCable(analysis.pose.material.cable(diameter_m), name)
+    else:
+        return None
+    workspace, robot = analysis.study.workspace, analysis.built.robot
+    outside = np.zeros(poses.shape, dtype=bool)
+    if workspace is not None and not workspace.region.is_discrete:
+        outside = ~workspace.region.contains(poses.position_m)
+    return Lengths(cable, solve_sagging(robot, poses, cable.cable), outside)

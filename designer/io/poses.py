@@ -1,0 +1,127 @@
+"""Poses from a table: where a robot is to go."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.documents.bounds import BOUNDS
+from designer.errors import Fault, InputError
+from designer.measured.names import POSITION, ROTATION_VECTOR
+from designer.measured.table import RawColumn, Table, read_table
+from designer.model.robot import Poses, Robot
+
+_OFF_PLANE = 1e-6
+"""What counts as out of a planar robot's plane, over the extent of its exit points, or [rad]."""
+_OURS = (*POSITION, *ROTATION_VECTOR)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseTable:
+    """Poses of a file.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Its columns of numbers, in the order of the file.
+    values : array (n_poses, n_names)
+        What stands there; NaN for nothing in columns that are none of ours.
+    poses : Poses
+        The poses (n_poses).
+    left_out : tuple of str
+        Columns that hold texts.
+    """
+
+    names: tuple[str, ...]
+    values: FloatArray
+    poses: Poses
+    left_out: tuple[str, ...] = ()
+
+
+def read_poses(path: Path, robot: Robot) -> PoseTable:
+    """Return the poses in a CSV file for a robot.
+
+    Its columns are ``x_m, y_m, z_m``, and ``rx_rad, ry_rad, rz_rad`` (a rotation vector) for a
+    platform that turns; others are carried along.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, lacks a column or a value, has no row, or asks for what the robot
+        cannot do: a point mass that turns, a planar robot out of its plane.
+    """
+    try:
+        file = path.open("rb")
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or "its name is not valid").lower()
+        expected = "a CSV file with columns x_m, y_m, z_m"
+        raise InputError([Fault("--poses", None, "", f"{path}: {reason}", expected)]) from None
+    with file:
+        table = read_table(file, str(path))
+    columns = {column.name: column for column in table.columns}
+    faults = [*table.faults, *_column_faults(table, columns)]
+    if not faults:
+        faults = [*_cell_faults(table, [columns[name] for name in _OURS if name in columns])]
+    if faults:
+        raise InputError(faults)
+    turns = ROTATION_VECTOR if ROTATION_VECTOR[0] in columns else ()
+    place = np.stack([columns[name].values for name in (*POSITION, *turns)], axis=1)
+    faults = list(_robot_faults(table, robot, place))
+    if faults:
+        raise InputError(table.first_few(faults, len(faults), "of this kind"))
+    kept = [column for column in table.columns if column.name and not column.n_texts]
+    return PoseTable(
+        tuple(column.name for column in kept),
+        np.stack([column.values for column in kept], axis=1),
+        Poses.at(place),
+        tuple(column.name for column in table.columns if column.n_texts),
+    )
+
+
+def _column_faults(table: Table, columns: dict[str, RawColumn]) -> Iterator[Fault]:
+    for name in POSITION:
+        if name not in columns:
+            yield table.fault(None, name, "there is no such column", "x_m, y_m and z_m")
+    turns = [name for name in ROTATION_VECTOR if name in columns]
+    if 0 < len(turns) < 3:
+        missing = next(name for name in ROTATION_VECTOR if name not in columns)
+        expected = "rx_rad, ry_rad and rz_rad, or none of them"
+        yield table.fault(None, missing, "there is no such column", expected)
+    if not table.n_rows:
+        yield table.fault(None, "", "there is no pose", "a row for each pose")
+
+
+def _cell_faults(table: Table, columns: list[RawColumn]) -> list[Fault]:
+    most = BOUNDS["distance"].most
+    found = []
+    for column in columns:
+        texts = {cell.row: cell.text for cell in column.texts}
+        limit = most if column.name in POSITION else 2.0 * np.pi
+        unit = column.name.rpartition("_")[2]
+        for row in np.flatnonzero(~(np.abs(column.values) <= limit)).tolist():
+            value = repr(texts[row]) if row in texts else f"{column.values[row]:g}"
+            value = "nothing" if value == "nan" else value
+            expected = f"a number between -{limit:.6g} and {limit:.6g} {unit}"
+            found.append(table.fault(row, column.name, f"holds {value}", expected))
+    return table.first_few(found, len(found), "of this kind")
+
+
+def _robot_faults(table: Table, robot: Robot, place: FloatArray) -> Iterator[Fault]:
+    turn = place[:, 3:] if place.shape[1] == 6 else np.zeros((len(place), 3))
+    if robot.is_point_mass:
+        for row in np.flatnonzero(turn.any(axis=1)).tolist():
+            yield table.fault(row, "rx_rad", "turns a point mass", "zeros, or no such columns")
+    elif robot.is_planar:
+        exits = robot.exit_points_m
+        off_m = (place[:, :3] - exits[0]) @ robot.upright[1]
+        out = turn @ robot.upright[[0, 2]].T
+        size = float(np.linalg.norm(np.ptp(exits, axis=0)))
+        for row in np.flatnonzero(np.abs(off_m) > _OFF_PLANE * size).tolist():
+            problem = f"leaves the plane of the robot by {abs(off_m[row]):.3g} m"
+            yield table.fault(row, "x_m", problem, "a position in the plane of the exit points")
+        for row in np.flatnonzero(np.abs(out).max(axis=1) > _OFF_PLANE).tolist():
+            yield table.fault(row, "rx_rad", "turns the platform out of its plane", "a turn in it")

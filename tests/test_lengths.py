@@ -1,0 +1,139 @@
+"""`designer lengths`: from a table of poses to lengths and tensions with the chosen rope."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_cli import STUDY, WORKSPACE, designer
+
+import designer as door
+from designer.analysis.lengths import lengths_of
+from designer.errors import InputError
+from designer.io.poses import read_poses
+
+__all__ = ["designer"]
+
+POSES = "x_m,y_m,z_m,time_s\n250,200,-100,0\n240,100,-70,1.5\n250,150,-65,\n"
+
+
+def study(tmp_path: Path, text: str = STUDY + WORKSPACE) -> Path:
+    path = tmp_path / "crane.yaml"
+    path.write_text(text)
+    return path
+
+
+def poses(tmp_path: Path, text: str = POSES) -> Path:
+    path = tmp_path / "poses.csv"
+    path.write_text(text)
+    return path
+
+
+def test_the_chosen_rope_at_each_pose(tmp_path, designer) -> None:
+    found = designer("lengths", str(study(tmp_path)), "--poses", str(poses(tmp_path)))
+    assert found.status == 0, found.err
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "crane-lengths.csv").read_text())))
+    assert [row["time_s"] for row in rows] == ["0.0", "1.5", ""]
+    assert {row["verdict"] for row in rows} == {"solved"}
+    analysis = door.analyse(door.read_study(study(tmp_path)))
+    assert analysis.selection is not None
+    assert analysis.selection.chosen is not None
+    assert analysis.selection.chosen.size.id in found.out
+    # Forces and stretched arcs close: eq. (7) of the paper by plain quadrature.
+    rope, exits = analysis.selection.chosen.cable, analysis.study.robot.exit_points_m
+    lengths = lengths_of(analysis, read_poses(poses(tmp_path), analysis.study.robot).poses)
+    assert lengths is not None
+    for row, place, statics in zip(rows, ([250, 200, -100], [240, 100, -70], [250, 150, -65]),
+                                   range(3), strict=True):  # fmt: skip
+        for k in range(3):
+            length = float(row[f"length_{k + 1}_m"])
+            force_x, force_z = (
+                getattr(lengths.statics, name)[statics, k] for name in ("force_x_N", "force_z_N")
+            )
+            s = np.linspace(0.0, length, 200_001)
+            pull_z = force_z + rope.weight_N_per_m * (s - length)
+            tension = np.hypot(force_x, pull_z)
+            stretch = 1.0 + tension / rope.axial_stiffness_N
+            run = np.trapezoid(force_x / tension * stretch, s)
+            plan = np.asarray(place[:2]) - exits[k][:2]
+            assert run == pytest.approx(np.linalg.norm(plan), rel=1e-8)
+            assert float(row[f"tension_{k + 1}_N"]) == pytest.approx(tension[0], rel=1e-8)
+
+
+def test_at_the_worst_pose_it_is_the_reports_tension(tmp_path) -> None:
+    analysis = door.analyse(door.read_study(study(tmp_path)))
+    assert analysis.selection is not None
+    assert analysis.selection.chosen is not None
+    met = analysis.selection.chosen.verification
+    lengths = lengths_of(analysis, door.Poses.at(met.worst_position_m[None]))
+    assert lengths is not None
+    assert lengths.statics.cable_tension_N.max() == pytest.approx(met.max_tension_N, rel=1e-9)
+    assert lengths.utilisation.max() == pytest.approx(met.utilisation, rel=1e-9)
+    assert (lengths.statics.length_m[0] <= met.longest_m * (1 + 1e-9)).all()
+
+
+def test_a_pose_that_is_not_held_is_a_negative_answer(tmp_path, designer) -> None:
+    file = poses(tmp_path, "x_m,y_m,z_m\n250,200,-100\n250,-5,-100\n")
+    found = designer("lengths", str(study(tmp_path)), "--poses", str(file), "-o", "out.csv")
+    assert found.status == 1
+    assert "1 of 2 poses not held, see the verdict: row 2" in found.out
+    assert "1 of 2 poses outside the region that the study asks for: row 2" in found.out
+    assert (tmp_path / "out.csv").read_text().splitlines()[
+        2
+    ] == "250.0,-5.0,-100.0,,,,,,,outside_hull"
+
+
+def test_without_a_workspace_the_pose_sizes_the_cable(tmp_path, designer) -> None:
+    file = poses(tmp_path, "x_m,y_m,z_m\n250,200,-50\n250,200,-40\n")
+    found = designer("lengths", str(study(tmp_path, STUDY)), "--poses", str(file))
+    assert found.status == 1
+    assert "of the configured family" in found.out
+    assert "1 of 2 poses beyond the allowable tension" in found.out
+    assert ": row 2" in found.out
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("x_m,y_m\n1,2\n", ":1: z_m: there is no such column"),
+        ("x_m,y_m,z_m\n", ":1: there is no pose"),
+        ("x_m,y_m,z_m\n1,2,high\n", ":2: z_m: row 1 holds 'high'"),
+        ("x_m,y_m,z_m\n1,2,\n", ":2: z_m: row 1 holds nothing"),
+        ("x_m,y_m,z_m\n1,2,inf\n", ":2: z_m: row 1 holds inf"),
+        ("x_m,y_m,z_m\n1,2,1e9\n", ":2: z_m: row 1 holds 1e+09"),
+        ("x_m,y_m,z_m\n1,2,3,4\n", ":2: row 1 has 4 values"),
+        ("x_m,y_m,z_m,rx_rad\n1,2,3,0\n", ":1: ry_rad: there is no such column"),
+        ("x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n1,2,3,0,0,0.1\n", ":2: rx_rad: row 1 turns a point"),
+        ("x_m;y_m;z_m\n1;2;3\n", ":1: the columns are separated by semicolons"),
+    ],
+)
+def test_faulty_tables(tmp_path, designer, text, line) -> None:
+    file = poses(tmp_path, text)
+    found = designer("lengths", str(study(tmp_path)), "--poses", str(file))
+    assert found.status == 2
+    assert f"{file}{line}" in found.err
+    assert not (tmp_path / "crane-lengths.csv").exists()
+
+
+def test_a_table_that_is_not_there(tmp_path, designer) -> None:
+    found = designer("lengths", str(study(tmp_path)), "--poses", "nowhere.csv")
+    assert (found.status, found.out) == (2, "")
+    assert "nowhere.csv: no such file or directory" in found.err
+
+
+def test_a_planar_robot_stays_in_its_plane(tmp_path) -> None:
+    robot = door.read_study(door.example_file("facade")).robot
+    middle = robot.exit_points_m.mean(axis=0)
+    across = robot.upright[1]
+    good, off = middle, middle + 0.1 * across
+    axis = 0.1 * across
+    rows = [[*good, *axis], [*off, 0, 0, 0], [*good, *(0.1 * robot.upright[0])]]
+    text = "x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n" + "\n".join(",".join(map(str, r)) for r in rows)
+    with pytest.raises(InputError) as caught:
+        read_poses(poses(tmp_path, text), robot)
+    first, second = str(caught.value).splitlines()
+    assert ":3: x_m: row 2 leaves the plane of the robot by 0.1 m" in first
+    assert ":4: rx_rad: row 3 turns the platform out of its plane" in second
