@@ -169,7 +169,7 @@ def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
     from pint import PintError
 
     with suppress(PintError, ArithmeticError):  # such as a logarithmic unit in a product
-        wanted = _registry().parse_units(dimension.unit)
+        wanted = _unit(dimension.unit)
         if dimension.unit and _root(unit) == _root(wanted):
             return float(_registry().Quantity(value, unit).to(wanted).magnitude)
     raise _MisreadError(f"has the unit {unit:P}")

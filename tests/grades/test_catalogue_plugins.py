@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,11 @@ from designer.cli.commands import main
 from designer.grades import files
 from designer.grades.registry import CatalogueSource, load_catalogue
 from designer.plugins import find, guard, hookspecs
+
+
+@cache
+def n_shipped() -> int:
+    return len(load_catalogue(with_plugins=False).grades)
 
 
 def _folder_hook(folder: Path) -> str:
@@ -87,7 +93,6 @@ def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
     ],
 )
 def test_a_broken_plugin_is_one_line_with_its_name_and_the_rest_works(site, name, code, words):
-    n_shipped = len(load_catalogue(with_plugins=False).grades)
     install_plugin(site, name, code)
 
     catalogue = load_catalogue()
@@ -97,7 +102,7 @@ def test_a_broken_plugin_is_one_line_with_its_name_and_the_rest_works(site, name
     assert words in problem
     assert problem.endswith(": left out")
     assert "\n" not in problem
-    assert len(catalogue.grades) == n_shipped
+    assert len(catalogue.grades) == n_shipped()
 
 
 def test_an_entry_point_that_leads_nowhere_is_reported(site):
