@@ -35,6 +35,7 @@ def result_dict(analysis: Analysis) -> Json:
         "name": study.name,
         "positive": analysis.is_positive,
         "answer": _answer(analysis),
+        "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
         "pose": None if analysis.pose is None else _pose(study, analysis.pose),
         "workspace": (
             None

@@ -16,6 +16,8 @@ from typer.core import TyperGroup
 
 from designer import __version__
 from designer.cli.catalog import catalog
+from designer.cli.compare import compare
+from designer.cli.lengths import lengths
 from designer.cli.options import (
     NEGATIVE_ANSWER,
     WRONG_INPUT,
@@ -24,13 +26,12 @@ from designer.cli.options import (
     output_option,
     path_of,
 )
+from designer.cli.studies import catalogue_of, study_of
 from designer.errors import DesignerError, Fault, InputError
 from designer.io.process import readable_output, settle_in
 
 if TYPE_CHECKING:
-    from designer.grades.registry import Catalogue
     from designer.model.measured_data import Measured
-    from designer.plugins.find import Plugins
     from designer.study import Study
 
 
@@ -58,6 +59,8 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 app.add_typer(catalog, name="catalog")
+app.command()(lengths)
+app.command()(compare)
 
 
 def main() -> None:
@@ -115,7 +118,7 @@ def report(
     from designer.study import require_enough_cables
 
     plugins = find_plugins(with_plugins=not no_plugins)
-    study = _study(config, plugins)
+    study = study_of(config, plugins)
     require_enough_cables(study)
     if study.workspace is None and study.pose is None:
         raise InputError(
@@ -123,7 +126,7 @@ def report(
         )
     folder = output or Path(f"{config.stem}-report")
     begin_probe()
-    catalogue = _catalogue(study, plugins)
+    catalogue = catalogue_of(study, plugins)
     announce_compiling()
 
     from designer.analysis.analyse import analyse
@@ -161,10 +164,10 @@ def size(
     from designer.study import require_enough_cables
 
     plugins = find_plugins(with_plugins=not no_plugins)
-    study = _study(config, plugins)
+    study = study_of(config, plugins)
     require_enough_cables(study)
     if study.selection is not None and study.selection.grades is not None:
-        _catalogue(study, plugins)  # misspelt grades are told here as by `report`
+        catalogue_of(study, plugins)  # misspelt grades are told here as by `report`
     announce_compiling()
     from designer.analysis.analyse import analyse_pose
 
@@ -178,66 +181,6 @@ def size(
     else:
         print_pose(study, pose)
     if not pose.sizing.statics.is_solved:
-        raise typer.Exit(NEGATIVE_ANSWER)
-
-
-@app.command()
-def lengths(
-    config: Config,
-    poses: Annotated[
-        Path,
-        typer.Option(
-            "--poses",
-            parser=path_of,
-            metavar="CSV",
-            help="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
-        ),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            parser=path_of,
-            metavar="FILE",
-            help="File to write, CONFIG-lengths.csv if left out.",
-        ),
-    ] = None,
-    no_plugins: NoPlugins = False,
-) -> None:
-    """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
-
-    Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
-
-    Example:  designer lengths crane.yaml --poses path.csv -o winches.csv
-
-    Exit status 0: every pose is held. 1: some are not, or no rope was found. 2: the input is wrong.
-    """
-    from designer.cli.lengths_table import print_lengths
-    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
-    from designer.io.output import write_file
-    from designer.io.poses import read_poses
-    from designer.plugins.find import find_plugins
-
-    plugins = find_plugins(with_plugins=not no_plugins)
-    study = _study(config, plugins)
-    table = read_poses(poses, study.robot)
-    catalogue = _catalogue(study, plugins)
-    announce_compiling()
-
-    from designer.analysis.analyse import analyse
-    from designer.analysis.lengths import lengths_of
-
-    with ProgressBars() as bars:
-        found = lengths_of(analyse(study, catalogue, reporter=bars), table.poses)
-    if found is None:
-        show("No rope serves this study, so there are no lengths: see designer report.")
-        raise typer.Exit(NEGATIVE_ANSWER)
-    path = output or Path(f"{config.stem}-lengths.csv")
-    write_file(path, found.to_csv(table.names, table.values))
-    print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
-    print_lengths(found, path)
-    if not found.holds.all():
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
@@ -275,7 +218,7 @@ def diagnose(
     from designer.plugins.find import find_plugins
 
     plugins = find_plugins(with_plugins=not no_plugins)
-    study = _study(config, plugins)
+    study = study_of(config, plugins)
     measurements = study.measurements
     if measurements is None:
         raise InputError([study.source.fault("measurements", "is missing", "a table to compare")])
@@ -288,7 +231,7 @@ def diagnose(
     if checks:
         _check(study, measured, output or Path(f"{config.stem}-check"))
         return
-    catalogue = _catalogue(study, plugins)
+    catalogue = catalogue_of(study, plugins)
     announce_compiling()
     folder = output or Path(f"{config.stem}-diagnosis")
 
@@ -364,24 +307,3 @@ def init(
     target = path or Path(f"{example}.yaml")
     write_new_file(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")
-
-
-def _study(config: Path, plugins: Plugins) -> Study:
-    from designer.cli.terminal import print_left_out
-    from designer.effects.load import load_effects
-    from designer.io.config import read_study
-
-    effects = load_effects(plugins)
-    print_left_out(effects.problems)
-    return read_study(config, effects, plugins)
-
-
-def _catalogue(study: Study, plugins: Plugins) -> Catalogue:
-    from designer.cli.terminal import print_left_out
-    from designer.grades.registry import load_catalogue
-
-    catalogue = load_catalogue(study.catalogues, plugins=plugins)
-    told = study.known_effects.problems
-    print_left_out(problem for problem in catalogue.problems if problem not in told)
-    catalogue.require_grades_of(study)
-    return catalogue

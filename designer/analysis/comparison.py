@@ -1,0 +1,205 @@
+"""Two results side by side: what differs in what was asked, and in the answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from designer.analysis.result_json import Json
+
+_TOLD = 1e-9
+"""Relative difference below which numbers are the same: what a search at a flat optimum leaves."""
+_ANSWERS = {
+    "positive": "answer",
+    "selection.chosen.grade": "chosen grade",
+    "selection.chosen.size_id": "chosen size",
+    "selection.chosen.utilisation": "utilisation",
+    "selection.chosen.max_tension_N": "largest tension of the chosen rope",
+    "selection.chosen.allowable_tension_N": "allowable tension",
+    "selection.chosen.linear_mass_kg_per_m": "mass per length",
+    "selection.chosen.axial_stiffness_N": "axial stiffness",
+    "selection.chosen.drum_diameter_m": "drum diameter",
+    "selection.chosen.cost": "cost",
+    "selection.chosen.worst_pose": "worst position of the chosen rope",
+    "answer.total_mass_kg": "mass of all cables",
+    "pose.sagging.status": "configured pose",
+    "pose.sagging.diameter_m": "needed diameter, configured pose",
+    "pose.sagging.max_tension_N": "largest tension, configured pose",
+    "workspace.sagging.diameter_m": "needed diameter, worst pose",
+    "workspace.sagging.max_tension_N": "largest tension, worst pose",
+    "workspace.sagging.pose": "worst position",
+    "workspace.massless.diameter_m": "needed diameter without sag",
+    "workspace.limit_ratio": "limit ratio",
+    "workspace.statuses.solved": "samples solved",
+    "workspace.samples": "samples",
+    "workspace.stiffness.largest_displacement_m_per_N": "largest displacement by a force",
+    "workspace.interference.min_distance_m": "smallest clearance",
+}
+"""Values of ``result.json`` that a reader compares first, and what they are called."""
+_APART = ("inputs", "provenance", "verification", "name", "format", "pose.loop")
+"""What is compared by itself, or tells only how and when."""
+_LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried")
+"""Of ``selection``: told by the products."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One value of both.
+
+    Parameters
+    ----------
+    path : str
+        Where it stands in ``result.json``, or the field of the config.
+    label : str
+        What it is called; empty where it has no other name than its path.
+    a, b
+        Its values; None where there is none.
+    """
+
+    path: str
+    label: str
+    a: Any
+    b: Any
+
+    @property
+    def relative(self) -> float | None:
+        """Change from A to B over A; None for what is no number, or from zero."""
+        a, b = (_with_unit(one) for one in (self.a, self.b))
+        if a is None or b is None or a[1] != b[1] or not a[0]:
+            return None
+        return (b[0] - a[0]) / abs(a[0])
+
+    @property
+    def differs(self) -> bool:
+        """Whether the two are not the same, beyond rounding."""
+        return not _same(self.a, self.b)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two results.
+
+    Parameters
+    ----------
+    a, b : Mapping
+        What each ``result.json`` holds.
+    inputs : tuple of Line
+        Fields that differ, in SI; of what only one of the two has, the other is None.
+    has_inputs : bool
+        Whether both results tell their inputs; older ones do not.
+    answers : tuple of Line
+        What a reader compares first, whether it differs or not.
+    products : tuple of Line
+        Sizes of grades that hold in one of the two only, or were tried in one only.
+    others : tuple of Line
+        All other values that differ.
+    """
+
+    a: Mapping[str, Any]
+    b: Mapping[str, Any]
+    inputs: tuple[Line, ...]
+    has_inputs: bool
+    answers: tuple[Line, ...]
+    products: tuple[Line, ...]
+    others: tuple[Line, ...]
+
+    @property
+    def is_same(self) -> bool:
+        """Whether nothing differs but when and where they were computed."""
+        lines = (*self.inputs, *self.answers, *self.products, *self.others)
+        return not any(line.differs for line in lines)
+
+    def to_dict(self) -> Json:
+        """Return what ``comparison.json`` holds."""
+
+        def plain(lines: tuple[Line, ...]) -> list[Json]:
+            return [{**asdict(line), "relative": line.relative} for line in lines]
+
+        return {
+            "format": 1,
+            "names": [self.a.get("name"), self.b.get("name")],
+            "same": self.is_same,
+            "inputs": plain(self.inputs) if self.has_inputs else None,
+            "answers": plain(self.answers),
+            "products": plain(self.products),
+            "others": plain(self.others),
+            "provenance": [self.a["provenance"], self.b["provenance"]],
+        }
+
+
+def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
+    """Compare what two ``result.json`` hold."""
+    has_inputs = all(isinstance(one.get("inputs"), Mapping) for one in (a, b))
+    inputs = _lines(a["inputs"], b["inputs"]) if has_inputs else iter(())
+    of_a, of_b = dict(_flat(a)), dict(_flat(b))
+    answers = tuple(
+        Line(path, label, of_a.get(path), of_b.get(path))
+        for path, label in _ANSWERS.items()
+        if of_a.get(path) is not None or of_b.get(path) is not None
+    )
+    others = (line for line in _lines(of_a, of_b) if line.path not in _ANSWERS)
+    return Comparison(
+        a,
+        b,
+        tuple(line for line in inputs if line.differs),
+        has_inputs,
+        answers,
+        tuple(line for line in _lines(_products(a), _products(b)) if line.differs),
+        tuple(line for line in others if line.differs),
+    )
+
+
+def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
+    for path in dict.fromkeys([*a, *b]):
+        yield Line(path, "", a.get(path), b.get(path))
+
+
+def _flat(value: Mapping[str, Any], lead: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield path and value of everything below; lists of plain values are one value."""
+    for key, one in value.items():
+        path = f"{lead}{key}"
+        if path in _APART or "residual" in key or (lead == "selection." and key in _LISTS):
+            continue
+        if isinstance(one, Mapping):
+            yield from _flat(one, f"{path}.")
+        elif isinstance(one, list) and any(isinstance(each, Mapping) for each in one):
+            yield from _flat({str(k): each for k, each in enumerate(one)}, f"{path}.")
+        else:
+            yield path, one
+
+
+def _products(result: Mapping[str, Any]) -> dict[str, str]:
+    """Return whether each size of each grade holds."""
+    selection = result.get("selection")
+    candidates = selection.get("candidates", []) if isinstance(selection, Mapping) else []
+    return {
+        f"{one['grade']}, {one['size_id']}": (
+            "does not hold" if one["standing"] in ("too_thin", "not_held") else "holds"
+        )
+        for one in candidates
+    }
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_same, a, b))
+    if _is_number(a) and _is_number(b):
+        return math.isclose(a, b, rel_tol=_TOLD)
+    return bool(a == b)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _with_unit(value: Any) -> tuple[float, str] | None:
+    """Return number and unit of a number, or of a text such as ``4000 kg``; None for others."""
+    if _is_number(value):
+        return value, ""
+    number, _, unit = str(value).partition(" ")
+    try:
+        return float(number), unit
+    except ValueError:
+        return None

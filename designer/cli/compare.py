@@ -1,0 +1,87 @@
+"""`designer compare`: two designs side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli.options import NoPlugins, path_of
+from designer.cli.studies import catalogue_of, study_of
+
+if TYPE_CHECKING:
+    from designer.analysis.comparison import Comparison
+
+
+def compare(
+    a: Annotated[Path, typer.Argument(parser=path_of, metavar="A", help="A study or result.json.")],
+    b: Annotated[Path, typer.Argument(parser=path_of, metavar="B", help="Another one.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            parser=path_of,
+            metavar="DIR",
+            help="Folder to write, A-B-comparison if left out.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Put two designs side by side: what differs in what was asked, and in the answer.
+
+    Studies are solved first; results of `designer report` are taken as they are. Writes
+    comparison.html, comparison.pdf and comparison.json.
+
+    Example:  designer compare crane.yaml crane-report/result.json
+    """
+    from designer.cli.terminal import ProgressBars, announce_compiling
+    from designer.io.output import file_names, output_folder
+    from designer.io.results import read_result
+    from designer.plugins.find import find_plugins
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    given = [path if path.suffix == ".json" else study_of(path, plugins) for path in (a, b)]
+    found = [read_result(one) if isinstance(one, Path) else one for one in given]
+    catalogues = [None if isinstance(one, dict) else catalogue_of(one, plugins) for one in found]
+    announce_compiling()
+
+    from designer.analysis.analyse import analyse
+    from designer.analysis.comparison import compare as compare_results
+    from designer.documents.plain import json_text
+    from designer.report.comparison import write_comparison
+
+    folder = output or Path(f"{a.stem}-{b.stem}-comparison")
+    with output_folder(folder) as building, ProgressBars() as bars:
+        results = [
+            one if isinstance(one, dict) else analyse(one, catalogue, reporter=bars).to_dict()
+            for one, catalogue in zip(found, catalogues, strict=True)
+        ]
+        comparison = compare_results(*results)
+        write_comparison(comparison, (a.name, b.name), building)
+        text = f"{json_text(comparison.to_dict())}\n"
+        (building / "comparison.json").write_text(text, encoding="utf-8")
+        written = file_names(building)
+    _print_comparison(comparison, (a.name, b.name), folder, written)
+
+
+def _print_comparison(
+    found: Comparison, names: tuple[str, str], folder: Path, written: Sequence[str]
+) -> None:
+    from rich.markup import escape
+
+    from designer.cli.terminal import bare_table, show
+    from designer.report.comparison import change, shown
+
+    if found.is_same:
+        show("Nothing differs.")
+    table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
+    for line in (*found.inputs, *found.answers):
+        if line.differs:
+            values = (shown(line.path, one) for one in (line.a, line.b))
+            table.add_row(*map(escape, (line.label or line.path, *values, change(line))))
+    if table.row_count:
+        show(table)
+    show(f"{folder}: {', '.join(written)}", markup=False)

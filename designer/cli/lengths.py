@@ -1,0 +1,123 @@
+"""`designer lengths`: what each winch has to pay out at given poses, and which are not held."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli.options import NEGATIVE_ANSWER, Config, NoPlugins, path_of
+from designer.cli.studies import catalogue_of, study_of
+
+if TYPE_CHECKING:
+    from designer.analysis.lengths import Lengths
+    from designer.arrays import BoolArray
+
+_MOST_ROWS = 12
+"""Rows that are named one by one."""
+
+
+def lengths(
+    config: Config,
+    poses: Annotated[
+        Path,
+        typer.Option(
+            "--poses",
+            parser=path_of,
+            metavar="CSV",
+            help="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            parser=path_of,
+            metavar="FILE",
+            help="File to write, CONFIG-lengths.csv if left out.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
+
+    Writes the poses with the length of each cable, its tension at the exit point, and a verdict.
+
+    Example:  designer lengths crane.yaml --poses path.csv -o winches.csv
+
+    Exit status 0: every pose is held. 1: some are not, or no rope was found. 2: the input is wrong.
+    """
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
+    from designer.io.output import write_file
+    from designer.io.poses import read_poses
+    from designer.plugins.find import find_plugins
+
+    plugins = find_plugins(with_plugins=not no_plugins)
+    study = study_of(config, plugins)
+    table = read_poses(poses, study.robot)
+    catalogue = catalogue_of(study, plugins)
+    announce_compiling()
+
+    from designer.analysis.analyse import analyse
+    from designer.analysis.lengths import lengths_of
+
+    with ProgressBars() as bars:
+        found = lengths_of(analyse(study, catalogue, reporter=bars), table.poses)
+    if found is None:
+        show("No rope serves this study, so there are no lengths: see designer report.")
+        raise typer.Exit(NEGATIVE_ANSWER)
+    path = output or Path(f"{config.stem}-lengths.csv")
+    write_file(path, found.to_csv(table.names, table.values))
+    print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
+    _print_lengths(found, path)
+    if not found.holds.all():
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _print_lengths(lengths: Lengths, path: Path) -> None:
+    """Print a table of the cables, and the rows that are not held or lie outside the region."""
+    import numpy as np
+
+    from designer.cli.tables import bad, figure
+    from designer.cli.terminal import bare_table, show
+
+    statics = lengths.statics
+    is_solved = statics.is_solved
+    if is_solved.any():
+        length_m, stroke_m = statics.length_m[is_solved], lengths.stroke_m
+        turns = np.broadcast_to(stroke_m / lengths.cable.turn_m, stroke_m.shape)
+        used = 100.0 * lengths.utilisation[is_solved].max(axis=0)
+        columns = (length_m.min(axis=0), length_m.max(axis=0), stroke_m, turns, used)
+        table = bare_table(
+            "cable", "shortest [m]", "longest [m]", "stroke [m]", "drum turns", "used [%]",
+            title=f"{len(is_solved)} poses with {lengths.cable.name}",
+        )  # fmt: skip
+        for cable, row in enumerate(zip(*columns, strict=True), start=1):
+            texts = (figure(x, places) for x, places in zip(row, (4, 4, 4, 1, 1), strict=True))
+            table.add_row(str(cable), *texts)
+        show(table)
+        if np.isfinite(turns).any():
+            show("Drum turns: in one layer on the drum that the rope's grade suggests.")
+    for line in _remarks(lengths):
+        show(bad(line), soft_wrap=True)
+    show(f"{path} written", markup=False)
+
+
+def _remarks(lengths: Lengths) -> Iterator[str]:
+    is_solved = lengths.statics.is_solved
+    beyond = is_solved & ~lengths.holds
+    yield from _rows(~is_solved, "not held, see the verdict")
+    if beyond.any():
+        used = f"{lengths.utilisation[beyond].max():.1%}"
+        yield from _rows(beyond, f"beyond the allowable tension, up to {used} of it")
+    yield from _rows(lengths.outside, "outside the region that the study asks for")
+
+
+def _rows(which: BoolArray, what: str) -> Iterator[str]:
+    rows = [row for row, one in enumerate(which, start=1) if one]
+    if rows:
+        named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
+        yield f"{len(rows)} of {len(which)} poses {what}: row {named}"
