@@ -220,6 +220,18 @@ IN_PYTHON = Source(Path("study"), "", ())
 
 
 @dataclass(frozen=True, slots=True)
+class DocumentControl:
+    """What a drawing office writes on a document; empty where the study does not say."""
+
+    number: str = ""
+    revision: str = ""
+    author: str = ""
+    checker: str = ""
+    approver: str = ""
+    logo: Path | None = None  # A PNG, JPEG or SVG file
+
+
+@dataclass(frozen=True, slots=True)
 class DeclaredEffect:
     """An effect that the model of this machine has."""
 
@@ -255,6 +267,7 @@ class Study:
     known_effects: KnownEffects = SHIPPED
     surroundings: Surroundings = TEMPERATE
     family: GradeFamily | None = None
+    document: DocumentControl = DocumentControl()
 
     def __post_init__(self) -> None:
         if self.pose is not None and self.pose.shape:

@@ -63,7 +63,12 @@ def result_dict(analysis: Analysis) -> Json:
         "provenance": {
             **_origin(study),
             "catalogues": [
-                {"name": source.name, "source": source.source, "grades": source.n_grades}
+                {
+                    "name": source.name,
+                    "source": source.source,
+                    "grades": source.n_grades,
+                    "sha256": source.sha256,
+                }
                 for source in analysis.catalogue.sources
             ],
             "problems": list(analysis.left_out),

@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,12 +33,14 @@ class CatalogueSource:
     """Where grades came from.
 
     ``name`` is that of a plugin, ``user folder``, or that of a file or folder; ``source`` the
-    plugin's distribution and version, or the path.
+    plugin's distribution and version, or the path. ``sha256`` is a digest of the grades themselves,
+    whatever file or program they come from.
     """
 
     name: str
     source: str
     n_grades: int
+    sha256: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +190,8 @@ class _Shelf:
             for grade in _grades_in(item, complaints.append):
                 complaints += self._add(replace(grade, origin=offer.name))
         self._report(offer.label, complaints)
-        self.sources.append(CatalogueSource(offer.name, offer.source, len(self.grades) - before))
+        added = list(self.grades.values())[before:]
+        self.sources.append(CatalogueSource(offer.name, offer.source, len(added), _digest(added)))
 
     def add_paths(self, paths: Sequence[Path]) -> None:
         """Add what the config names; refuse all of it if anything is faulty."""
@@ -200,7 +204,8 @@ class _Shelf:
             for one in found:
                 problems = self._add(replace(one.grade, origin=path.name))
                 faults += [id_fault(one, problem) for problem in problems]
-            self.sources.append(CatalogueSource(path.name, str(path), len(found)))
+            digest = _digest([one.grade for one in found])
+            self.sources.append(CatalogueSource(path.name, str(path), len(found), digest))
         if faults:
             raise InputError(faults)
 
@@ -217,6 +222,11 @@ class _Shelf:
         self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
         if hidden > 0:
             self.problems.append(f"{label}: {hidden} more problems of this kind")
+
+
+def _digest(grades: Iterable[Grade]) -> str:
+    figures = sorted(repr(replace(grade, origin="", file="")) for grade in grades)
+    return sha256("\n".join(figures).encode()).hexdigest()
 
 
 def _label(grade: Grade) -> str:

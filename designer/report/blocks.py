@@ -205,6 +205,27 @@ class Section:
         return cls(section_id, title, tuple(block for block in blocks if block), kind)
 
 
+@dataclass(frozen=True, slots=True)
+class Control:
+    """Head of a document.
+
+    Parameters
+    ----------
+    boxes : tuple of Fact
+        Number, revision and names, those that the study gives.
+    logo : str
+        A picture as a data URI; may be empty.
+    identity : str
+        Digests of config, grades and measured data.
+    """
+
+    boxes: tuple[Fact, ...] = ()
+    logo: str = ""
+    identity: str = ""
+
+
+NO_CONTROL = Control()
+
 Page = TypeVar("Page")
 
 
@@ -230,6 +251,8 @@ class Report(Generic[Page]):
         All sections, in order.
     missing : str
         Why pictures in space are left out, and what to install; empty where they are not.
+    control : Control
+        Number, revision, names, logo, digests.
     """
 
     name: str
@@ -241,6 +264,7 @@ class Report(Generic[Page]):
     first_page: Page
     sections: tuple[Section, ...]
     missing: str = ""
+    control: Control = NO_CONTROL
 
     @classmethod
     def of(
@@ -252,6 +276,7 @@ class Report(Generic[Page]):
         first_page: Page,
         sections: Iterable[Section | None],
         missing: str = "",
+        control: Control = NO_CONTROL,
     ) -> Report[Page]:
         """Return a report on a study; sections that are None are left out."""
         return cls(
@@ -264,6 +289,7 @@ class Report(Generic[Page]):
             first_page,
             tuple(section for section in sections if section is not None),
             missing,
+            control,
         )
 
     def section(self, section_id: str) -> Section:

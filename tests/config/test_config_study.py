@@ -180,6 +180,10 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("measurements", "default", "none"),
         Entry("effects", "default", "none"),
         Entry("surroundings.temperature", "default", "20 degC"),
+        *(
+            Entry(f"document.{name}", "default", "none")
+            for name in ("number", "revision", "author", "checker", "approver", "logo")
+        ),
         Entry("format", "default", "1"),
     )
 

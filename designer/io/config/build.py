@@ -16,6 +16,7 @@ from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.schema import (
     BoxSection,
     CableSection,
+    DocumentSection,
     MeasurementsSection,
     PointsSection,
     PoseSection,
@@ -33,7 +34,16 @@ from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.plugins.find import Plugins, find_plugins
-from designer.study import CableGroup, Entry, GradeFamily, Selection, Source, Study, Workspace
+from designer.study import (
+    CableGroup,
+    DocumentControl,
+    Entry,
+    GradeFamily,
+    Selection,
+    Source,
+    Study,
+    Workspace,
+)
 from designer.units import DENSITY, STRESS, format_SI
 
 
@@ -66,6 +76,18 @@ def build_study(
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
+        document=_control(section.document, folder),
+    )
+
+
+def _control(section: DocumentSection, folder: Path) -> DocumentControl:
+    return DocumentControl(
+        section.number or "",
+        section.revision or "",
+        section.author or "",
+        section.checker or "",
+        section.approver or "",
+        None if section.logo is None else folder / section.logo,
     )
 
 

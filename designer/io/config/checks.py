@@ -11,6 +11,7 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.documents.document import Document
+from designer.documents.picture import picture_type
 from designer.documents.section import reader_of
 from designer.effects.effect import Effect
 from designer.errors import Fault
@@ -25,6 +26,8 @@ from designer.units import describe
 _REGION = "workspace.region"
 _GROUPS = "selection.groups"
 _COLUMNS = "measurements.columns"
+_LOGO = "document.logo"
+LARGEST_LOGO_BYTES = 1_000_000
 
 
 def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
@@ -206,6 +209,23 @@ def _texts(parts: Parts, path: str) -> Iterator[tuple[int, str]]:
             yield index, text
 
 
+def logo_is_a_picture(parts: Parts) -> Iterator[Fault]:
+    """The logo is a file that a page can show."""
+    name = parts.read(_LOGO)
+    if name is None:
+        return
+    path = Path(parts.document.name).parent / name
+    try:
+        start = path.read_bytes()[:512] if path.stat().st_size <= LARGEST_LOGO_BYTES else None
+    except (OSError, ValueError):
+        yield parts.fault(_LOGO, f"there is no file {path}", "a picture, relative to this file")
+        return
+    if start is None:
+        yield parts.fault(_LOGO, "the file is too large", f"at most {LARGEST_LOGO_BYTES:,} bytes")
+    elif picture_type(start) is None:
+        yield parts.fault(_LOGO, f"{path.name} is no such picture", "a PNG, JPEG or SVG file")
+
+
 _CHECKS = (
     prism_has_area,
     rectangle_has_area,
@@ -217,4 +237,5 @@ _CHECKS = (
     effects_are_known,
     columns_fit_the_robot,
     unknowns_are_known,
+    logo_is_a_picture,
 )

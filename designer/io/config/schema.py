@@ -315,6 +315,17 @@ class SurroundingsSection(Section):
     temperature: fields.Temperature = 20.0
 
 
+class DocumentSection(Section):
+    """What a drawing office writes on the report."""
+
+    number: Text | None = None
+    revision: Text | None = None
+    author: Text | None = None
+    checker: Text | None = None
+    approver: Text | None = None
+    logo: Text | None = None
+
+
 class StudySection(Section):
     """The whole file."""
 
@@ -331,4 +342,5 @@ class StudySection(Section):
     # designer.io.config.effects checks what is in it
     effects: fields.FreeMapping = Field(default_factory=dict)
     surroundings: SurroundingsSection = SurroundingsSection()
+    document: DocumentSection = DocumentSection()
     format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1

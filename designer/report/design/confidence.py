@@ -18,6 +18,7 @@ from designer.report.design.verification import verification_statement
 from designer.report.material_class import class_of
 from designer.selection.result import Candidate
 from designer.statics.task import LONG
+from designer.study import Study
 from designer.workspace.hanging import Hanging
 
 _NEAR_BOUNDARY = 0.9
@@ -31,6 +32,7 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
     grades = {grade.id: grade for grade, _ in ropes}.values()
     yield from pose_statement(analysis)
+    yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
         yield verification_statement(analysis.verification)
     yield from _margin(analysis, findings)
@@ -56,6 +58,14 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         if size.doubt:
             title = f"Doubt about {size.id} of {grade.id}"
             yield Statement(title, f"{fmt.sentence(size.doubt)}.", "doubt")
+
+
+def _effects(study: Study) -> Iterator[Statement]:
+    """What was measured on the machine is in the answer."""
+    if study.effects:
+        ids = fmt.listing(dict.fromkeys(effect.id for effect in study.effects))
+        text = f"The answer is that of the machine with the effects that the study declares: {ids}."
+        yield Statement("Declared effects", text, "doubt")
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:

@@ -34,8 +34,8 @@ def section(source: Source) -> Section:
 
 def defaults_table(analysis: Analysis) -> Table | None:
     """Return the fields left out, the first half on the left; None where there are none."""
-    entries = analysis.study.source.entries
-    cells = [(e.field, e.value_SI) for e in entries if e.given == "default"]
+    defaults = (e for e in analysis.study.source.entries if e.given == "default")
+    cells = [(e.field, e.value_SI) for e in defaults if not e.field.startswith("document.")]
     if not cells:
         return None
     half = (len(cells) + 1) // 2

@@ -14,14 +14,19 @@ def section(source: Source) -> Section:
     """Return program, libraries, config, time, settings, sources of grades, defaults."""
     analysis = source.analysis
     catalogues = (
-        (one.name, one.source, fmt.count(one.n_grades)) for one in analysis.catalogue.sources
+        (one.name, one.source, fmt.count(one.n_grades), one.sha256)
+        for one in analysis.catalogue.sources
     )
     defaults = defaults_table(analysis)
     return Section.of(
         "provenance",
         "Provenance",
         Box.of("loose", _facts(analysis)),
-        Table.of("Sources of grades.", ("Name", "Where from", Column("Grades")), *catalogues),
+        Table.of(
+            "Sources of grades.",
+            ("Name", "Where from", Column("Grades"), "SHA-256 of the grades"),
+            *catalogues,
+        ),
         Subheading("defaults", "Fields left at their default") if defaults else None,
         defaults,
     )

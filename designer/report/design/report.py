@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from designer.analysis.analyse import Analysis
 from designer.report.blocks import Report, Section
+from designer.report.control import control_of
 from designer.report.design import (
     assumptions,
     clearance,
@@ -48,4 +49,5 @@ def report_from(source: Source) -> Report[FirstPage]:
     answer = Section("answer", "The answer", kind=f"first-page{'' if page.reasons else ' alone'}")
     sections = (answer, *(make(source) for make in SECTIONS))
     about = "Cable design report", analysis.study, analysis.provenance
-    return Report.of("report", *about, page, sections, source.missing)
+    control = control_of(analysis.study, analysis.catalogue)
+    return Report.of("report", *about, page, sections, source.missing, control)

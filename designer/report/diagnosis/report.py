@@ -8,6 +8,7 @@ from designer.analysis.analyse import Provenance
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 from designer.report.blocks import Box, Fact, Facts, Report, Section
+from designer.report.control import control_of
 from designer.report.design.provenance import facts_of
 from designer.report.diagnosis import (
     assumptions,
@@ -43,7 +44,8 @@ def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report[Fir
         _provenance(diagnosis, provenance),
     )
     about = "Diagnosis of measured data", diagnosis.study, provenance
-    return Report.of("diagnosis", *about, first_page(diagnosis), sections)
+    control = control_of(diagnosis.study)
+    return Report.of("diagnosis", *about, first_page(diagnosis), sections, control=control)
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:

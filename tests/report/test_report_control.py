@@ -1,0 +1,91 @@
+"""Number, revision, names, logo and digests at the head of a report."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+import designer
+from designer.errors import InputError
+from designer.report.control import control_of
+from designer.report.design.report import design_report
+from designer.report.render import render_html, render_pdf
+from designer.resources import data_folder
+
+STUDY = """
+robot:
+  anchors: [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
+  platform: {mass: 4000 kg}
+cable: {density: 7800 kg/m^3, youngs_modulus: 200 GPa, allowable_stress: 180 MPa}
+pose: [250, 200, -50]
+"""
+CONTROL = """
+document:
+  number: D-102
+  revision: <b>B</b>
+  checker: C. Checker
+  logo: logo.svg
+"""
+LOGO = b'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M0 0h9v9z"/></svg>'
+
+
+def study(tmp_path: Path, logo: bytes | None = LOGO, text: str = STUDY + CONTROL) -> Path:
+    if logo is not None:
+        (tmp_path / "logo.svg").write_bytes(logo)
+    path = tmp_path / "study.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_what_is_given_stands_on_the_first_page(tmp_path) -> None:
+    analysis = designer.analyse(designer.read_study(study(tmp_path)))
+    report = design_report(analysis, draws=False)
+    html = render_html(report, paged=True)
+    assert "&lt;b&gt;B&lt;/b&gt;" in html
+    assert f"data:image/svg+xml;base64,{base64.b64encode(LOGO).decode()}" in html
+    (tmp_path / "report.pdf").write_bytes(render_pdf(html))
+    words = PdfReader(tmp_path / "report.pdf").pages[0].extract_text()
+    for told in ("D-102", "C. Checker", analysis.study.source.sha256[:12], "grades builtin"):
+        assert told in words
+    assert "Approved" not in words
+    assert [box.label for box in report.control.boxes] == ["Document", "Revision", "Checked"]
+
+
+def test_nothing_is_shown_where_nothing_is_given(tmp_path) -> None:
+    given = designer.read_study(study(tmp_path, text=STUDY))
+    control = control_of(given)
+    assert (control.boxes, control.logo) == ((), "")
+    assert control.identity == f"SHA-256 of configuration {given.source.sha256[:12]}"
+
+
+@pytest.mark.parametrize(
+    ("logo", "words"),
+    [
+        (None, "there is no file"),
+        (b"GIF89a", "logo.svg is no such picture (expected a PNG, JPEG or SVG file)"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(1_000_000), "the file is too large"),
+    ],
+)
+def test_a_logo_that_no_page_can_show(tmp_path, logo, words) -> None:
+    with pytest.raises(InputError) as caught:
+        designer.read_study(study(tmp_path, logo))
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"{tmp_path / 'study.yaml'}:12: document.logo: ")
+    assert words in line
+
+
+def test_the_digest_of_grades_is_theirs_alone(tmp_path) -> None:
+    first, second = designer.catalogue(with_plugins=False), designer.catalogue(with_plugins=False)
+    assert [one.sha256 for one in first.sources] == [one.sha256 for one in second.sources]
+    shipped = first.grade("unirope-7x19-galvanised")
+    folder = tmp_path / "ropes"
+    folder.mkdir()
+    text = (data_folder("catalog") / shipped.file).read_text().replace(shipped.id, "acme-7x19")
+    digests = []
+    for product in (text, text.replace("7x19", "7x7")):
+        (folder / "acme.yaml").write_text(product.replace("acme-7x7", "acme-7x19"))
+        digests.append(designer.catalogue([folder], with_plugins=False).sources[-1].sha256)
+    assert digests[0] != digests[1]
