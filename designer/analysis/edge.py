@@ -10,7 +10,7 @@ import numpy as np
 from designer.analysis import grids
 from designer.analysis.field import Field, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.model.region import Prism, Rectangle
+from designer.model.region import Prism
 from designer.model.verdict import Verdict
 from designer.study import Study
 
@@ -81,13 +81,13 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     assert study.workspace is not None
     region = study.workspace.region
     is_tilted = study.robot.gravity_direction[:2].any()
-    if isinstance(region, Rectangle) or study.robot.is_planar or is_tilted:
+    if region.is_upright or study.robot.is_planar or is_tilted:
         return None
     hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
     if isinstance(region, Prism):
         centre = grids.centroid_m(region.polygon_m)
     else:
-        centre = np.asarray(region.points_m[:, :2].mean(axis=0))
+        centre = np.concatenate([*region.samples_m(1000, "grid", 0)])[:, :2].mean(axis=0)
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
         return None
     azimuth = _azimuth_rad(hull, centre, focus_m)

@@ -13,7 +13,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.edge import EdgeProfile, edge_profile
 from designer.analysis.field import Field, field_at, field_of
 from designer.arrays import FloatArray
-from designer.model.region import PointList, Rectangle, Region
+from designer.model.region import Prism, Rectangle, Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
@@ -169,16 +169,16 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     region = _workspace(study).region
     focus = _focus(study, found)
     shell: Mapping[str, Field]
-    if isinstance(region, PointList):
-        every = -(-len(region.points_m) // _MOST_POINTS)
-        section, shell = field_at(study, region.points_m[::every]), {}
+    if isinstance(region, Prism):
+        section = field_at(study, grids.disc_m(region, region.z_m[1]))
+        pieces = grids.cutaway_m(region, focus.position_m)
+        shell = {name: field_at(study, positions) for name, positions in pieces.items()}
     elif isinstance(region, Rectangle):
         section = field_at(study, grids.upright_disc_m(region))
         shell = {"section": section}
     else:
-        section = field_at(study, grids.disc_m(region, region.z_m[1]))
-        pieces = grids.cutaway_m(region, focus.position_m)
-        shell = {name: field_at(study, positions) for name, positions in pieces.items()}
+        points = np.concatenate([*region.samples_m(_MOST_POINTS, "grid", 0)])
+        section, shell = field_at(study, points[:: -(-len(points) // _MOST_POINTS)]), {}
     return WorkspaceMaps(
         study=study,
         focus=focus,

@@ -102,7 +102,7 @@ def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
     region = workspace.region
     facts = [Fact("Region", describe_region(region)), *orientation_fact(study)]
     if not region.is_discrete:
-        written = {"m²": fmt.square_metres, "m³": fmt.cubic_metres}
+        written = {"m": fmt.metres, "m²": fmt.square_metres, "m³": fmt.cubic_metres}
         facts.extend(Fact(name, written[unit](value)) for name, value, unit in region.sizes)
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
