@@ -231,6 +231,14 @@ class Grade(GradeSheet):
     origin: str = ""
     file: str = ""
 
+    def drum_turn_m(self, size: Size) -> float:
+        """Return the rope on one turn of the drum that the table suggests [m].
+
+        In one layer, about the rope's centre; NaN where no drum is suggested.
+        """
+        ratio = self.sheave_ratio
+        return math.pi * (ratio.suggested + 1.0) * size.diameter_m if ratio else math.nan
+
     @property
     def why_only_by_name(self) -> str | None:
         """Why a selection takes this grade only where the study names it; None for others."""

@@ -43,11 +43,8 @@ class DesignCable:
 
         About the centre of the rope, in one layer; NaN where no drum is suggested.
         """
-        drums = [
-            (grade.sheave_ratio.suggested + 1.0) * size.diameter_m if grade.sheave_ratio else np.nan
-            for grade, size in self.products
-        ]
-        return np.pi * np.array(drums or [np.nan])
+        turns = [grade.drum_turn_m(size) for grade, size in self.products]
+        return np.array(turns or [np.nan])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,6 +16,7 @@ from designer.report.design import (
     selection,
     stiffness,
     verification,
+    workshop,
     workspace,
 )
 from designer.report.design.first_page import FirstPage, first_page
@@ -29,6 +30,7 @@ SECTIONS = (
     groups.section,
     stiffness.section,
     clearance.section,
+    workshop.section,
     verification.section,
     left_out.section,
     assumptions.section,
