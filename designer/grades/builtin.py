@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
+from designer.grades.files import read_grades
 from designer.grades.grade import Grade
 from designer.grades.standard_rope import standard_ropes
 from designer.plugins import hookimpl
@@ -12,5 +14,13 @@ from designer.resources import data_folder
 
 @hookimpl
 def register_grades() -> list[Path | Grade]:
-    """Return the folder of the grades that are shipped, and those computed by a standard."""
-    return [data_folder("catalog"), *standard_ropes()]
+    """Return the grades that are shipped, and those computed by a standard."""
+    return list(_grades())
+
+
+@cache
+def _grades() -> tuple[Path | Grade, ...]:
+    """Read them once; the folder itself where a file is faulty, so that the fault is told."""
+    found, faults = read_grades(data_folder("catalog"))
+    shipped = (data_folder("catalog"),) if faults else tuple(one.grade for one in found)
+    return (*shipped, *standard_ropes())
