@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
 _LONGEST_TEXT = 64
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?(?![\d.])")
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?(?![\d.])")
 _FACTOR = re.compile(
     r"\s*(?:(?P<divided>/)|[*·])?\s*(?P<name>[^\W\d]{1,40}|°[CF]?|%)"
     r"(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>[-+]?[1-9]))?(?!\d)"

@@ -117,6 +117,14 @@ def test_a_tab_is_told_with_its_line(faults_of: FaultsOf) -> None:
     assert str(fault).endswith(":2: a tab indents this line (expected blanks, which YAML asks for)")
 
 
+@pytest.mark.parametrize("tail", ["", " kg", "x", "e", ".", ".5.5"])
+def test_a_text_as_long_as_a_file_may_be_is_no_hang(faults_of: FaultsOf, tail: str) -> None:
+    with no_longer_than(20):
+        (fault,) = faults_of(FLAT.replace("180 kg", 300_000 * "7" + tail))
+    assert ": robot.platform.mass: " in str(fault)
+    assert len(str(fault)) < 300
+
+
 @pytest.mark.parametrize("number", [n for n in NUMBERS if len(n) > 16])
 def test_long_numbers_are_settled_at_once(tmp_path: Path, number: str) -> None:
     path = tmp_path / "mutant.yaml"
