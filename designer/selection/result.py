@@ -7,6 +7,7 @@ from typing import Literal
 
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
+from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import Figures
 from designer.selection.usable import Usable
 from designer.selection.verify import Verification
@@ -32,7 +33,9 @@ class Candidate:
     continuous_diameter_m : float
         Optimum in the grade's continuous family [m]; NaN where the family has none.
     verification : Verification
-        What it meets.
+        What it meets in the load case that governs.
+    cases : tuple of CaseFound
+        What it meets in each load case, up to the first that it does not hold.
     figures : Figures
         What it is compared by.
     standing : str
@@ -47,6 +50,7 @@ class Candidate:
     efficiency: float
     continuous_diameter_m: float
     verification: Verification
+    cases: tuple[CaseFound, ...]
     figures: Figures
     standing: Standing
     reason: str
@@ -55,6 +59,11 @@ class Candidate:
     def verified(self) -> bool:
         """Whether it holds everywhere, between the samples as well, with its own figures."""
         return self.verification.holds and self.verification.is_refined
+
+    @property
+    def governing(self) -> CaseFound:
+        """The load case that asks for most."""
+        return governing(self.cases)
 
     @property
     def total_mass_kg(self) -> float:
