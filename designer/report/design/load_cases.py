@@ -163,7 +163,7 @@ def _lost(chosen: Candidate) -> str:
         return ""
     return (
         f"{fmt.capital(' '.join(parts))} The other cables keep the lengths that they had, as on "
-        "braked winches; what the loss itself sets swinging is not in this but by the case's dynamic "
+        "braked winches; what the loss itself sets swinging is not in this but by a dynamic "
         f"factor, nor is what the platform may strike. Each loss was followed from {FEW_SAMPLES} "
         "samples and the corners of the region, that of the chosen rope from more, and searched "
         "between them."
