@@ -7,6 +7,7 @@ from typing import Literal
 
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
+from designer.model.load_case import STATIC
 from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import Figures
 from designer.selection.usable import Usable
@@ -113,11 +114,21 @@ class GradeOutcome:
     best: Candidate | None
 
     @property
+    def fails_in(self) -> str:
+        """The load case in which the size that comes furthest fails; empty without load cases."""
+        if not self.candidates:
+            return ""
+        best = max(self.candidates, key=lambda c: (len(c.cases), -c.verification.utilisation))
+        return "" if best.governing.case is STATIC else best.governing.case.name
+
+    @property
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
         if self.best is None and self.outcome == "no_finite_cable":
             return "no section of this rope can hold the workspace: its own weight is too much"
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
+        if self.best is None and self.fails_in:
+            return f"has no size that holds in the load case '{self.fails_in}'"
         if self.best is None:
             return f"ends at {self.grade.thickest.id}, {need}"
         return f"{self.best.size.id} holds everywhere, {need}"

@@ -257,4 +257,5 @@ def _reason(
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]
     nearest = min(thin, key=lambda o: o.continuous_diameter_m / o.grade.thickest.diameter_m)
-    return f"every grade ends too thin; the nearest is {nearest.grade.id}, which {nearest.sentence}"
+    what = "no size holds in every load case" if nearest.fails_in else "every grade ends too thin"
+    return f"{what}; the nearest is {nearest.grade.id}, which {nearest.sentence}"

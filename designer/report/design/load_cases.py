@@ -97,7 +97,9 @@ def _changes(case: LoadCase) -> str:
             "one direction" if case.wind.direction is not None else f"{case.wind.count} directions"
         )
         speed = f"{fmt.trimmed(case.wind.speed_m_per_s)}\u00a0m/s"
-        parts.append(f"wind of {speed} in {along}, pressure {fmt.pascals(case.wind.pressure_Pa)}")
+        parts.append(
+            f"wind of {speed} in {along}, pressure {fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
+        )
     if case.ice is not None:
         parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
     if case.cable_lost is not None:
