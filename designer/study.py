@@ -16,6 +16,7 @@ from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
+from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
 from designer.model.region import CHUNK, Region, Sampling
@@ -268,8 +269,10 @@ class Study:
     surroundings: Surroundings = TEMPERATE
     family: GradeFamily | None = None
     document: DocumentControl = DocumentControl()
+    load_cases: tuple[LoadCase, ...] = ()
 
     def __post_init__(self) -> None:
+        self._check_load_cases()
         if self.pose is not None and self.pose.shape:
             raise ValueError(f"pose must be one pose, not {self.pose.shape} of them")
         if self.selection is not None and self.workspace is None:
@@ -282,6 +285,21 @@ class Study:
             raise ValueError(
                 f"groups must have every cable from 1 to {len(every)} once; wrong is {wrong}"
             )
+
+    def _check_load_cases(self) -> None:
+        names = [case.name for case in self.load_cases]
+        if len({*names}) < len(names):
+            raise ValueError(f"two load cases have one name: {names}")
+        if names and (self.selection is None or self.selection.groups):
+            raise ValueError("load cases need a selection, without groups")
+        if names and self.workspace is not None and self.workspace.hangs_below == "exclude":
+            raise ValueError("with load cases no pose can be left out for cables that hang below")
+        for case in self.load_cases:
+            if case.wind is not None and self.robot.platform.drag_area_m2 is None:
+                raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")
+            lost = case.cable_lost
+            if lost not in (None, EACH) and int(lost) > self.robot.n_cables:
+                raise ValueError(f"there is no cable {lost} to be lost in '{case.name}'")
 
     @property
     def pose_outside(self) -> str:

@@ -65,6 +65,7 @@ COMPLIANCE = Dimension("a displacement per force", "m/N", "2e-6 m/N")
 FLEXURAL_RIGIDITY = Dimension("a flexural rigidity", "N*m^2", "12 N*m^2")
 TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
 SPEED = Dimension("a speed", "m/s", "3 m/s")
+ACCELERATION = Dimension("an acceleration", "m/s^2", "0.5 m/s^2")
 
 
 class QuantityError(ValueError):

@@ -313,6 +313,7 @@ def analyse(
             study.selection,
             catalogue.grades,
             built=built,
+            load_cases=study.load_cases,
             reporter=reporter,
         )
         if study.selection.groups:
@@ -358,8 +359,9 @@ def _second_answers(
         sizing = size_poses(built.robot, workspace.sagging.pose, material)
         found += verify("worst pose", material, sizing)
     if chosen is not None and chosen.chosen is not None:
+        most = chosen.chosen.governing
         place = chosen.chosen.verification.worst_position_m
-        statics = solve_sagging(built.robot, Poses.at(place), chosen.chosen.cable)
+        statics = solve_sagging(most.loaded.robot, Poses.at(place), most.loaded.cable)
         if statics.is_solved:
             found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))
     return tuple(found)

@@ -15,7 +15,7 @@ from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.grades.grade import Size
 from designer.model.region import Prism
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.selection.result import Candidate, GradeOutcome
 from designer.selection.verify import Verification, verify
@@ -136,26 +136,26 @@ def find(analysis: Analysis) -> Findings:
         chosen_outcome=outcome,
         chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
         massless_choice=None if analysis.has_groups else _massless_choice(analysis, outcome),
-        modulus_utilisation=modulus_utilisation(robot, chosen),
+        modulus_utilisation=modulus_utilisation(chosen),
     )
 
 
-def modulus_utilisation(robot: Robot, candidate: Candidate) -> tuple[float, float]:
+def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
     """Return the utilisation at the worst pose with the lowest and the highest modulus."""
-    cable, doubt = candidate.cable, candidate.grade.elasticity.uncertainty
-    worst = Poses.at(candidate.verification.worst_position_m)
+    most, doubt = candidate.governing, candidate.grade.elasticity.uncertainty
+    one, cable = most.loaded, most.loaded.cable
 
     def at(scale: float) -> float:
         other = replace(cable, axial_stiffness_N=scale * cable.axial_stiffness_N)
-        tension = float(solve_sagging(robot, worst, other).largest_tension_N)
-        return tension / cable.allowable_tension_N
+        return most.tension_N(replace(one, cable=other)) / cable.allowable_tension_N
 
     return at(1.0 - doubt), at(1.0 + doubt)
 
 
 def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
     workspace, found = analysis.study.workspace, analysis.workspace
-    if workspace is None or found is None or found.massless is None:
+    has_cases = bool(analysis.study.load_cases)
+    if workspace is None or found is None or found.massless is None or has_cases:
         return None
     needed_N = found.massless.max_tension_N
     for first in outcome.candidates:

@@ -10,6 +10,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis, PoseAnalysis
+from designer.analysis.load_cases_json import load_cases_list
 from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
@@ -48,6 +49,7 @@ def result_dict(analysis: Analysis) -> Json:
             }
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
+        "load_cases": load_cases_list(analysis.selection.chosen if analysis.selection else None),
         "verification": [
             {
                 "method": one.method,

@@ -74,7 +74,14 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
     built = as_built_by(study)
     built = replace(built, section_m=section_of_workspace(built, study.workspace, study.material))
     worst = map_workspace(built.robot, study.workspace, built.material(study.material)).sagging
-    chosen = best_product(built.robot, study.workspace, study.selection, grades, built=built)
+    chosen = best_product(
+        built.robot,
+        study.workspace,
+        study.selection,
+        grades,
+        built=built,
+        load_cases=study.load_cases,
+    )
     found = Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,

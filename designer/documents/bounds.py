@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from designer.units import (
+    ACCELERATION,
     ANGLE,
     AREA,
     DENSITY,
@@ -22,6 +23,7 @@ from designer.units import (
     MOMENT,
     NUMBER,
     PER_TEMPERATURE,
+    SPEED,
     STRESS,
     TEMPERATURE,
     TIME,
@@ -67,6 +69,12 @@ BOUNDS: Mapping[str, Bound] = {
     "half turn": Bound(ANGLE, -math.pi, math.pi, "half a turn either way reaches all"),
     # A turn at most: a bare 90 that is meant in degrees shall not pass as 90 rad.
     "angle": Bound(ANGLE, -2.0 * math.pi, 2.0 * math.pi, "a turn is 2 pi"),
+    "speed": Bound(SPEED, 0.0, 120.0, "no storm is faster"),
+    "acceleration": Bound(ACCELERATION, 0.0, 1e3, "no winch pulls so hard"),
+    "dynamic factor": Bound(NUMBER, 1.0, 10.0, "1 is at rest; a dropped load is another matter"),
+    "drag coefficient": Bound(NUMBER, 0.0, 10.0, "a plate across the wind has 2"),
+    "drag area": Bound(AREA, 0.0, 1e4, "the largest sails"),
+    "ice": Bound(LENGTH, 1e-5, 0.5, "from rime to what breaks masts"),
     "safety factor": Bound(NUMBER, 1.0, 100.0, "lifts of persons have 12"),
     "efficiency": Bound(FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),
     "temperature": Bound(TEMPERATURE, -200.0, 1000.0, "steel lasts no further"),

@@ -259,6 +259,12 @@ SheaveDiameter = Annotated[float, bounded("sheave")]
 RopeDiameter = Annotated[float, bounded("rope diameter")]
 Efficiency = Annotated[float, bounded("efficiency")]
 Temperature = Annotated[float, bounded("temperature")]
+Speed = Annotated[float, bounded("speed")]
+Acceleration = Annotated[float, bounded("acceleration")]
+DynamicFactor = Annotated[float, bounded("dynamic factor")]
+DragCoefficient = Annotated[float, bounded("drag coefficient")]
+DragArea = Annotated[float, bounded("drag area")]
+IceThickness = Annotated[float, bounded("ice")]
 
 Interval = Annotated[tuple[Length, Length], list_of(2, 2, _INTERVAL), AfterValidator(_rising)]
 Turn = Annotated[

@@ -29,9 +29,9 @@ class Situation(NamedTuple):
         Where they end, body frame.
     load : array (1 or n_poses, 6)
         What they have to pull with: force at the origin of the body frame, then moment.
-    load_point, weight : array (3,), float
-        The weight, which is part of the force, acts at this point of the body; what that makes of
-        moment comes on top.
+    load_point, load_there : array (3,)
+        This part of the force, such as that against the weight, acts at this point of the body;
+        what that makes of moment comes on top.
     positions, rotations : array (n_poses, 3), (1 or n_poses, 3, 3)
         The poses.
     rows : array (degrees of freedom,)
@@ -42,7 +42,7 @@ class Situation(NamedTuple):
     attachments: FloatArray
     load: FloatArray
     load_point: FloatArray
-    weight: float
+    load_there: FloatArray
     positions: FloatArray
     rotations: FloatArray
     rows: IntArray
@@ -127,7 +127,7 @@ def situation_of(
         plain(robot.attachments_m),
         plain(robot.loads_N(force_N)),
         plain(robot.platform.centre_of_mass_m),
-        robot.weight_N,
+        plain(robot.centre_pull_N),
         plain(poses.position_m),
         plain(rotations),
         robot.balance_rows,

@@ -66,10 +66,12 @@ def load_of(situation: Situation, at: int) -> tuple[float, float, float, float, 
     """Return force and moment that the cables have to pull with in a pose."""
     Q = situation.rotations[at if situation.rotations.shape[0] > 1 else 0]
     f = situation.load[at if situation.load.shape[0] > 1 else 0]
-    s, weight = situation.load_point, situation.weight
+    s, F = situation.load_point, situation.load_there
     sx = Q[0, 0] * s[0] + Q[0, 1] * s[1] + Q[0, 2] * s[2]
     sy = Q[1, 0] * s[0] + Q[1, 1] * s[1] + Q[1, 2] * s[2]
-    return f[0], f[1], f[2], f[3] + sy * weight, f[4] - sx * weight, f[5]
+    sz = Q[2, 0] * s[0] + Q[2, 1] * s[1] + Q[2, 2] * s[2]
+    mx, my, mz = sy * F[2] - sz * F[1], sz * F[0] - sx * F[2], sx * F[1] - sy * F[0]
+    return f[0], f[1], f[2], f[3] + mx, f[4] + my, f[5] + mz
 
 
 @element

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,6 +37,10 @@ class Platform:
     wrench_N : array (6,)
         Constant force on the body at the origin of its frame and moment about it, beside gravity,
         along the axes of the world frame [N, N·m].
+    centre_force_N : array (3,)
+        Constant force at the centre of mass, beside gravity, along those axes [N].
+    drag_area_m2 : float or None
+        Drag coefficient times area in the wind [m²]; None where it is not known.
     """
 
     mass_kg: float
@@ -44,14 +48,18 @@ class Platform:
     centre_of_mass_m: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
     hull_m: FloatArray | None = None
     wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
+    centre_force_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
+    drag_area_m2: float | None = None
 
     def __post_init__(self) -> None:
         require_number("mass_kg", self.mass_kg, least=0.0)
+        require_number("drag_area_m2", self.drag_area_m2, least=0.0)
         shapes: dict[str, tuple[int | None, ...]] = {
             "attachments_m": (None, 3),
             "centre_of_mass_m": (3,),
             "hull_m": (None, 3),
             "wrench_N": (6,),
+            "centre_force_N": (3,),
         }
         for name, shape in shapes.items():
             if getattr(self, name) is not None:
@@ -81,6 +89,9 @@ class Robot:
         Where things fall, world frame; its length does not count.
     is_planar : bool
         Whether everything lies in one vertical plane, in which the platform moves and turns.
+    cable_load_direction : array (3,) or None
+        Where the load on the cables points, world frame, such as that of weight and wind; its
+        length does not count. None for gravity alone. The upright frame is then built from it.
     """
 
     exit_points_m: FloatArray
@@ -90,15 +101,18 @@ class Robot:
     tension_min_N: float = 0.0
     gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
     is_planar: bool = False
+    cable_load_direction: FloatArray | None = None
 
     def __post_init__(self) -> None:
         shapes: dict[str, tuple[int | None, ...]] = {
             "exit_points_m": (None, 3),
             "tilt_rad": (2,),
             "gravity_direction": (3,),
+            "cable_load_direction": (3,),
         }
         for name, shape in shapes.items():
-            object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
         require_number("pulley_radius_m", self.pulley_radius_m)
         require_number("tension_min_N", self.tension_min_N, least=0.0)
         if not self.gravity_direction.any():
@@ -160,21 +174,33 @@ class Robot:
         """Whether the base frame surely is the upright frame, so that nothing has to be turned."""
         down = self.gravity_direction
         falls_down = not down[:2].any() and down[2] < 0.0
-        return falls_down and not self.is_planar and not self.tilt_rad.any()
+        is_as_built = not self.tilt_rad.any() and self.cable_load_direction is None
+        return falls_down and not self.is_planar and is_as_built
 
     @property
     def upright(self) -> FloatArray:
         """Rotation (3, 3) from the base frame to the upright frame.
 
-        Its z axis is the true vertical; a planar robot lies in its x-z plane.
+        Its z axis is the true vertical, or against the load on the cables where that points
+        elsewhere: in this frame each cable hangs in the plane of z and its chord. A planar robot
+        lies in its x-z plane.
         """
+        if self.cable_load_direction is not None:
+            return self._headed(vertical_frame(self.cable_load_direction))
+        return self.level
+
+    @property
+    def level(self) -> FloatArray:
+        """Rotation (3, 3) from the base frame to one whose z axis is the true vertical."""
         if self.is_upright:
             return np.eye(3)
-        vertical = vertical_frame(self.gravity_direction)
-        if self.is_planar:
-            vertical = _heading_frame(self.exit_points_m @ vertical.T) @ vertical
         tilt = Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix()
-        return np.asarray(tilt @ vertical)
+        return np.asarray(tilt @ self._headed(vertical_frame(self.gravity_direction)))
+
+    def _headed(self, vertical: FloatArray) -> FloatArray:
+        if not self.is_planar:
+            return vertical
+        return np.asarray(_heading_frame(self.exit_points_m @ vertical.T) @ vertical)
 
     @property
     def attachments_m(self) -> FloatArray:
@@ -192,13 +218,29 @@ class Robot:
     def pull_N(self) -> FloatArray:
         """What the cables have to pull with, force and moment (6,), upright frame [N, N·m].
 
-        Against weight and wrench, about the origin of the body frame; without the moment of the
-        weight, which turns with the platform.
+        Against weight and wrench, about the origin of the body frame; without the moment of what
+        acts at the centre of mass, which turns with the platform.
         """
         applied = self.platform.wrench_N.reshape(2, 3) @ self.upright.T
         pull = -applied.ravel()
-        pull[2] += self.weight_N
+        pull[:3] += self.centre_pull_N
         return np.asarray(pull)
+
+    @property
+    def centre_pull_N(self) -> FloatArray:
+        """The part of that force that acts at the centre of mass (3,), upright frame [N]."""
+        pull = np.array([0.0, 0.0, self.weight_N])
+        if self.cable_load_direction is not None:
+            pull = self.upright @ self.level.T @ pull
+        return np.asarray(pull - self.upright @ self.platform.centre_force_N)
+
+    def without_cable(self, cable: int) -> Robot:
+        """Return the robot without one of its cables, counted from 1."""
+        left = np.delete(np.arange(self.n_cables), cable - 1)
+        body = self.platform
+        if body.attachments_m is not None:
+            body = replace(body, attachments_m=body.attachments_m[left])
+        return replace(self, exit_points_m=self.exit_points_m[left], platform=body)
 
     def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
         """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""

@@ -10,6 +10,8 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
+from designer.model.load_case import STATIC
+from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.result import Standing
 from designer.selection.verify import Sampled, Verification
@@ -22,17 +24,28 @@ _NEAR_LIMIT = 0.9
 class Entry:
     """A candidate on its way, see `designer.selection.result.Candidate`: what is known grows.
 
-    ``sampled`` is what it meets over the samples; ``verification`` the same, until it has been
-    searched between the samples.
+    ``verification`` is what it meets over the samples, until it has been searched between them;
+    ``cases`` the same in each direction of each load case.
     """
 
     grade: Grade
     size: Size
     cable: Cable
     efficiency: float
-    sampled: Sampled
+    cases: tuple[CaseFound, ...]
     verification: Verification
     figures: Figures
+
+    @property
+    def sampled(self) -> Sampled:
+        """What it meets over the samples in the load case that governs."""
+        return governing(self.cases).sampled
+
+    @property
+    def in_case(self) -> str:
+        """That case, as it ends a sentence; empty where the study has none."""
+        case = governing(self.cases).case
+        return "" if case is STATIC else f" in the load case '{case.name}'"
 
     @property
     def name(self) -> str:
@@ -108,7 +121,7 @@ def standing_of(
 ) -> tuple[Standing, str]:
     """Return what became of an entry, and why."""
     found, best = entry.verification, front[0] if front else None
-    worst = f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m"
+    worst = f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m{entry.in_case}"
     if entry.sampled.not_held or np.isinf(found.utilisation):
         is_met = entry.sampled.not_held > 0
         why = f"no equilibrium was found at {worst}" if is_met else "it serves no pose"

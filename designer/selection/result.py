@@ -7,6 +7,8 @@ from typing import Literal
 
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
+from designer.model.load_case import STATIC
+from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import Figures
 from designer.selection.usable import Usable
 from designer.selection.verify import Verification
@@ -32,7 +34,9 @@ class Candidate:
     continuous_diameter_m : float
         Optimum in the grade's continuous family [m]; NaN where the family has none.
     verification : Verification
-        What it meets.
+        What it meets in the load case that governs.
+    cases : tuple of CaseFound
+        What it meets in each load case, up to the first that it does not hold.
     figures : Figures
         What it is compared by.
     standing : str
@@ -47,6 +51,7 @@ class Candidate:
     efficiency: float
     continuous_diameter_m: float
     verification: Verification
+    cases: tuple[CaseFound, ...]
     figures: Figures
     standing: Standing
     reason: str
@@ -55,6 +60,11 @@ class Candidate:
     def verified(self) -> bool:
         """Whether it holds everywhere, between the samples as well, with its own figures."""
         return self.verification.holds and self.verification.is_refined
+
+    @property
+    def governing(self) -> CaseFound:
+        """The load case that asks for most."""
+        return governing(self.cases)
 
     @property
     def total_mass_kg(self) -> float:
@@ -104,11 +114,21 @@ class GradeOutcome:
     best: Candidate | None
 
     @property
+    def fails_in(self) -> str:
+        """The load case in which the size that comes furthest fails; empty without load cases."""
+        if not self.candidates:
+            return ""
+        best = max(self.candidates, key=lambda c: (len(c.cases), -c.verification.utilisation))
+        return "" if best.governing.case is STATIC else best.governing.case.name
+
+    @property
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
         if self.best is None and self.outcome == "no_finite_cable":
             return "no section of this rope can hold the workspace: its own weight is too much"
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
+        if self.best is None and self.fails_in:
+            return f"has no size that holds in the load case '{self.fails_in}'"
         if self.best is None:
             return f"ends at {self.grade.thickest.id}, {need}"
         return f"{self.best.size.id} holds everywhere, {need}"

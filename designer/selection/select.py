@@ -12,8 +12,10 @@ from dataclasses import dataclass, replace
 
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
+from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.progress import Reporter, Silent
+from designer.selection.cases import Cases, searched, searched_all, together, worst_of_each
 from designer.selection.compare import Entry, best_of, settle, standing_of
 from designer.selection.continuous import continuous_optimum
 from designer.selection.efficiency import Allowance
@@ -21,7 +23,7 @@ from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.usable import Usable, usable
-from designer.selection.verify import Verification, refined, verify_sizes
+from designer.selection.verify import Verification, verify_sizes
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
@@ -35,17 +37,20 @@ def select(
     grades: Sequence[Grade],
     *,
     built: AsBuilt | None = None,
+    load_cases: Sequence[LoadCase] = (),
     reporter: Reporter | None = None,
 ) -> SelectionResult:
     """Choose the best product among the grades that the study allows.
 
     ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
-    much cables on this machine differ from their data sheet.
+    much cables on this machine differ from their data sheet. A product holds that holds in every
+    load case; without any it is the static one.
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,))
     named = selection.grades
     allowed = [g for g in grades if is_allowed(g, named)]
-    trial = _Trial(robot, workspace, selection, built, reporter, common_currency(allowed))
+    trial = _Trial(cases, selection, built, reporter, common_currency(allowed))
     outcomes, not_tried = trial.outcomes(allowed)
     if named is None:
         not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
@@ -74,6 +79,7 @@ def best_product(
     grades: Sequence[Grade],
     *,
     built: AsBuilt | None = None,
+    load_cases: Sequence[LoadCase] = (),
 ) -> Entry | None:
     """Return the product that `select` would choose, without what becomes of the others.
 
@@ -81,8 +87,9 @@ def best_product(
     what candidates are compared by. None where nothing holds.
     """
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,))
     currency = common_currency(allowed)
-    trial = _Trial(robot, workspace, selection, built or AsBuilt(robot), Silent(), currency)
+    trial = _Trial(cases, selection, built or AsBuilt(robot), Silent(), currency)
     return best_of(trial.sampled(allowed), selection.objectives, trial.searched)
 
 
@@ -90,8 +97,7 @@ def best_product(
 class _Trial:
     """What all candidates have in common."""
 
-    robot: Robot
-    workspace: Workspace
+    cases: Cases
     selection: Selection
     built: AsBuilt
     reporter: Reporter
@@ -105,12 +111,18 @@ class _Trial:
             NotTried(g, size, _SHEAVE) for g in grades for size in g.sizes if id(size) not in tried
         ]
         with self.reporter.task("search", len(entries)) as advance:
+            thorough: set[int] = set()
 
             def search(entry: Entry) -> Verification:
                 advance(1)
-                return self.searched(entry)
+                return self.searched(entry, in_all=id(entry) in thorough)
 
-            front = settle(entries, self.selection.objectives, search)
+            while True:  # until the best has been searched in every load case, and is still that
+                front = settle(entries, self.selection.objectives, search)
+                if not front or id(front[0]) in thorough or len(front[0].cases) == 1:
+                    break
+                thorough.add(id(front[0]))
+                front[0].verification = replace(front[0].verification, is_refined=False)
         found = []
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
@@ -120,31 +132,39 @@ class _Trial:
                 advance(1)
         return found, not_tried
 
-    def searched(self, entry: Entry) -> Verification:
-        """Search for the extremes of a candidate between the samples."""
+    def searched(self, entry: Entry, *, in_all: bool = False) -> Verification:
+        """Search for the extremes of a candidate between the samples.
+
+        Where it governs and near there, or in every load case.
+        """
         if "stiffness" in self.selection.objectives:
             self._add_stiffness(entry, searched=True)
-        return refined(self.robot, self.workspace, entry.cable, entry.sampled)
+        entry.cases = searched_all(entry.cases) if in_all else searched(entry.cases)
+        return together(entry.cases)
 
     def sampled(self, grades: Sequence[Grade]) -> list[Entry]:
         """Solve all samples with all sizes that the sheave allows."""
         products = products_of(self.selection, grades, self.built)
-        cables = [one.cable for one in products]
-        with self.reporter.task("sizes", self.workspace.sample_count) as advance:
-            sampled = verify_sizes(self.robot, self.workspace, cables, progress=advance)
+        cables = [
+            [one.cable for one in products_of(self._selection_in(case), grades, self.built)]
+            for case in self.cases.each
+        ]
+        count = self.cases.workspace.sample_count * self.cases.passes(cables)
+        with self.reporter.task("sizes", count) as advance:
+            sampled = self.cases.sampled(cables, advance)
         entries = []
-        for product, one in zip(products, sampled, strict=True):
+        for product, cases in zip(products, sampled, strict=True):
             grade, size, cable = product.grade, product.size, product.cable
-            length, ratio = float(one.longest_m.sum()), grade.sheave_ratio
+            found = together(cases)
+            length, ratio = float(found.longest_m.sum()), grade.sheave_ratio
             figures = Figures(
                 mass_kg=cable.linear_density_kg_per_m * length,
                 cost=cost(product, length, self.currency),
                 drum_diameter_m=ratio.suggested * size.diameter_m if ratio else math.nan,
-                max_tension_N=one.utilisation * cable.allowable_tension_N,
+                max_tension_N=found.max_tension_N,
                 stiffness_N_per_m=math.nan,
             )
-            share, found = product.efficiency, one.verification(cable)
-            entries.append(Entry(grade, size, cable, share, one, found, figures))
+            entries.append(Entry(grade, size, cable, product.efficiency, cases, found, figures))
         if "stiffness" in self.selection.objectives:
             holding = [entry for entry in entries if entry.verification.holds]
             with self.reporter.task("stiffness", len(holding)) as advance:
@@ -153,8 +173,16 @@ class _Trial:
                     advance(1)
         return entries
 
+    def _selection_in(self, case: LoadCase) -> Selection:
+        asked = self.selection
+        return replace(
+            asked,
+            safety_factor=case.safety_factor or asked.safety_factor,
+            termination_efficiency=case.termination_efficiency or asked.termination_efficiency,
+        )
+
     def _add_stiffness(self, entry: Entry, *, searched: bool) -> None:
-        where = self.robot, self.workspace, entry.cable
+        where = self.cases.robot, self.cases.workspace, entry.cable
         found = smallest_stiffness_N_per_m(*where, searched=searched)
         entry.figures = replace(entry.figures, stiffness_N_per_m=found)
 
@@ -162,7 +190,7 @@ class _Trial:
         self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry]
     ) -> GradeOutcome:
         allowance = Allowance.of(self.selection)
-        family, optimum = continuous_optimum(self.workspace, grade, allowance, self.built)
+        family, optimum = continuous_optimum(self.cases.workspace, grade, allowance, self.built)
         objectives = self.selection.objectives
         candidates = {
             id(entry): Candidate(
@@ -172,6 +200,7 @@ class _Trial:
                 efficiency=entry.efficiency,
                 continuous_diameter_m=optimum,
                 verification=entry.verification,
+                cases=worst_of_each(entry.cases),
                 figures=entry.figures,
                 standing=standing,
                 reason=reason,
@@ -228,4 +257,5 @@ def _reason(
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]
     nearest = min(thin, key=lambda o: o.continuous_diameter_m / o.grade.thickest.diameter_m)
-    return f"every grade ends too thin; the nearest is {nearest.grade.id}, which {nearest.sentence}"
+    what = "no size holds in every load case" if nearest.fails_in else "every grade ends too thin"
+    return f"{what}; the nearest is {nearest.grade.id}, which {nearest.sentence}"

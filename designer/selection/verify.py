@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from designer.progress import Advance
 from designer.statics.sizes import add_slowly, is_quick, meet
 from designer.study import Workspace
 from designer.workspace.demand import rope_demand
-from designer.workspace.refine import Worst, refine_over_branches, worst_over_samples
+from designer.workspace.refine import Effort, Worst, refine_over_branches, worst_over_samples
 
 _PIECE, _SLOW_PIECE = 2**13, 2**9
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
-_TRIES = 256
+_FIRST_TRIES, _TRIES = 16, 256
+"""Hard poses that are solved before a look whether the cable has failed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,10 +118,16 @@ def verify(robot: Robot, workspace: Workspace, cable: Cable) -> Verification:
     return _verification(cable, worst_over_samples(workspace, demand_with))
 
 
-def refined(robot: Robot, workspace: Workspace, cable: Cable, sampled: Sampled) -> Verification:
+def refined(
+    robot: Robot,
+    workspace: Workspace,
+    cable: Cable,
+    sampled: Sampled,
+    effort: Effort | None = None,
+) -> Verification:
     """Search for the extremes of a cable between the samples, from the worst of them."""
     demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
-    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_m)
+    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_m, effort)
     found = _verification(cable, worst)
     return replace(found, longest_m=np.maximum(found.longest_m, sampled.longest_m))
 
@@ -189,8 +196,8 @@ def _meet(
         return found
     for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
         hard = np.flatnonzero(found.failed[row])
-        for start in range(0, len(hard), _TRIES):
-            some = hard[start : start + _TRIES]
+        edges = [0, _FIRST_TRIES, *range(_TRIES, len(hard) + _TRIES, _TRIES)]
+        for some in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
             add_slowly(found, row, robot, poses, cables[row], cells, exclude, some)
             if gives_up and found.failed[row, some].any():
                 break

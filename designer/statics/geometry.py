@@ -146,10 +146,9 @@ def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None)
         About the origin of the body frame, upright frame; one row a balanced direction.
     """
     shape = poses.position_m.shape
-    weight = np.array([0.0, 0.0, -robot.weight_N])
     force, moment = np.split(-robot.pull_N, 2)
     if force_N is not None:
         force = force + force_N @ robot.upright.T
-    moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), weight)
+    moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), -robot.centre_pull_N)
     parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
     return np.asarray(np.concatenate(parts, axis=-1)[..., robot.balance_rows])

@@ -79,7 +79,7 @@ def upright_stiffness(statics: Statics) -> FloatArray:
     turn = -K @ B
     moment = B @ K
     arm = centre_of_mass_arm_m(robot, statics.poses)
-    weight = _cross_matrix(np.array([0.0, 0.0, -robot.weight_N]))
+    weight = _cross_matrix(-robot.centre_pull_N)
     turning = (B @ turn + F @ B).sum(axis=-3) - weight @ _cross_matrix(arm)
     left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
     right = np.concatenate([turn.sum(axis=-3), turning], axis=-2)

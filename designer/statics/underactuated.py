@@ -67,8 +67,8 @@ def solve_underactuated(
     about_origin = upright_situation(robot, poses, robot.exit_points_m, force_N)
     arm = centre_of_mass_arm_m(robot, poses)
     pull_N, moment = about_origin.load[:, :3], about_origin.load[:, 3:]
-    # The weight has no moment about the centre of mass.
-    moment = moment - np.cross(arm, pull_N - np.array([0.0, 0.0, robot.weight_N]))
+    # What acts at the centre of mass has no moment about it.
+    moment = moment - np.cross(arm, pull_N - robot.centre_pull_N)
     about_centre = about_origin._replace(
         attachments=plain(robot.attachments_m - robot.platform.centre_of_mass_m),
         load=plain(np.hstack([np.broadcast_to(pull_N, moment.shape), moment])),

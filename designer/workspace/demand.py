@@ -9,6 +9,7 @@ from designer.model.cable import Cable, Material
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing, size_poses
+from designer.statics.cable_loss import lose_cable
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
 from designer.study import HangsBelow, Workspace
 from designer.workspace.refine import Demand
@@ -68,6 +69,20 @@ def rope_demand(
         statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
         tension = demand_of(statics.largest_tension_N, statics, hangs_below)
         return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
+
+    return demand
+
+
+def loss_demand(
+    robot: Robot, cable: Cable, lost_cable: int, *, seeks_better: bool = True
+) -> Demand:
+    """Largest tension after the loss of a cable [N]; inf where the platform finds no rest."""
+
+    def demand(places: FloatArray) -> FloatArray:
+        poses = Poses.at(places)
+        return lose_cable(
+            robot, poses, cable, lost_cable, seeks_better=seeks_better
+        ).largest_tension_N
 
     return demand
 

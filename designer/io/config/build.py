@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from designer.effects.known import KnownEffects
 from designer.errors import InputError
 from designer.io.config.columns import log_column
 from designer.io.config.effects import read_effects
+from designer.io.config.load_cases import RegionSection, load_case
 from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.schema import (
     BoxSection,
@@ -20,7 +22,6 @@ from designer.io.config.schema import (
     MeasurementsSection,
     PointsSection,
     PoseSection,
-    PrismSection,
     RectangleSection,
     RobotSection,
     SelectionSection,
@@ -70,6 +71,12 @@ def build_study(
         pose=_pose(section.pose),
         workspace=_workspace(section.workspace, robot),
         selection=_selection(section.selection),
+        load_cases=tuple(
+            load_case(
+                case, section.cable.drag_coefficient, partial(_case_region, document, k, robot)
+            )
+            for k, case in enumerate(section.load_cases)
+        ),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
         effects=tuple(one for _, one in declared.effects),
@@ -132,7 +139,14 @@ def _robot(section: RobotSection) -> Robot:
     attachments = None if body.attachments is None else frozen_array(body.attachments)
     hull = None if body.hull is None else frozen_array(list(product(*body.hull)))
     wrench = frozen_array([*body.wrench.force, *body.wrench.moment])
-    platform = Platform(body.mass, attachments, frozen_array(body.centre_of_mass), hull, wrench)
+    platform = Platform(
+        body.mass,
+        attachments,
+        frozen_array(body.centre_of_mass),
+        hull,
+        wrench,
+        drag_area_m2=None if body.drag is None else body.drag.area * body.drag.coefficient,
+    )
     return Robot(
         frozen_array(section.anchors),
         platform,
@@ -171,9 +185,7 @@ def _orientations(section: WorkspaceSection) -> Orientations:
     return Orientations(frozen_array([one.turn_rad for one in each])) if each else Orientations()
 
 
-def _region(
-    section: PrismSection | BoxSection | PointsSection | RectangleSection, robot: Robot
-) -> Region:
+def _region(section: RegionSection, robot: Robot) -> Region:
     if isinstance(section, BoxSection):
         return Prism.box(*section.box)
     if isinstance(section, PointsSection):
@@ -183,6 +195,15 @@ def _region(
         return Rectangle.over(over, section.inset, section.z)
     corners = robot.exit_points_m if section.prism == "anchors" else section.prism
     return Prism.over(corners, section.inset, section.z)
+
+
+def _case_region(document: Document, index: int, robot: Robot, section: RegionSection) -> Region:
+    """Return the region of a load case; a fault where nothing is left of it."""
+    try:
+        return _region(section, robot)
+    except ValueError as error:  # QhullError is one
+        place = ("load_cases", index, "region")
+        raise InputError([document.fault(place, str(error), "a region that has a size")]) from None
 
 
 def _selection(section: SelectionSection | None) -> Selection | None:

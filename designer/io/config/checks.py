@@ -16,6 +16,7 @@ from designer.documents.section import reader_of
 from designer.effects.effect import Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
+from designer.io.config.load_cases import load_cases_fit
 from designer.io.config.parts import Parts, valid
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, rank
 from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
@@ -234,6 +235,7 @@ _CHECKS = (
     catalogues_exist,
     each_cable_in_one_group,
     limit_has_groups,
+    load_cases_fit,
     effects_are_known,
     columns_fit_the_robot,
     unknowns_are_known,

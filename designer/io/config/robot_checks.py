@@ -240,6 +240,12 @@ def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[st
     force = parts.array("robot.platform.wrench.force")
     if force is not None and force.any():
         yield "robot.platform.wrench.force", force[None] * size / np.linalg.norm(force)
+    for case in parts.read("load_cases") or ():
+        force = np.zeros(3) if case.wrench is None else np.array(case.wrench.force)
+        wind = np.zeros(3) if case.wind is None else np.array(case.wind.direction or np.zeros(3))
+        for along in (force, wind):
+            if along.any():
+                yield "load_cases", along[None] * size / np.linalg.norm(along)
 
 
 def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
@@ -260,6 +266,10 @@ def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
     moment = parts.array("robot.platform.wrench.moment")
     if moment is not None and moment.any():
         yield "robot.platform.wrench.moment", moment[None] / np.linalg.norm(moment)
+    for case in parts.read("load_cases") or ():
+        if case.wrench is not None and any(case.wrench.moment):
+            moment = np.array(case.wrench.moment)
+            yield "load_cases", moment[None] / np.linalg.norm(moment)
 
 
 def rank(points: FloatArray) -> int:

@@ -50,6 +50,7 @@ from designer.units import describe
 
 MOST_CABLES = 64
 _GRADES = "'all' or a list of grade ids"
+_LOST = "'each' or the number of a cable"
 _ENDS = "'anchors' or two corners [[x, y], [x, y]]"
 _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
@@ -80,6 +81,11 @@ Names = Annotated[tuple[Text, ...], _names]
 CableNumbers = Annotated[
     tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
     list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
+]
+LostCable = Annotated[
+    Annotated[Literal["each"], only_word("each", _LOST), Tag("a word")]
+    | Annotated[int, WholeNumber(1, MOST_CABLES), Tag("a number")],
+    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
 ]
 Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
@@ -117,6 +123,13 @@ class WrenchSection(Section):
     moment: fields.Moments = (0.0, 0.0, 0.0)
 
 
+class DragSection(Section):
+    """What the wind finds of the platform."""
+
+    area: fields.DragArea = Field(description="an area such as '1.2 m^2'")
+    coefficient: fields.DragCoefficient = Field(description="a drag coefficient such as 1.1")
+
+
 class PlatformSection(Section):
     """What the cables carry."""
 
@@ -125,6 +138,7 @@ class PlatformSection(Section):
     centre_of_mass: fields.Point = (0.0, 0.0, 0.0)
     hull: Box | None = None
     wrench: WrenchSection = WrenchSection()
+    drag: DragSection | None = None
 
 
 class RobotSection(Section):
@@ -143,6 +157,7 @@ class CableSection(Section):
     density: fields.Density = Field(description="a density such as '7800 kg/m^3'")
     youngs_modulus: fields.Modulus = Field(description="a modulus such as '200 GPa'")
     allowable_stress: fields.Stress = Field(description="a stress such as '180 MPa'")
+    drag_coefficient: fields.DragCoefficient | None = None
 
 
 class GradeCableSection(Section):
@@ -150,6 +165,7 @@ class GradeCableSection(Section):
 
     grade: Text = Field(description="a grade id from `designer catalog list`")
     safety_factor: fields.SafetyFactor | None = None
+    drag_coefficient: fields.DragCoefficient | None = None
 
 
 def _cable_tag(given: object) -> str:
@@ -280,6 +296,57 @@ class SelectionSection(Section):
     max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
 
 
+class WindSection(Section):
+    """Wind of one speed, horizontal from so many directions or along one."""
+
+    speed: fields.Speed = Field(description="a speed such as '20 m/s'")
+    directions: Annotated[int, WholeNumber(1, 72)] | None = None
+    direction: fields.Direction | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_kind_of_direction(cls, given: object) -> object:
+        return only_one_of(given, ("directions", "direction"), "the wind")
+
+
+class IceSection(Section):
+    """Ice around the cables."""
+
+    thickness: fields.IceThickness = Field(description="a length such as '10 mm'")
+    density: fields.Density = 900.0
+
+
+class LoadCaseSection(Section):
+    """One load case; what it leaves out is as in the rest of the study."""
+
+    name: Text = Field(description="a name such as 'hoisting'")
+    mass: fields.Mass | None = None
+    wrench: WrenchSection | None = None
+    dynamic_factor: fields.DynamicFactor = 1.0
+    acceleration: fields.Acceleration = 0.0
+    wind: WindSection | None = None
+    ice: IceSection | None = None
+    cable_lost: LostCable | None = None
+    safety_factor: fields.SafetyFactor | None = None
+    termination_efficiency: fields.Efficiency | None = None
+    region: Region | None = None
+
+    def __str__(self) -> str:
+        """Return what it sets, in SI units."""
+        return ", ".join(f"{name} {_plainly(value)}" for name, value in self if self._sets(name))
+
+    def _sets(self, name: str) -> bool:
+        return name != "name" and name in self.model_fields_set
+
+
+def _plainly(value: object) -> str:
+    """Return a value of a load case for the table of inputs, sections in brackets."""
+    if not isinstance(value, Section):
+        return f"{value:g}" if isinstance(value, float) else str(value)
+    given = ((name, part) for name, part in value if name in value.model_fields_set)
+    return "{" + ", ".join(f"{name}: {_plainly(part)}" for name, part in given) + "}"
+
+
 class MeasuredCableSection(Section):
     """The cable that is on the machine."""
 
@@ -326,6 +393,12 @@ class DocumentSection(Section):
     logo: Text | None = None
 
 
+LoadCases = Annotated[
+    tuple[LoadCaseSection, ...],
+    list_of(0, 50, "a list of at most 50 load cases such as [{name: hoisting, …}]"),
+]
+
+
 class StudySection(Section):
     """The whole file."""
 
@@ -337,6 +410,7 @@ class StudySection(Section):
     pose: PoseSection | None = None
     workspace: WorkspaceSection | None = None
     selection: SelectionSection | None = None
+    load_cases: LoadCases = ()
     catalogues: Names = ()
     measurements: MeasurementsSection | None = None
     # designer.io.config.effects checks what is in it

@@ -11,7 +11,7 @@ from designer.model.robot import Robot
 from designer.report import format as fmt
 from designer.report.blocks import Bullets, Section
 from designer.report.design.source import Source
-from designer.study import Selection
+from designer.study import Selection, Study
 
 
 def section(source: Source) -> Section:
@@ -40,7 +40,7 @@ def section(source: Source) -> Section:
         )
     items = (
         f"Static equilibrium only: a {kind} of {fmt.kilograms(robot.platform.mass_kg)} on "
-        f"{robot.n_cables} cables{where}. No motion, no wind, no ice.",
+        f"{robot.n_cables} cables{where}. {_motion(analysis.study)}",
         "All cables are equal. Each is elastic, carries no bending and no compression.",
         _loads(robot),
         f"{exits} {_losses(selection)}",
@@ -53,6 +53,12 @@ def section(source: Source) -> Section:
     )
     shown = Bullets(tuple(item for item in items if item))
     return Section.of("assumptions", "Assumptions and limits", shown)
+
+
+def _motion(study: Study) -> str:
+    if study.load_cases:
+        return "Motion, wind and ice are as in the load cases, as forces at rest."
+    return "No motion, no wind, no ice."
 
 
 def nomenclature(_: Source) -> Section:

@@ -239,13 +239,17 @@ def diameter_heading(analysis: Analysis, what: str) -> str:
 def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     assert analysis.study.selection is not None
     size, found = chosen.size, chosen.verification
-    required = fmt.trimmed(analysis.study.selection.safety_factor)
-    actual = chosen.efficiency * size.minimum_breaking_load_N / found.max_tension_N
+    most = chosen.governing
+    factor = most.case.safety_factor or analysis.study.selection.safety_factor
+    required, allowable_N = fmt.trimmed(factor), most.loaded.cable.allowable_tension_N
+    kept = chosen.efficiency
+    if most.case.termination_efficiency is not None:
+        kept = allowable_N * factor / size.minimum_breaking_load_N
+    actual = kept * size.minimum_breaking_load_N / found.max_tension_N
     breaking, allowable, largest = fmt.newtons_alike(
-        size.minimum_breaking_load_N, chosen.cable.allowable_tension_N, found.max_tension_N
+        size.minimum_breaking_load_N, allowable_N, found.max_tension_N
     )
-    lost = chosen.efficiency != 1.0
-    share = f" times {fmt.trimmed(chosen.efficiency, 3)}" if lost else ", no loss,"
+    share = f" times {fmt.trimmed(kept, 3)}" if kept != 1.0 else ", no loss,"
     longest, shortest = _lengths(found.longest_m, math.ceil), _lengths(found.shortest_m, math.floor)
     facts = (
         Fact("Grade", chosen.grade.id),
@@ -255,6 +259,7 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
         Fact("At the position", fmt.position(found.worst_position_m)),
         Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
         Fact("Utilisation", fmt.utilisation(found.utilisation)),
+        *([Fact("Load case", most.case.name)] if analysis.study.load_cases else []),
         _mass(chosen),
         Fact("Longest, each cable", longest, "unstrained, no spare"),
         Fact("Shortest", shortest, "unstrained"),

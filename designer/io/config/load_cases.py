@@ -1,0 +1,97 @@
+"""The load cases of a config: checked against the rest of the study, and built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from designer.arrays import frozen_array
+from designer.errors import Fault
+from designer.io.config.parts import Parts
+from designer.io.config.schema import (
+    BoxSection,
+    LoadCaseSection,
+    PointsSection,
+    PrismSection,
+    RectangleSection,
+    WindSection,
+)
+from designer.model.load_case import Ice, LoadCase, Wind
+from designer.model.region import Region
+
+RegionSection = PrismSection | BoxSection | PointsSection | RectangleSection
+_CASES = "load_cases"
+
+
+def load_case(
+    section: LoadCaseSection,
+    cable_drag_coefficient: float | None,
+    region_of: Callable[[RegionSection], Region],
+) -> LoadCase:
+    """Return the load case that a section describes."""
+    wrench, ice = section.wrench, section.ice
+    return LoadCase(
+        name=section.name,
+        mass_kg=section.mass,
+        wrench_N=None if wrench is None else frozen_array([*wrench.force, *wrench.moment]),
+        dynamic_factor=section.dynamic_factor,
+        acceleration_m_per_s2=section.acceleration,
+        wind=None if section.wind is None else _wind(section.wind, cable_drag_coefficient),
+        ice=None if ice is None else Ice(ice.thickness, ice.density),
+        cable_lost=section.cable_lost,
+        safety_factor=section.safety_factor,
+        termination_efficiency=section.termination_efficiency,
+        region=None if section.region is None else region_of(section.region),
+    )
+
+
+def _wind(section: WindSection, cable_drag_coefficient: float | None) -> Wind:
+    along = None if section.direction is None else frozen_array(section.direction)
+    return Wind(section.speed, cable_drag_coefficient or 0.0, section.directions or 8, along)
+
+
+def load_cases_fit(parts: Parts) -> Iterator[Fault]:
+    """Load cases have a selection that they are for, names of their own, and cables that exist."""
+    cases = parts.raw(_CASES)
+    if not isinstance(cases, list) or not cases:
+        return
+    if parts.raw("selection") is None:
+        expected = "a selection: load cases are for ropes that can be bought"
+        yield parts.fault(_CASES, "there is no selection", expected)
+    if parts.raw("selection.groups") is not None:
+        problem = "groups of cables are chosen for the static load alone"
+        yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
+    if parts.raw("workspace.hangs_below") == "exclude":
+        problem = "which cables hang below depends on the load case"
+        yield parts.fault("workspace.hangs_below", problem, "include, where there are load_cases")
+    first: dict[str, int] = {}
+    for index, case in enumerate(cases):
+        if isinstance(case, dict):
+            yield from _case_fits(parts, index, case, first)
+
+
+def _case_fits(
+    parts: Parts, index: int, case: Mapping[str, object], first: dict[str, int]
+) -> Iterator[Fault]:
+    name, lost = case.get("name"), case.get("cable_lost")
+    if isinstance(name, str) and first.setdefault(name, index) != index:
+        problem = f"load_cases[{first[name]}] has the name '{name}' already"
+        yield parts.fault(_CASES, problem, "a name of its own", index, "name")
+    if isinstance(lost, int) and not isinstance(lost, bool) and lost > parts.n_cables:
+        problem = f"there is no cable {lost}, the robot has {parts.n_cables}"
+        yield parts.fault(_CASES, problem, f"1 to {parts.n_cables} or each", index, "cable_lost")
+    if lost is not None and parts.n_cables == 1:
+        yield parts.fault(_CASES, "no cable is left", "a robot with more", index, "cable_lost")
+    region = case.get("region")
+    if parts.is_planar and isinstance(region, dict) and ("prism" in region or "box" in region):
+        problem = "is a solid region, but the robot is planar"
+        yield parts.fault(_CASES, problem, "rectangle or points", index, "region")
+    if case.get("wind") is None:
+        return
+    if parts.raw("robot.platform.drag") is None:
+        problem = "the platform has no area in the wind"
+        expected = "robot.platform.drag: {area: …, coefficient: …}"
+        yield parts.fault(_CASES, problem, expected, index, "wind")
+    if parts.raw("cable.drag_coefficient") is None:
+        problem = "the drag of the cables is not given"
+        expected = "cable.drag_coefficient, such as 1.2; 0 for none"
+        yield parts.fault(_CASES, problem, expected, index, "wind")

@@ -1,0 +1,272 @@
+r"""Load cases: what acts on platform and cables, as a change of the robot and of its cables.
+
+Wind of speed v has the pressure :math:`q = \tfrac12 \varrho v^2`, with 1.25 kg/m³ for air (EN
+1991-1-4, 4.5). On the platform it makes the force :math:`q\,C_d A`, at the origin of its frame; on
+a cable, per unstrained length, :math:`q\,C_d\,d`, along the wind and at full speed whatever the
+cable's inclination. Ice of thickness t adds the weight :math:`\pi t (d + t) \varrho_i g` and makes
+the cable :math:`d + 2 t` thick in the wind.
+
+The load per unstrained length is then one constant vector for all cables, so that each is still a
+catenary, in the plane of that vector and its chord: the robot is solved in a frame whose z axis
+points against it (`Robot.cable_load_direction`), with a cable of that weight, and what acts on the
+platform as forces in the world.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from designer.arrays import FloatArray, finite_array, require_number
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
+from designer.model.region import Region
+from designer.model.robot import Robot
+
+AIR_DENSITY_KG_PER_M3 = 1.25
+EACH = "each"
+"""Of a lost cable: each in turn."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wind:
+    """Wind that blows with one speed everywhere.
+
+    Parameters
+    ----------
+    speed_m_per_s : float
+        Its speed [m/s].
+    cable_drag_coefficient : float
+        C_d of the cables, on their diameter.
+    count : int
+        How many directions are tried, horizontal, evenly spread from +x.
+    direction : array (3,) or None
+        Where it blows to, instead of these; its length does not count.
+    """
+
+    speed_m_per_s: float
+    cable_drag_coefficient: float
+    count: int = 8
+    direction: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        require_number("speed_m_per_s", self.speed_m_per_s, least=0.0)
+        require_number("cable_drag_coefficient", self.cable_drag_coefficient, least=0.0)
+        require_number("count", self.count, least=1)
+        if self.direction is not None:
+            object.__setattr__(self, "direction", finite_array("direction", self.direction, 3))
+
+    @property
+    def pressure_Pa(self) -> float:
+        """Dynamic pressure [Pa]."""
+        return 0.5 * AIR_DENSITY_KG_PER_M3 * self.speed_m_per_s**2
+
+    def directions(self, robot: Robot) -> FloatArray:
+        """Return unit vectors of where it blows to (n, 3), world frame.
+
+        On a planar robot, whose guides bear what is across its plane, the two along the plane are
+        the worst of all horizontal ones.
+        """
+        if self.direction is not None:
+            return (self.direction / np.linalg.norm(self.direction))[None]
+        if robot.is_planar:
+            return np.array([robot.level[0], -robot.level[0]])
+        turn = 2.0 * math.pi * np.arange(self.count) / self.count
+        return np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn]) @ robot.level
+
+
+@dataclass(frozen=True, slots=True)
+class Ice:
+    """Ice all around the cables."""
+
+    thickness_m: float
+    density_kg_per_m3: float = 900.0
+
+    def __post_init__(self) -> None:
+        require_number("thickness_m", self.thickness_m, least=0.0)
+        require_number("density_kg_per_m3", self.density_kg_per_m3, above=0.0)
+
+    def linear_density_kg_per_m(self, diameter_m: float) -> float:
+        """Return its mass per length on a cable [kg/m]."""
+        return math.pi * self.thickness_m * (diameter_m + self.thickness_m) * self.density_kg_per_m3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loaded:
+    """A robot and its cables under one load case, in one direction of wind and inertia.
+
+    Parameters
+    ----------
+    case : LoadCase
+        The case.
+    bare : tuple of Robot and Cable
+        What it was put on.
+    robot : Robot
+        With what acts on the platform, and the direction of the load on its cables.
+    cable : Cable
+        With the load per length in place of its weight.
+    wind, inertia : array (3,) or None
+        Unit vectors of where the wind blows to and the inertia force points, world frame.
+    lost_cable : int or None
+        The cable that is gone, from 1; the robot above still has it.
+    """
+
+    case: LoadCase
+    bare: tuple[Robot, Cable]
+    robot: Robot
+    cable: Cable
+    wind: FloatArray | None = None
+    inertia: FloatArray | None = None
+    lost_cable: int | None = None
+
+    def pushed(self, along: FloatArray) -> Loaded:
+        """Return the same with the inertia force along another direction (3,)."""
+        turned = along / np.linalg.norm(along)
+        return self.case.under(*self.bare, self.wind, turned, self.lost_cable)
+
+    @property
+    def words(self) -> str:
+        """Its direction or lost cable, for the reader of a report; empty where there is neither."""
+        named = (("wind", self.wind), ("inertia force", self.inertia))
+        parts = [f"{name} along {_row(along)}" for name, along in named if along is not None]
+        if self.lost_cable is not None:
+            parts.append(f"without cable {self.lost_cable}")
+        return ", ".join(parts)
+
+
+def _row(vector: FloatArray) -> str:
+    return f"({', '.join(f'{round(float(x), 3) + 0.0:g}' for x in vector)})"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadCase:
+    """One load case: what it changes of a study. None leaves that as the study has it.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    mass_kg : float or None
+        Mass of the platform with its payload [kg].
+    wrench_N : array (6,) or None
+        Constant force and moment on the platform, as `Platform.wrench_N` [N, N·m].
+    dynamic_factor : float
+        Factor on weight and wrench of the platform, not on the cables' own weight.
+    acceleration_m_per_s2 : float
+        Of the platform [m/s²]; its inertia force acts at the centre of mass, without the dynamic
+        factor, in its worst direction.
+    wind, ice
+        On platform and cables, and around the cables.
+    cable_lost : int, ``each`` or None
+        A cable that is gone, from 1, or each in turn.
+    safety_factor, termination_efficiency : float or None
+        Instead of those of the selection.
+    region : Region or None
+        Instead of that of the workspace.
+    """
+
+    name: str
+    mass_kg: float | None = None
+    wrench_N: FloatArray | None = None
+    dynamic_factor: float = 1.0
+    acceleration_m_per_s2: float = 0.0
+    wind: Wind | None = None
+    ice: Ice | None = None
+    cable_lost: int | str | None = None
+    safety_factor: float | None = None
+    termination_efficiency: float | None = None
+    region: Region | None = None
+
+    def __post_init__(self) -> None:
+        require_number("mass_kg", self.mass_kg, above=0.0)
+        require_number("dynamic_factor", self.dynamic_factor, least=1.0)
+        require_number("acceleration_m_per_s2", self.acceleration_m_per_s2, least=0.0)
+        require_number("safety_factor", self.safety_factor, least=1.0)
+        require_number("termination_efficiency", self.termination_efficiency, above=0.0, most=1.0)
+        if self.wrench_N is not None:
+            object.__setattr__(self, "wrench_N", finite_array("wrench_N", self.wrench_N, 6))
+        if self.cable_lost != EACH:
+            if isinstance(self.cable_lost, str):
+                raise ValueError(f"cable_lost must be a cable or '{EACH}', not '{self.cable_lost}'")
+            require_number("cable_lost", self.cable_lost, least=1)
+
+    @property
+    def changes_robot(self) -> bool:
+        """Whether the robot as loaded depends on the cable, whose drag and weight tilt its load."""
+        return self.wind is not None and self.wind.cable_drag_coefficient > 0.0
+
+    def on(self, robot: Robot, cable: Cable) -> Iterator[Loaded]:
+        """Yield robot and cable in all directions of this case: of wind, of inertia, lost cables.
+
+        The inertia force points along 14 directions in space, 8 in a plane: any other direction is
+        within 37° of one of them. What is worst between them is for a search to find, by `under`.
+        """
+        winds = [None] if self.wind is None else list(self.wind.directions(robot))
+        pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_spread(robot))
+        lost: list[int | None] = [None]
+        if self.cable_lost is not None:
+            each = self.cable_lost == EACH
+            lost = list(range(1, robot.n_cables + 1)) if each else [int(self.cable_lost)]
+        for wind, push, gone in product(winds, pushes, lost):
+            yield self.under(robot, cable, wind, push, gone)
+
+    def under(
+        self,
+        robot: Robot,
+        cable: Cable,
+        wind: FloatArray | None = None,
+        inertia: FloatArray | None = None,
+        lost_cable: int | None = None,
+    ) -> Loaded:
+        """Return robot and cable in one direction of wind and inertia force (3,), unit vectors."""
+        bare, body, factor = (robot, cable), robot.platform, self.dynamic_factor
+        mass = body.mass_kg if self.mass_kg is None else self.mass_kg
+        wrench = factor * (body.wrench_N if self.wrench_N is None else self.wrench_N)
+        centre = body.centre_force_N
+        if inertia is not None:
+            centre = centre + mass * self.acceleration_m_per_s2 * inertia
+        if self.wind is not None and wind is not None:
+            drag = self.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * wind
+            wrench = wrench + np.concatenate([drag, np.zeros(3)])
+        body = replace(body, mass_kg=factor * mass, wrench_N=wrench, centre_force_N=centre)
+        loaded = replace(robot, platform=body)
+        load = self._cable_load_N_per_m(robot, cable, wind)
+        size = float(np.linalg.norm(load))
+        if self.wind is not None:
+            loaded = replace(loaded, cable_load_direction=load / size)
+        if self.wind is not None or self.ice is not None:
+            cable = replace(cable, linear_density_kg_per_m=size / STANDARD_GRAVITY_M_PER_S2)
+        return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable)
+
+    def _cable_load_N_per_m(
+        self, robot: Robot, cable: Cable, wind: FloatArray | None
+    ) -> FloatArray:
+        """Return weight, ice and drag per unstrained length (3,), world frame [N/m]."""
+        ice = self.ice or Ice(0.0)
+        mass = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable.diameter_m)
+        load = -STANDARD_GRAVITY_M_PER_S2 * mass * robot.level[2]
+        if self.wind is not None and wind is not None:
+            width = cable.diameter_m + 2.0 * ice.thickness_m
+            load = load + self.wind.pressure_Pa * self.wind.cable_drag_coefficient * width * wind
+        return np.asarray(load)
+
+
+STATIC = LoadCase("static")
+"""What a study without load cases is solved for."""
+
+
+def free_axes(robot: Robot) -> FloatArray:
+    """Return the axes along which forces move the platform, (3, 3), in a plane (2, 3)."""
+    return robot.level[[0, 2]] if robot.is_planar else np.eye(3)
+
+
+def _spread(robot: Robot) -> FloatArray:
+    """Return directions of a force that moves the platform (n, 3)."""
+    axes = free_axes(robot)
+    steps = np.array(list(product((-1.0, 0.0, 1.0), repeat=len(axes))))
+    size = np.abs(steps).sum(axis=1)
+    steps = steps[(size > 0.0) & ((len(axes) == 2) | (size != 2.0))]
+    return np.asarray(steps / np.linalg.norm(steps, axis=1, keepdims=True) @ axes)

@@ -1,0 +1,172 @@
+"""The load cases: what each changes, and what the chosen rope meets in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from designer.model.load_case import LoadCase
+from designer.report import format as fmt
+from designer.report.blocks import Column, Row, Section, Statement, Table
+from designer.report.design.source import Source
+from designer.selection.cases import FEW_SAMPLES, CaseFound
+from designer.selection.result import Candidate
+from designer.statics.cable_loss import Fate
+from designer.study import Study
+
+_PARTS: dict[str, Callable[[LoadCase], bool]] = {
+    "dynamic factor": lambda case: case.dynamic_factor > 1.0,
+    "acceleration": lambda case: case.acceleration_m_per_s2 > 0.0,
+    "wind": lambda case: case.wind is not None,
+    "ice": lambda case: case.ice is not None,
+    "loss of a cable": lambda case: case.cable_lost is not None,
+}
+"""What a load case can have, for what none of a study has."""
+
+
+def loads_statement(study: Study) -> Statement:
+    """Return in what loads the answer holds, and what is in none of them."""
+    cases = study.load_cases
+    lacking = [name for name, has in _PARTS.items() if not any(map(has, cases))]
+    without = f"no {fmt.listing(lacking, 'or')}" if lacking else ""
+    if not cases:
+        return Statement("Loads", f"One static load case, at rest: {without} is in it.", "doubt")
+    names = fmt.listing(case.name for case in cases)
+    lacks = f" {fmt.capital(without)} is in any of them." if lacking else ""
+    return Statement("Loads", f"The rope is to hold in every load case: {names}.{lacks}")
+
+
+def section(source: Source) -> Section | None:
+    """Return what the chosen rope meets in each load case; None where the study has none."""
+    study, selection = source.analysis.study, source.analysis.selection
+    if not study.load_cases or selection is None:
+        return None
+    chosen = selection.chosen
+    return Section.of(
+        "load-cases",
+        "Load cases",
+        _statement(chosen),
+        _asked(study),
+        None if chosen is None else _met(chosen),
+        _lost(chosen) if chosen is not None else None,
+        "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
+        "platform, at the origin of its frame, and times drag coefficient and diameter on each "
+        "unstrained length of a cable, along the wind and at full speed whatever the cable's "
+        "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
+        "cables' own weight; an inertia force points where it is worst, as far as a search from "
+        "14 directions finds it. Winches hold each pose, so a change of temperature changes "
+        "lengths and no tension.",
+        "The configured family, the maps, the shares of the region that sizes serve, stiffness and "
+        "clearance are those of the static load of the study.",
+    )
+
+
+def _statement(chosen: Candidate | None) -> Statement:
+    if chosen is None:
+        text = "The reasons stand with each size in the table of candidates."
+        return Statement("No rope holds in every load case", text, "bad")
+    most = chosen.governing
+    where = fmt.position(most.verification.worst_position_m[:3])
+    words = f", {most.loaded.words}" if most.loaded.words else ""
+    text = (
+        f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
+        f"{fmt.utilisation(most.utilisation)} with the platform at {where}{words}."
+    )
+    return Statement("The chosen rope holds in every load case", text, "good")
+
+
+def _asked(study: Study) -> Table:
+    rows = [Row((case.name, _changes(case))) for case in study.load_cases]
+    caption = "The load cases. What is not named is as in the rest of the study."
+    return Table.of(caption, ("Load case", "Changes"), *rows)
+
+
+def _changes(case: LoadCase) -> str:
+    """Return what a load case changes of the study."""
+    parts = []
+    if case.mass_kg is not None:
+        parts.append(f"platform of {fmt.kilograms(case.mass_kg)}")
+    if case.wrench_N is not None:
+        force = ", ".join(fmt.trimmed(float(x)) for x in case.wrench_N)
+        parts.append(f"wrench ({force})\u00a0N, N·m")
+    if case.dynamic_factor > 1.0:
+        parts.append(f"dynamic factor {fmt.trimmed(case.dynamic_factor)}")
+    if case.acceleration_m_per_s2 > 0.0:
+        parts.append(f"acceleration {fmt.trimmed(case.acceleration_m_per_s2)}\u00a0m/s²")
+    if case.wind is not None:
+        along = (
+            "one direction" if case.wind.direction is not None else f"{case.wind.count} directions"
+        )
+        speed = f"{fmt.trimmed(case.wind.speed_m_per_s)}\u00a0m/s"
+        parts.append(
+            f"wind of {speed} in {along}, pressure {fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
+        )
+    if case.ice is not None:
+        parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
+    if case.cable_lost is not None:
+        which = "each cable in turn" if case.cable_lost == "each" else f"cable {case.cable_lost}"
+        parts.append(f"{which} lost")
+    if case.safety_factor is not None:
+        parts.append(f"safety factor {fmt.trimmed(case.safety_factor)}")
+    if case.termination_efficiency is not None:
+        parts.append(f"end fittings keep {fmt.percent(case.termination_efficiency)}")
+    if case.region is not None:
+        low, high = case.region.bounds_m
+        parts.append(f"platform between {fmt.position(low)} and {fmt.position(high)}")
+    return fmt.capital("; ".join(parts)) or "Nothing: the static load"
+
+
+def _met(chosen: Candidate) -> Table:
+    columns = (
+        *("Load case", Column("Used"), Column("Largest tension"), Column("Allowable")),
+        *(Column("Cable"), "Platform at", "Direction or loss", "Verdict"),
+    )
+    rows = [_row(one, one is chosen.governing) for one in chosen.cases]
+    return Table.of(f"{fmt.capital(chosen.name)}, in each load case at its worst.", columns, *rows)
+
+
+def _row(found: CaseFound, governs: bool) -> Row:
+    met = found.verification
+    largest, allowable = fmt.newtons_alike(
+        met.max_tension_N, found.loaded.cable.allowable_tension_N
+    )
+    verdict = "holds" if met.holds else "does not hold"
+    return Row(
+        (
+            found.case.name,
+            fmt.utilisation(met.utilisation),
+            largest,
+            allowable,
+            str(found.most_used() or ""),
+            fmt.position(met.worst_position_m[:3]),
+            found.loaded.words or "–",
+            f"{verdict}, governs" if governs else verdict,
+        ),
+        "good" if governs else "",
+    )
+
+
+def _lost(chosen: Candidate) -> str:
+    """Return what becomes of the platform at the worst pose of each case in which one is lost."""
+    parts = []
+    for found in chosen.cases:
+        loss = found.loss()
+        if loss is None:
+            continue
+        fate = Fate(int(loss.fate[0]))
+        rest = ""
+        if fate is Fate.RESTS_ELSEWHERE:
+            at = fmt.position(loss.rest.position_m[0])
+            rest = f", {fmt.metres(float(loss.moved_m[0]))} away at {at}"
+        parts.append(
+            f"'{found.case.name}': without cable {found.loaded.lost_cable}, at the pose above, "
+            f"{fate.words}{rest}."
+        )
+    if not parts:
+        return ""
+    return (
+        f"{fmt.capital(' '.join(parts))} The other cables keep the lengths that they had, as on "
+        "braked winches; what the loss itself sets swinging is not in this but by a dynamic "
+        f"factor, nor is what the platform may strike. Each loss was followed from {FEW_SAMPLES} "
+        "samples and the corners of the region, that of the chosen rope from more, and searched "
+        "between them."
+    )

@@ -1,0 +1,294 @@
+"""What candidates meet in the load cases of a study, over the samples and between them.
+
+Each case has directions of wind and inertia and lost cables (`designer.model.load_case.Loaded`);
+each of these is solved over all samples, for all candidates that hold so far. A lost cable sets the
+platform moving, which takes long to follow: that is done for fewer samples. Between the samples it
+is searched in the direction in which a case asks for most, and in those that come near it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase, Loaded, free_axes
+from designer.model.robot import Poses, Robot
+from designer.progress import Advance
+from designer.selection.verify import Sampled, Verification, refined, verify_sizes
+from designer.statics.cable_loss import CableLoss, lose_cable
+from designer.statics.inverse import solve_sagging
+from designer.study import Workspace
+from designer.workspace.demand import loss_demand, rope_demand
+from designer.workspace.refine import LIGHT, refine_over_branches
+
+FEW_SAMPLES, MOST_SAMPLES = 128, 512
+"""Poses in which a cable is lost, for each candidate and for the chosen one."""
+_NEAR = 0.9
+"""Of the utilisation that governs: from where on other cases and directions are searched, too."""
+_FIRST_TURN, _LAST_TURN, _MOST_ROUNDS = 0.5, 1e-6, 6
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaseFound:
+    """What a cable meets in one load case, or in one direction of it.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        With the region of the case.
+    loaded : Loaded
+        Robot and cable in the direction, or without the cable, in which it is used most.
+    sampled : Sampled
+        What it meets there over the samples.
+    verification : Verification
+        The same, also between the samples where ``is_refined``.
+    is_full : bool
+        Whether that search was the full one.
+    """
+
+    workspace: Workspace
+    loaded: Loaded
+    sampled: Sampled
+    verification: Verification
+    is_full: bool = False
+
+    @property
+    def case(self) -> LoadCase:
+        """The case."""
+        return self.loaded.case
+
+    @property
+    def utilisation(self) -> float:
+        """Largest over allowable tension."""
+        return self.verification.utilisation
+
+    @property
+    def pose(self) -> Poses:
+        """Where (1,)."""
+        return Poses.at(self.verification.worst_position_m[None])
+
+    def tension_N(self, other: Loaded) -> float:
+        """Return the largest tension at that pose with another robot or cable [N]."""
+        place = self.verification.worst_position_m[None]
+        if other.lost_cable is not None:
+            return float(loss_demand(other.robot, other.cable, other.lost_cable)(place)[0])
+        return float(rope_demand(other.robot, other.cable, "include")(place)[0, 0])
+
+    def loss(self) -> CableLoss | None:
+        """Return what becomes of that pose; None where no cable is lost."""
+        one = self.loaded
+        if one.lost_cable is None:
+            return None
+        return lose_cable(one.robot, self.pose, one.cable, one.lost_cable)
+
+    def most_used(self) -> int | None:
+        """Return the cable that is used most there, from 1; None where nothing holds the pose."""
+        loss = self.loss()
+        if not np.isfinite(self.utilisation):
+            return None
+        if loss is not None:
+            return int(loss.tension_N[0].argmax()) + 1
+        statics = solve_sagging(self.loaded.robot, self.pose, self.loaded.cable)
+        return int(statics.cable_tension_N[0].argmax()) + 1 if statics.is_solved[0] else None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cases:
+    """The load cases of a study, ready to be tried on cables."""
+
+    robot: Robot
+    workspace: Workspace
+    each: tuple[LoadCase, ...]
+
+    def passes(self, cables: Sequence[Sequence[Cable]]) -> int:
+        """Return how often all samples are solved at most, for a progress bar."""
+        if not cables or not cables[0]:
+            return 1
+        return sum(
+            len(list(c.on(self.robot, a[0]))) for c, a in zip(self.each, cables, strict=True)
+        )
+
+    def sampled(
+        self, cables: Sequence[Sequence[Cable]], progress: Advance
+    ) -> list[tuple[CaseFound, ...]]:
+        """Solve every sample with every candidate in every direction of every case.
+
+        Parameters
+        ----------
+        cables : sequence of sequences of Cable
+            For each case the candidates, with what they may be used to in it.
+        progress : callable
+            Called with the number of samples done.
+
+        Returns
+        -------
+        list of tuple of CaseFound
+            For each candidate, each direction of each case; up to the first that settles that it
+            does not hold.
+        """
+        found: list[list[CaseFound]] = [[] for _ in cables[0]]
+        for case, those in zip(self.each, cables, strict=True):
+            turns = zip(*(case.on(self.robot, cable) for cable in those), strict=True)
+            for loaded in turns:
+                holds = [all(one.verification.holds for one in before) for before in found]
+                alive = [k for k in range(len(found)) if holds[k]]
+                tried = self._try(case, [loaded[k] for k in alive], progress)
+                for k, one in zip(alive, tried, strict=True):
+                    found[k].append(one)
+        return [tuple(each) for each in found]
+
+    def _try(
+        self, case: LoadCase, loaded: Sequence[Loaded], progress: Advance
+    ) -> Iterator[CaseFound]:
+        region = case.region or self.workspace.region
+        workspace = replace(self.workspace, region=region)
+        cables = [one.cable for one in loaded]
+        shares = bool(loaded) and not case.changes_robot and case.cable_lost is None
+        if not loaded:
+            met = []
+        elif loaded[0].lost_cable is not None:
+            met = [_after_loss(one, workspace, FEW_SAMPLES) for one in loaded]
+        elif case.changes_robot:
+            met = [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
+        else:
+            met = verify_sizes(loaded[0].robot, workspace, cables, progress=progress)
+        if not shares:
+            progress(workspace.sample_count)
+        for one, sampled in zip(loaded, met, strict=True):
+            known = sampled.verification(one.cable)
+            yield CaseFound(workspace, one, sampled, known)
+
+
+def governing(found: Sequence[CaseFound]) -> CaseFound:
+    """Return the case, and direction, that asks for most; the first of equal ones."""
+    return max(found, key=lambda one: one.utilisation)
+
+
+def worst_of_each(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+    """Return of each case the direction that asks for most, in the order of the study."""
+    cases = {id(one.case): one.case for one in found}
+    return tuple(governing([o for o in found if o.case is case]) for case in cases.values())
+
+
+def together(found: Sequence[CaseFound]) -> Verification:
+    """Return what governs, with the longest and shortest lengths of all cases."""
+    most = governing(found).verification
+    longest = np.maximum.reduce([one.verification.longest_m for one in found])
+    shortest = np.fmin.reduce([one.verification.shortest_m for one in found])
+    return replace(most, longest_m=longest, shortest_m=shortest)
+
+
+def searched(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+    """Search between the samples: what governs in full, other cases near it lightly."""
+    most = governing(found)
+    near = [o for o in worst_of_each(found) if o.utilisation > _NEAR * most.utilisation]
+    return _with(found, {id(o): _search(o, is_light=o is not most) for o in near})
+
+
+def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+    """Search between the samples in every case: its worst direction in full, those near it lightly.
+
+    Of inertia forces, the direction is then turned and the pose searched again by turns until
+    neither gains: no pose and no direction near these is worse.
+    """
+    done: dict[int, CaseFound] = {}
+    for most in worst_of_each(found):
+        near = (o for o in found if o.case is most.case)
+        near = (o for o in near if o.utilisation > _NEAR * most.utilisation)
+        done |= {id(o): _search(o, is_light=o is not most) for o in near}
+    return tuple(_turned(one) for one in _with(found, done))
+
+
+def _with(found: Sequence[CaseFound], done: dict[int, CaseFound]) -> tuple[CaseFound, ...]:
+    return tuple(done.get(id(one), one) for one in found)
+
+
+def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
+    one, workspace = found.loaded, found.workspace
+    if not np.isfinite(found.utilisation) or found.is_full:
+        return found
+    if one.lost_cable is None:
+        effort = LIGHT if is_light else None
+        met = refined(one.robot, workspace, one.cable, found.sampled, effort)
+        return replace(found, verification=met, is_full=not is_light)
+    if is_light:
+        return found
+    more = _after_loss(one, workspace, MOST_SAMPLES)
+    demand_with = partial(loss_demand, one.robot, one.cable, one.lost_cable)
+    starts = np.concatenate([found.sampled.worst_m, more.worst_m])
+    (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    used = worst.demand / one.cable.allowable_tension_N
+    met = replace(
+        found.verification,
+        worst_position_m=worst.place,
+        max_tension_N=worst.demand,
+        utilisation=used,
+        is_refined=True,
+    )
+    return replace(found, verification=met, is_full=True)
+
+
+def _after_loss(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
+    """Return what a cable meets after the loss of another one, over some samples."""
+    assert one.lost_cable is not None
+    places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
+    tension = loss_demand(one.robot, one.cable, one.lost_cable)(places)
+    order = np.argsort(-tension, kind="stable")
+    used = tension / one.cable.allowable_tension_N
+    return Sampled(
+        worst_m=places[order[:8]],
+        utilisation=float(used.max()),
+        longest_m=np.zeros(one.robot.n_cables),
+        samples=len(places),
+        counted=int(np.isfinite(used).sum()),
+        overloaded=int((used > 1.0).sum()),
+        not_held=int(np.isposinf(used).sum()),
+        is_complete=True,
+    )
+
+
+def _turned(found: CaseFound) -> CaseFound:
+    """Turn the inertia force to where it is worst, with the pose that goes with it."""
+    if found.loaded.inertia is None or not found.verification.is_refined:
+        return found
+    for _ in range(_MOST_ROUNDS):
+        before = found.utilisation
+        turned = _steepest(found)
+        met = refined(
+            turned.loaded.robot, turned.workspace, turned.loaded.cable,
+            replace(turned.sampled, worst_m=turned.verification.worst_position_m[None]), LIGHT,
+        )  # fmt: skip
+        if met.utilisation > turned.utilisation:
+            turned = replace(turned, verification=met)
+        found = turned if turned.utilisation > before else found
+        if not np.isfinite(found.utilisation) or found.utilisation <= before * (1.0 + _SAME):
+            break
+    return found
+
+
+def _steepest(found: CaseFound) -> CaseFound:
+    """Turn the inertia force at one pose, by ever smaller steps, for as long as it gets worse."""
+    step, axes = _FIRST_TURN, free_axes(found.loaded.robot)
+    while step > _LAST_TURN:
+        trials = [_towards(found, step * side) for side in (*axes, *-axes)]
+        best = governing([found, *trials])
+        step *= 0.5 if best is found else 1.2
+        found = best
+    return found
+
+
+def _towards(found: CaseFound, side: FloatArray) -> CaseFound:
+    """Return what is met at the same pose with the inertia force turned toward a side (3,)."""
+    one, met = found.loaded, found.verification
+    assert one.inertia is not None
+    loaded = one.pushed(one.inertia + side)
+    tension = found.tension_N(loaded)
+    used = tension / loaded.cable.allowable_tension_N
+    met = replace(met, max_tension_N=tension, utilisation=used)
+    return replace(found, loaded=loaded, verification=met)

@@ -1,0 +1,141 @@
+"""Load cases in a config: what they become, and one clear line for each mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from designer.errors import Fault
+from designer.model.region import Prism
+from designer.study import Study
+
+StudyOf = Callable[[str], Study]
+FaultsOf = Callable[[str], list[Fault]]
+
+DRAG = "    drag: {area: 1.2 m^2, coefficient: 1.1}\ncable:\n  drag_coefficient: 1.2\n"
+CASES = """
+load_cases:
+  - name: static
+  - {name: hoisting, mass: 250 kg, dynamic_factor: 1.3, acceleration: 0.5 m/s^2}
+  - name: storm
+    wind: {speed: 36 km/h, directions: 12}
+    ice: {thickness: 10 mm}
+    safety_factor: 3
+    termination_efficiency: 0.9
+    region: {box: [[1, 2], [3, 4], [5, 6]]}
+  - {name: gust, wind: {speed: 10 m/s, direction: [0, 2, 0]}, wrench: {force: [0, 0, -1 kN]}}
+  - {name: one lost, cable_lost: each}
+  - {name: third lost, cable_lost: 3}
+"""
+
+
+@pytest.fixture
+def windy(valid: str) -> str:
+    return valid.replace("cable:\n", DRAG)
+
+
+def test_what_they_become(windy: str, study_of: StudyOf) -> None:
+    study = study_of(windy + CASES)
+    assert study.robot.platform.drag_area_m2 == pytest.approx(1.32)
+    static, hoisting, storm, gust, each, third = study.load_cases
+    assert (static.dynamic_factor, static.wind, static.cable_lost) == (1.0, None, None)
+    assert (hoisting.mass_kg, hoisting.acceleration_m_per_s2) == (250.0, 0.5)
+    assert storm.wind is not None
+    assert storm.ice is not None
+    assert storm.wind.pressure_Pa == pytest.approx(62.5)
+    assert (storm.wind.count, storm.wind.cable_drag_coefficient) == (12, 1.2)
+    assert (storm.ice.thickness_m, storm.ice.density_kg_per_m3) == (0.01, 900.0)
+    assert (storm.safety_factor, storm.termination_efficiency) == (3.0, 0.9)
+    assert isinstance(storm.region, Prism)
+    assert gust.wind is not None
+    assert gust.wrench_N is not None
+    np.testing.assert_array_equal(gust.wind.directions(study.robot), [[0, 1, 0]])
+    np.testing.assert_array_equal(gust.wrench_N, [0, 0, -1000, 0, 0, 0])
+    assert (each.cable_lost, third.cable_lost) == ("each", 3)
+
+
+def test_the_table_of_inputs_has_them(windy: str, study_of: StudyOf) -> None:
+    entries = {e.field: e.value_SI for e in study_of(windy + CASES).source.entries}
+    assert entries["load_cases[1]"] == "mass 250, dynamic_factor 1.3, acceleration 0.5"
+    assert entries["load_cases[4]"] == "cable_lost each"
+
+
+def test_none(valid: str, study_of: StudyOf) -> None:
+    assert study_of(valid).load_cases == ()
+    assert study_of(valid).robot.platform.drag_area_m2 is None
+
+
+def test_directions_are_spread_from_x(windy: str, study_of: StudyOf) -> None:
+    study = study_of(windy + "load_cases: [{name: a, wind: {speed: 1, directions: 4}}]\n")
+    wind = study.load_cases[0].wind
+    assert wind is not None
+    np.testing.assert_allclose(
+        wind.directions(study.robot), [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], atol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("case", "field", "problem"),
+    [
+        ("{name: a, winds: 3}", "load_cases[1].winds", "unknown field 'winds'"),
+        ("{name: first}", "load_cases[1].name", "load_cases[0] has the name 'first' already"),
+        ("{name: a, cable_lost: 4}", "load_cases[1].cable_lost", "there is no cable 4"),
+        ("{name: a, cable_lost: all}", "load_cases[1].cable_lost", "'all' is not known"),
+        ("{name: a, dynamic_factor: 0.9}", "load_cases[1].dynamic_factor", "0.9 is out of range"),
+        ("{name: a, safety_factor: 0.5}", "load_cases[1].safety_factor", "0.5 is out of range"),
+        ("{name: a, ice: {density: 900}}", "load_cases[1].ice.thickness", "missing"),
+        (
+            "{name: a, wind: {speed: 1, direction: [1, 0, 0], directions: 2}}",
+            "load_cases[1].wind",
+            "the wind has directions and direction",
+        ),
+        (
+            "{name: a, region: {prism: anchors, inset: 30, z: [1, 2]}}",
+            "load_cases[1].region",
+            "nothing is left",
+        ),
+    ],
+)
+def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, problem: str) -> None:
+    (fault,) = faults_of(f"{windy}load_cases:\n  - name: first\n  - {case}\n")
+    assert fault.field == field
+    assert problem in fault.problem
+    assert fault.line == windy.count("\n") + 3
+
+
+def test_wind_needs_area_and_drag(valid: str, faults_of: FaultsOf) -> None:
+    found = faults_of(f"{valid}load_cases: [{{name: a, wind: {{speed: 20 m/s}}}}]\n")
+    assert [fault.problem for fault in found] == [
+        "the platform has no area in the wind",
+        "the drag of the cables is not given",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("selection:\n  safety_factor: 4\n", "", "there is no selection"),
+        ("safety_factor: 4", "groups: {a: [1], b: [2, 3]}", "groups of cables are chosen"),
+        ("samples: 500", "hangs_below: exclude", "which cables hang below depends"),
+    ],
+)
+def test_what_does_not_go_with_them(
+    valid: str, faults_of: FaultsOf, old: str, new: str, problem: str
+) -> None:
+    (fault,) = faults_of(valid.replace(old, new) + "load_cases: [{name: a}]\n")
+    assert problem in fault.problem
+
+
+def test_wind_across_a_plane(valid: str, faults_of: FaultsOf) -> None:
+    flat = valid.replace("[15, 2600 cm, 12]", "[15, 0, 12]").replace(
+        "prism: anchors, inset: 3 m,", "rectangle: anchors, inset: 3 m,"
+    )
+    flat = flat.replace("pose: [15, 9, 4]", "pose: [15, 0, 4]").replace(
+        "  platform:", "  planar: true\n  platform:"
+    )
+    flat = flat.replace("cable:\n", DRAG)
+    (fault,) = faults_of(flat + "load_cases: [{name: a, wind: {speed: 1, direction: [0, 1, 0]}}]\n")
+    assert fault.field == "load_cases"
+    assert "leaves that plane" in fault.problem

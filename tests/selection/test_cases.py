@@ -1,0 +1,176 @@
+"""Load cases on ropes that can be bought: who holds, what governs, agreement with twins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from twins.loaded import Twin, acting, held, least_largest, rest, tensions_N
+
+from designer.arrays import FloatArray
+from designer.effects.design import AsBuilt
+from designer.grades.registry import load_catalogue
+from designer.io.config import read_study
+from designer.model.load_case import Ice, LoadCase, Wind
+from designer.model.region import Prism
+from designer.resources import example_file
+from designer.selection.cases import CaseFound
+from designer.selection.result import SelectionResult
+from designer.selection.select import select
+from designer.statics.cable_loss import Fate, lose_cable
+from designer.statics.inverse import solve_sagging
+from designer.study import Study
+
+PARKED = {
+    "yard": Prism.box((13, 17), (7, 11), (1, 2)),
+    "cogiro": Prism.box((-1, 1), (-1, 1), (0.5, 1)),
+}
+
+
+def study_of(name: str, samples: int) -> Study:
+    """A shipped study with the platform in the wind, and fewer samples."""
+    study = read_study(example_file(name))
+    assert study.workspace is not None
+    body = replace(study.robot.platform, drag_area_m2=0.55)
+    workspace = replace(study.workspace, samples=samples)
+    return replace(study, robot=replace(study.robot, platform=body), workspace=workspace)
+
+
+def five(name: str) -> tuple[LoadCase, ...]:
+    return (
+        LoadCase("static"),
+        LoadCase("hoisting", dynamic_factor=1.3),
+        LoadCase("wind", wind=Wind(20.0, 1.2)),
+        LoadCase(
+            "storm", wind=Wind(30.0, 1.2), ice=Ice(0.005), safety_factor=3.0, region=PARKED[name]
+        ),
+        LoadCase("lost", cable_lost="each", safety_factor=3.0),
+    )
+
+
+def chosen_for(study: Study, cases: tuple[LoadCase, ...]) -> SelectionResult:
+    assert study.workspace is not None
+    assert study.selection is not None
+    grades = load_catalogue(()).grades
+    named = [grade for grade in grades if grade.id in (study.selection.grades or ())]
+    return select(
+        study.robot, study.workspace, study.selection, named,
+        built=AsBuilt(study.robot), load_cases=cases,
+    )  # fmt: skip
+
+
+def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
+    """Largest tension of each cable at the pose found, by the twin; its start is ours."""
+    robot, cable = found.loaded.bare
+    body, case, one = robot.platform, found.case, found.loaded
+    twin = Twin(
+        robot.exit_points_m, body.mass_kg, cable.axial_stiffness_N, cable.linear_density_kg_per_m,
+        cable.diameter_m, body.attachments_m, body.centre_of_mass_m, body.wrench_N,
+        body.drag_area_m2 or 0.0, 1.2,
+    )  # fmt: skip
+    load = acting(
+        twin,
+        wind=None if one.wind is None or case.wind is None else case.wind.speed_m_per_s * one.wind,
+        ice_m=case.ice.thickness_m if case.ice else 0.0,
+        factor=case.dynamic_factor,
+    )
+    position, turn = found.pose.position_m[0], np.eye(3)
+    if not robot.is_redundant:
+        pull, length = held(twin, load, position, turn)
+    else:
+        ours = solve_sagging(one.robot, found.pose, one.cable)
+        force = -np.concatenate(
+            [ours.force_x_N[0, :, None] * ours.geometry().outward[0], ours.force_z_N[0, :, None]],
+            axis=1,
+        )
+        shift = np.random.default_rng(0).uniform(0.97, 1.03, (robot.n_cables, 1))
+        start = shift * (force @ one.robot.upright)
+        pull, length = least_largest(twin, load, position, turn, start, ours.length_m[0])
+    if one.lost_cable is None:
+        return tensions_N(pull, length, load.q)
+    if robot.is_redundant:  # the internal forces before the loss need not be the twin's
+        length = ours.length_m[0]
+    others = np.delete(np.arange(robot.n_cables), one.lost_cable - 1)
+    loss = lose_cable(one.robot, found.pose, one.cable, one.lost_cable)
+    near, turned = loss.rest.position_m[0] + 1e-3, loss.rest.rotation[0]
+    turned = Rotation.from_rotvec([1e-3, -1e-3, 1e-3]).as_matrix() @ turned
+    _, _, pull = rest(twin, load, near, turned, length[others], others)
+    return tensions_N(pull, length[others], load.q)
+
+
+@pytest.mark.parametrize("name", ["yard", pytest.param("cogiro", marks=pytest.mark.slow)])
+def test_governing_case_and_utilisation_agree_with_a_twin(name: str) -> None:
+    study = study_of(name, 600)
+    chosen = chosen_for(study, five(name)).chosen
+    assert chosen is not None
+    assert [one.case.name for one in chosen.cases] == [case.name for case in five(name)]
+    theirs = []
+    for found in chosen.cases:
+        allowed = chosen.size.minimum_breaking_load_N / (found.case.safety_factor or 5.0)
+        used = float(twin_tension_N(study, found).max()) / allowed
+        assert found.utilisation == pytest.approx(used, rel=1e-6)
+        assert found.verification.is_refined
+        theirs.append(used)
+    assert chosen.governing is chosen.cases[int(np.argmax(theirs))]
+    assert chosen.governing.case.name == "hoisting"
+    assert chosen.verification.utilisation == chosen.governing.utilisation <= 1.0
+
+
+def test_a_study_without_cases_has_the_static_one() -> None:
+    study = study_of("yard", 300)
+    bare, one = chosen_for(study, ()), chosen_for(study, (LoadCase("static"),))
+    assert bare.chosen is not None
+    assert one.chosen is not None
+    assert bare.chosen.name == one.chosen.name
+    assert bare.chosen.verification.utilisation == one.chosen.verification.utilisation
+    assert [c.reason for c in bare.candidates if c.verified] == [
+        c.reason for c in one.candidates if c.verified
+    ]
+
+
+def test_a_case_that_nothing_holds_is_named() -> None:
+    study = study_of("yard", 300)
+    gale = LoadCase("gale", wind=Wind(60.0, 1.2))
+    result = chosen_for(study, (LoadCase("static"), gale))
+    assert result.chosen is None
+    thick = result.outcomes[0].candidates[-1]
+    assert "in the load case 'gale'" in thick.reason
+    assert thick.cases[0].verification.holds
+    assert "gale" in result.outcomes[0].sentence
+    assert result.reason is not None
+    assert "gale" in result.reason
+
+
+def test_inertia_points_where_it_is_worst() -> None:
+    study = study_of("yard", 300)
+    case = LoadCase("jerk", acceleration_m_per_s2=2.0)
+    chosen = chosen_for(study, (case,)).chosen
+    assert chosen is not None
+    found = chosen.cases[0]
+    assert found.loaded.inertia is not None
+    sample = max(found.tension_N(one) for one in case.on(*found.loaded.bare))
+    assert found.verification.max_tension_N > sample
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        along = found.loaded.inertia + rng.normal(size=3) * 10.0 ** rng.uniform(-4, 0)
+        assert found.tension_N(found.loaded.pushed(along)) <= (
+            found.verification.max_tension_N * (1 + 1e-9)
+        )
+
+
+def test_a_lost_cable_is_told() -> None:
+    study = study_of("yard", 300)
+    lost = LoadCase("second lost", cable_lost=2, safety_factor=2.0)
+    chosen = chosen_for(study, (LoadCase("static"), lost)).chosen
+    assert chosen is not None
+    found = chosen.cases[1]
+    loss = found.loss()
+    assert loss is not None
+    assert loss.fate[0] == Fate.RESTS_ELSEWHERE
+    assert found.loaded.lost_cable == 2
+    assert found.most_used() in (1, 3)
+    assert float(loss.largest_tension_N[0]) == pytest.approx(
+        found.verification.max_tension_N, rel=1e-9
+    )
