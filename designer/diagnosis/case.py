@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
 from designer.errors import Fault, InputError
@@ -89,7 +90,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     known = {setting.effect.key for setting in fixed}
     effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]
     recorded = _recorded(study, measured)
-    shown = [e for e in effects if not _missing(e, recorded)]
+    skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
+    shown = [e for e in effects if not skipped[e.key]]
     idle = [s for s in fixed if not _acts(s.effect, recorded)]
     return Case(
         study,
@@ -98,7 +100,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measured,
         candidates=tuple(e for e in shown if not e.is_among(measurements.unknown)),
         given=tuple(e for e in shown if e.is_among(measurements.unknown)),
-        skipped=tuple((e.key, why) for e in effects if (why := _missing(e, recorded))),
+        skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
     )
@@ -114,6 +116,15 @@ def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
+
+
+def _too_few(effect: Effect, measured: Measured) -> str:
+    """Return that an effect finds nowhere to start in the rows that a fit may see, if so."""
+    if effect.starts_from is None:
+        return ""
+    seen = measured.without_readings(heldout_rows(measured.n_rows))
+    starts = effect.starts_from(measured, np.hstack([seen.length_m, seen.tension_N]))
+    return "" if starts else "needs more rows"
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
