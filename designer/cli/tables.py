@@ -228,6 +228,8 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
     from designer.diagnosis.trends import in_runs
 
+    if not diagnosis.measured.has_poses:
+        yield "poses", "estimated from each row's own readings"
     for finding in diagnosis.findings:
         values = ", ".join(
             f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()

@@ -8,6 +8,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
 from designer.errors import Fault, InputError
@@ -51,7 +52,8 @@ class Case:
     def predictor(self, measured: Measured | None = None) -> Predictor:
         """Return the model as declared, for these rows or others."""
         rows = self.measured if measured is None else measured
-        return Predictor(self.machine, rows, self.fixed, self.study.known_effects)
+        kind = Predictor if rows.has_poses else FreePredictor
+        return kind(self.machine, rows, self.fixed, self.study.known_effects)
 
     def fault(self, problem: str, expected: str) -> InputError:
         """Return what is wrong with the data as a whole."""
@@ -71,7 +73,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     An effect that is declared and unknown is fitted like any unknown.
     """
     estimated = measurements.estimated_noise
-    if estimated:  # by a diagnosis before: nobody declared it
+    if estimated and measured.has_poses:  # by a diagnosis before: nobody declared it
         measurements = replace(
             measurements,
             length_noise_m=None if "length" in estimated else measurements.length_noise_m,
@@ -86,6 +88,10 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     )
     machine = Machine(study.robot, cable, surroundings=study.surroundings)
     declared = declared_settings(study, machine)
+    if not measured.has_poses and np.isnan(measured.poses.position_m).any():
+        assert study.workspace is not None  # the config has been checked
+        poses = first_poses(as_built(machine, declared), measured, study.workspace.region)
+        measured = replace(measured, poses=poses)
     fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
     known = {setting.effect.key for setting in fixed}
     effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]

@@ -146,6 +146,7 @@ def check(
         If an effect of a plugin fails.
     """
     case = case_of(study, replace(measurements, unknown=()), measured)
+    measured = case.measured  # with poses, where they are estimated
     bare = case_of(replace(study, effects=()), measurements, measured)
     everywhere = np.ones(measured.n_rows, dtype=np.bool_)
     predict = case.predictor()

@@ -91,7 +91,8 @@ def _decaying(correlation: FloatArray) -> Lasting:
     earlier, later = np.maximum(correlation[:-1], 0.0), np.maximum(correlation[1:], 0.0)
     decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
     powers = decay ** np.arange(1, len(correlation) + 1)
-    share = float(np.clip(powers @ correlation / max(powers @ powers, 1e-12), 0.0, 1.0))
+    square = max(float(powers @ powers), 1e-12)
+    share = float(np.clip(powers @ correlation / square, 0.0, 1.0))
     return Lasting(share, decay)
 
 
