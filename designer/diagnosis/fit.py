@@ -255,7 +255,9 @@ def _doubts(
             for one in (plain, *clustered)
         )
         inverse = np.linalg.pinv(plain[own, own], rcond=1e-9, hermitian=True)
-        ratios = [np.sum(inverse * one[own, own]) / len(setting.values) for one in clustered]
+        # A time of a step has no slope: no ratio either, and no share in the mean.
+        seen = max(int(np.sum(~is_unseen[own])), 1)
+        ratios = [np.sum(inverse * one[own, own]) / seen for one in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
     return std, inflation, wald
