@@ -74,7 +74,8 @@ class FreePredictor(Predictor):
 
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
         """Judge anew how far readings can be trusted in the poses that suit these effects."""
-        self._nearest(settings, noise)
+        if self.spare_cables:
+            self._nearest(settings, noise)
         return super().trust_anew(settings, noise)
 
     def poses(self, settings: Sequence[Setting], noise: Noise) -> Poses:

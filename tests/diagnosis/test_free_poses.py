@@ -15,7 +15,9 @@ from twins.robots import FAST3, FIELD4, HALL8, YARD3, TwinRobot
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.fit import fit
 from designer.diagnosis.free_poses import TAKEN_UP, FreePredictor
+from designer.diagnosis.problem import Problem
 from designer.diagnosis.result import Diagnosis
 from designer.errors import InputError
 from designer.io.config import read_study
@@ -175,3 +177,15 @@ def test_given_poses_that_are_said_to_be_unknown_are_left_out(tmp_path) -> None:
     measured = read_measured(read_study(path))
     assert "x_m, y_m, z_m left out: poses are said to be unknown" in measured.notes
     assert not measured.has_poses
+
+
+def test_winches_that_were_homed_anywhere(tmp_path) -> None:
+    """Tensions tell roughly where the platform is, and many rows then where the winches began."""
+    true_m = {"offset_1_m": 0.4, "offset_2_m": -0.3, "offset_3_m": 0.25}
+    dataset = make(YARD3, {"length_offset": true_m}, rows=40, seed=3312)
+    case = case_in(written(dataset, tmp_path, unknown=["poses", "length_offset"]))
+    noise = Noise(YARD3.noise_m, YARD3.noise_N, "declared")
+    problem = Problem(case.measured, case.predictor(), noise)
+    found = fit(problem, case.given, np.ones(40, dtype=np.bool_), thorough=True)
+    assert np.abs(found.vector - list(true_m.values())).max() < 0.02
+    assert (np.abs(found.vector - list(true_m.values())) < 4.0 * found.std).all()
