@@ -203,7 +203,7 @@ def diagnose(
 
     Writes diagnosis.html, diagnosis.pdf, diagnosis.json and CONFIG.diagnosed.yaml, which has what
     was fitted and found under `effects:`; `designer report` on it uses it everywhere. With --check
-    nothing is searched, and diagnosis.json alone is written, into CONFIG-check.
+    nothing is searched, and check.html, check.pdf and diagnosis.json go into CONFIG-check.
 
     Example:  designer diagnose built-crane.yaml
     A month later:  designer diagnose --check built-crane.diagnosed.yaml --data new.csv
@@ -262,11 +262,14 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     from designer.cli.terminal import Spinner, announce_compiling
     from designer.diagnosis.check import check
     from designer.io.output import file_names, output_folder
+    from designer.report.diagnosis.check import write_check
 
     assert study.measurements is not None
     announce_compiling()
     with output_folder(folder) as building, Spinner("checking") as spinner:
         found = check(study, study.measurements, measured, spinner)
+        spinner("report")
+        write_check(found, building)
         (building / "diagnosis.json").write_text(f"{found.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     print_check(found, folder, written)

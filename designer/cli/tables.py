@@ -242,6 +242,8 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
     from designer.diagnosis.trends import in_runs
 
+    if not diagnosis.measured.has_poses:
+        yield "poses", "estimated from each row's own readings"
     for finding in diagnosis.findings:
         values = ", ".join(
             f"{name} = {e.value:.4g} ± {e.std:.2g}" for name, e in finding.parameters.items()
@@ -297,49 +299,24 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
     for row in _left(check):
         table.add_row(*row)
     show(table)
-    for line in _remarks(check):
+    for line in check.remarks():
         show(line, markup=False)
     _print_written(folder, written)
 
 
 def _left(check: Check) -> Iterator[Row]:
-    models = [("without effects", check.without)]
-    if check.fitted is not None:
-        unknown = ", ".join(dict.fromkeys(s.effect.id for s in check.fitted.settings))
-        models.append((f"without, {unknown} fitted to these rows", check.fitted))
-    models.append(("with the effects, nothing fitted", check.declared))
     for name, scale, unit in _MEASURED:
-        for label, model in models:
+        for label, model in check.models:
             left = model.length_m if name == "length" else model.tension_N
             if left is not None:
                 found = (left.rms.value, left.rms.low, left.rms.high, left.median)
                 value, low, high, median = (f"{scale * x:.4g}" for x in found)
                 yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
-    for label, model in models:
+    for label, model in check.models:
         if model.foretold is not None and model.foretold.n_solved:
             place = model.foretold.position_m
             value, low, high = (f"{1e3 * x:.4g}" for x in (place.value, place.low, place.high))
             yield r"pose by lengths \[mm]", label, value, f"{low} to {high}", ""
-
-
-def _remarks(check: Check) -> Iterator[str]:
-    yield f"{check.n_compared} of {check.measured.n_rows} rows compared, outliers and all."
-    if not check.study.effects:
-        yield "The config declares no effects."
-    elif not check.helps:
-        yield "The declared effects do not help on these data."
-    for key, reason in check.idle:
-        yield f"{key} is declared and does not act here: {reason}."
-    if check.declared.n_not_held:
-        yield f"With the effects the robot cannot hold {check.declared.n_not_held} rows."
-    carriers = check.structure.carriers
-    if check.structure.is_present:
-        share = f"{carriers[0].fraction_of_variance:.0%} of its variance"
-        yield f"What is left goes with {carriers[0].name}, {share}."
-    elif carriers:
-        yield "What is left goes with nothing that was recorded."
-    if check.outliers:
-        yield f"{len(check.outliers)} readings stand off by more than five times the spread."
 
 
 def print_grades(grades: Sequence[Grade]) -> None:

@@ -134,7 +134,8 @@ def _by_model(
 
 def _rows(outliers: tuple[Outlier, ...], measured: Measured) -> Json:
     told = [{"row": one.row, "reading": one.channel, "size": one.size} for one in outliers]
-    return {"outliers": told, "notes": measured.notes}
+    poses = "measured" if measured.has_poses else "estimated"
+    return {"outliers": told, "notes": measured.notes, "poses": poses}
 
 
 def _reasons(effects: tuple[tuple[str, str], ...]) -> list[Json]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.diagnosis.blocks import heldout_rows
+from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.predict import Predictor
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
 from designer.errors import Fault, InputError
@@ -50,7 +52,8 @@ class Case:
     def predictor(self, measured: Measured | None = None) -> Predictor:
         """Return the model as declared, for these rows or others."""
         rows = self.measured if measured is None else measured
-        return Predictor(self.machine, rows, self.fixed, self.study.known_effects)
+        kind = Predictor if rows.has_poses else FreePredictor
+        return kind(self.machine, rows, self.fixed, self.study.known_effects)
 
     def fault(self, problem: str, expected: str) -> InputError:
         """Return what is wrong with the data as a whole."""
@@ -70,7 +73,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     An effect that is declared and unknown is fitted like any unknown.
     """
     estimated = measurements.estimated_noise
-    if estimated:  # by a diagnosis before: nobody declared it
+    if estimated and measured.has_poses:  # by a diagnosis before: nobody declared it
         measurements = replace(
             measurements,
             length_noise_m=None if "length" in estimated else measurements.length_noise_m,
@@ -85,11 +88,16 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     )
     machine = Machine(study.robot, cable, surroundings=study.surroundings)
     declared = declared_settings(study, machine)
+    if not measured.has_poses and np.isnan(measured.poses.position_m).any():
+        assert study.workspace is not None  # the config has been checked
+        poses = first_poses(as_built(machine, declared), measured, study.workspace.region)
+        measured = replace(measured, poses=poses)
     fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
     known = {setting.effect.key for setting in fixed}
     effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]
     recorded = _recorded(study, measured)
-    shown = [e for e in effects if not _missing(e, recorded)]
+    skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
+    shown = [e for e in effects if not skipped[e.key]]
     idle = [s for s in fixed if not _acts(s.effect, recorded)]
     return Case(
         study,
@@ -98,7 +106,7 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measured,
         candidates=tuple(e for e in shown if not e.is_among(measurements.unknown)),
         given=tuple(e for e in shown if e.is_among(measurements.unknown)),
-        skipped=tuple((e.key, why) for e in effects if (why := _missing(e, recorded))),
+        skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
     )
@@ -114,6 +122,15 @@ def _missing(effect: Effect, recorded: frozenset[str]) -> str:
     """Return what the data lack for an effect to show; empty where it shows."""
     missing = sorted(effect.needs - recorded)
     return f"needs {NEEDS[missing[0]]}" if missing else ""
+
+
+def _too_few(effect: Effect, measured: Measured) -> str:
+    """Return that an effect finds nowhere to start in the rows that a fit may see, if so."""
+    if effect.starts_from is None:
+        return ""
+    seen = measured.without_readings(heldout_rows(measured.n_rows))
+    starts = effect.starts_from(measured, np.hstack([seen.length_m, seen.tension_N]))
+    return "" if starts else "needs more rows"
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -121,6 +121,39 @@ class Check:
         kinds = ((model.length_m, self.noise.length_m), (model.tension_N, self.noise.tension_N))
         return sum((left.rms.value / noise) ** 2 for left, noise in kinds if left is not None)
 
+    @property
+    def models(self) -> list[tuple[str, Model]]:
+        """Each model with what to call it."""
+        models = [("without effects", self.without)]
+        if self.fitted is not None:
+            unknown = ", ".join(dict.fromkeys(s.effect.id for s in self.fitted.settings))
+            models.append((f"without, {unknown} fitted to these rows", self.fitted))
+        return [*models, ("with the effects, nothing fitted", self.declared)]
+
+    def remarks(self) -> Iterator[str]:
+        """Yield what to make of it, in sentences."""
+        yield f"{self.n_compared} of {self.measured.n_rows} rows compared, outliers and all."
+        if not self.measured.has_poses:
+            yield "No pose was measured: each is estimated from the row's own readings."
+        if not self.study.effects:
+            yield "The config declares no effects."
+        elif not self.helps:
+            yield "The declared effects do not help on these data."
+        for key, reason in self.idle:
+            yield f"{key} is declared and does not act here: {reason}."
+        if self.declared.n_not_held:
+            yield f"With the effects the robot cannot hold {self.declared.n_not_held} rows."
+        carriers = self.structure.carriers
+        if self.structure.events:
+            yield f"What is left goes with {', '.join(e.text for e in self.structure.events)}."
+        if self.structure.present:
+            share = f"{carriers[0].fraction_of_variance:.0%} of its variance"
+            yield f"What is left goes with {carriers[0].name}, {share}."
+        elif carriers and not self.structure.events:
+            yield "What is left goes with nothing that was recorded."
+        if self.outliers:
+            yield f"{len(self.outliers)} readings stand off by more than five times the spread."
+
     def to_dict(self) -> dict[str, Any]:
         """Return what ``diagnosis.json`` holds; a missing number is None."""
         return check_dict(self)
@@ -146,6 +179,7 @@ def check(
         If an effect of a plugin fails.
     """
     case = case_of(study, replace(measurements, unknown=()), measured)
+    measured = case.measured  # with poses, where they are estimated
     bare = case_of(replace(study, effects=()), measurements, measured)
     everywhere = np.ones(measured.n_rows, dtype=np.bool_)
     predict = case.predictor()

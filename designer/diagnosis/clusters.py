@@ -26,6 +26,8 @@ _LONGEST = 0.98
 """Largest decay: what lasts over more than fifty rows is a drift, and tested as such."""
 _DISTINCT = 3.0
 """Standard deviations of a correlation of independent rows from which on it is one."""
+_TURNS, _MOST_TAKEN = 10, 0.25
+"""Until what lasts, and what a mean takes of it, agree; no more is made up for than a quarter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +76,23 @@ def lasting(residual: FloatArray) -> Lasting:
     alike = centred.T @ centred
     channels = np.trace(alike) ** 2 / np.sum(alike**2)
     doubt = 1.0 / np.sqrt(max(pairs[0] / known.shape[1] * channels, 1.0))
-    found = found + doubt**2  # a mean that is taken from the rows makes them look less alike
-    if found[0] < _DISTINCT * doubt:
+    if found[0] + doubt**2 < _DISTINCT * doubt:
         return INDEPENDENT
-    earlier, later = np.maximum(found[:-1], 0.0), np.maximum(found[1:], 0.0)
+    answer, n_rows = INDEPENDENT, int(known.any(axis=1).sum())
+    for _ in range(_TURNS):
+        # The mean that is taken from the rows holds that share of their variance.
+        taken = min(answer.rows / n_rows, _MOST_TAKEN)
+        answer = _decaying(found + (1.0 - found) * taken)
+    return answer
+
+
+def _decaying(correlation: FloatArray) -> Lasting:
+    """Return the decay that suits correlations (n_lags,) from one row back on."""
+    earlier, later = np.maximum(correlation[:-1], 0.0), np.maximum(correlation[1:], 0.0)
     decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
-    powers = decay ** np.array(lags)
-    share = float(np.clip(powers @ found / max(powers @ powers, 1e-12), 0.0, 1.0))
+    powers = decay ** np.arange(1, len(correlation) + 1)
+    square = max(float(powers @ powers), 1e-12)
+    share = float(np.clip(powers @ correlation / square, 0.0, 1.0))
     return Lasting(share, decay)
 
 

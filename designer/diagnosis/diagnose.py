@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.errors_of import Stage, outliers_of, stage
 from designer.diagnosis.fit import Fit, fit, with_places
 from designer.diagnosis.foretell import foretell, with_sound_lengths
+from designer.diagnosis.free_poses import FreePredictor, taken_up
 from designer.diagnosis.hold import (
     Gain,
     Outcome,
@@ -98,6 +99,9 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     case.check_held(predict)
     # Whatever is decided on the way is decided without them: noise, effects, what is withdrawn.
     seen = replace(case, measured=measured.without_readings(heldout))
+    if not measured.has_poses:
+        hidden = _taken_up(seen, ~heldout)
+        case, seen = _without(case, hidden), _without(seen, hidden)
     outcome = _with_settled_noise(seen, ~heldout, progress)
     problem = Problem(measured, predict, outcome.problem.noise)
     outcome, gains = keep_what_helps(outcome, problem, heldout, progress)
@@ -107,6 +111,9 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     base = fit(outcome.problem, case.given, ~heldout) if search.found else search.fit
     before, after = problem.residual(base.settings), problem.residual(search.fit.settings)
     predicted = problem.predicted(search.fit.settings)
+    if isinstance(problem.predict, FreePredictor):
+        poses = problem.predict.poses(search.fit.settings, problem.noise)
+        measured = replace(measured, poses=poses)
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
     findings = tuple(_finding(outcome, e, gains[e.key]) for e in search.found)
@@ -231,6 +238,8 @@ def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -
 
 
 def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tuple[Proposal, ...]:
+    if not case.measured.has_poses:  # nor would a proposed pose be measured
+        return ()
     region = case.study.workspace.region if case.study.workspace else None
     by_key = {effect.key: effect for effect in case.candidates}
     problem = replace(outcome.problem, measured=case.measured)
@@ -246,10 +255,22 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
     return tuple(answer)
 
 
+def _taken_up(case: Case, rows: BoolArray) -> dict[str, str]:
+    """Return effects that poses which nobody measured take up, and why."""
+    noise = first_noise(case.measurements, case.measured, case.predictor(), rows)
+    problem = Problem(case.measured, case.predictor(), noise)
+    return dict(taken_up(problem, (*case.given, *case.candidates), (), rows))
+
+
+def _without(case: Case, hidden: Mapping[str, str]) -> Case:
+    kept = tuple(effect for effect in case.candidates if effect.key not in hidden)
+    return replace(case, candidates=kept, skipped=(*case.skipped, *hidden.items()))
+
+
 def _check_size(case: Case, heldout: BoolArray) -> None:
     measured = case.measured
-    readings = np.hstack([measured.length_m, measured.tension_N])[~heldout]
-    known = int(np.sum(~np.isnan(readings)))
+    given_up = 0 if measured.has_poses else case.machine.robot.n_cables
+    known = int(np.maximum(measured.n_readings[~heldout] - given_up, 0).sum())
     unknown = sum(len(effect.parameters) for effect in case.given)
     if known <= unknown + 2:
         problem = f"{known} readings to fit, after holding some out, for {unknown} unknowns"

@@ -12,7 +12,7 @@ from designer.diagnosis.clusters import score_covariances
 from designer.diagnosis.problem import Problem
 from designer.effects.effect import Effect, Setting, Values
 
-_HUBER = 3.0
+HUBER = 3.0
 """Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
 _STEP = 1e-3
 """Of a typical change: so short that one side will do, and far above the solver's residual."""
@@ -71,7 +71,7 @@ class Fit:
 def huber(residual: FloatArray) -> FloatArray:
     """Return the robust square of each residual: r² up to 3, linear beyond; 0 where NaN."""
     size = np.abs(np.nan_to_num(residual, nan=0.0))
-    return np.where(size <= _HUBER, size**2, 2.0 * _HUBER * size - _HUBER**2)
+    return np.where(size <= HUBER, size**2, 2.0 * HUBER * size - HUBER**2)
 
 
 def settings_at(effects: Sequence[Effect], vector: FloatArray) -> tuple[Setting, ...]:
@@ -214,7 +214,7 @@ def _fit_from(
             bounds=(low, high),
             x_scale=[p.typical for p in parameters],
             loss="huber",
-            f_scale=_HUBER,
+            f_scale=HUBER,
             xtol=tolerance,
             ftol=tolerance,
             max_nfev=turns,
@@ -228,7 +228,7 @@ def _fit_from(
     slopes = np.zeros((*taken.shape, len(start)))
     slopes[taken] = answer.jac
     residual = np.full(taken.shape, np.nan)
-    limit = _HUBER * np.sqrt(variance)
+    limit = HUBER * np.sqrt(variance)
     residual[taken] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
     std, inflation, wald = _doubts(settings, slopes, residual, variance)
@@ -255,7 +255,9 @@ def _doubts(
             for one in (plain, *clustered)
         )
         inverse = np.linalg.pinv(plain[own, own], rcond=1e-9, hermitian=True)
-        ratios = [np.sum(inverse * one[own, own]) / len(setting.values) for one in clustered]
+        # A time of a step has no slope: no ratio either, and no share in the mean.
+        seen = max(int(np.sum(~is_unseen[own])), 1)
+        ratios = [np.sum(inverse * one[own, own]) / seen for one in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
     return std, inflation, wald

@@ -53,7 +53,7 @@ def with_sound_lengths(problem: Problem, settings: Sequence[Setting]) -> BoolArr
 
 
 def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -> Foretold | None:
-    """Return how well lengths alone foretell pose and tensions; None without any row.
+    """Return how well lengths alone foretell pose and tensions; None without any row or pose.
 
     Parameters
     ----------
@@ -63,10 +63,10 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
         Rows to compare; each has all lengths.
     """
     measured = problem.measured
-    true = problem.predict.true_readings(settings, problem.noise)
     rows = np.flatnonzero(chosen)
-    if not rows.size:
+    if not rows.size or not measured.has_poses:
         return None
+    true = problem.predict.true_readings(settings, problem.noise)
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
     rotation = measured.poses.rotation

@@ -34,8 +34,6 @@ class InternalForces:
     ----------
     built : callable
         The machine with given effects.
-    measured : Measured
-        The data.
     shown : callable
         What sensors make of lengths and tensions that are there, with given effects.
     """
@@ -43,45 +41,46 @@ class InternalForces:
     def __init__(
         self,
         built: Callable[[Sequence[Setting]], Machine],
-        measured: Measured,
         shown: Callable[[Readings, Sequence[Setting]], Readings],
     ) -> None:
         self._built = built
-        self._measured = measured
         self._shown = shown
         self._guesses: dict[tuple[object, ...], _Guess] = {}
 
-    def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
+    def trust_anew(self, settings: Sequence[Setting], noise: Noise, measured: Measured) -> bool:
         """Judge anew how far readings can be trusted with these effects; tell if that changed.
 
         Between two calls it stays, so that residuals have slopes.
         """
         kind = _kind(settings, noise)
         before = self._guesses[kind].distrust if kind in self._guesses else None
-        self._guesses[kind] = self._settled(settings, noise, judges=True)[0]
+        self._guesses[kind] = self._settled(settings, noise, measured, judges=True)[0]
         return before != self._guesses[kind].distrust
 
-    def readings(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
+    def readings(
+        self, settings: Sequence[Setting], noise: Noise, measured: Measured
+    ) -> tuple[Readings, Readings]:
         """Return lengths and tensions that are there, and those that the sensors show."""
         kind = _kind(settings, noise)
-        guess, true, shown = self._settled(settings, noise, judges=kind not in self._guesses)
+        judges = kind not in self._guesses
+        guess, true, shown = self._settled(settings, noise, measured, judges=judges)
         self._guesses[kind] = guess  # near what it will be for the next values of these effects
         return true, shown
 
     def _settled(
-        self, settings: Sequence[Setting], noise: Noise, *, judges: bool
+        self, settings: Sequence[Setting], noise: Noise, measured: Measured, *, judges: bool
     ) -> tuple[_Guess, Readings, Readings]:
         """Repeat until what sensors and stiff ends add, and how far readings are off, agree.
 
         What they add depends on the internal forces in turn, though little.
         """
         machine = self._built(settings)
-        shape = (2, *self._measured.length_m.shape)
+        shape = (2, *measured.length_m.shape)
         guess = self._guesses.get(_kind(settings, noise), _Guess(np.zeros(shape)))
         for _ in range(_MOST_TURNS):
-            true, straightened = _balanced(machine, self._measured, guess, noise)
+            true, straightened = _balanced(machine, measured, guess, noise)
             shown = self._shown(straightened, settings)
-            before, guess = guess, guess.after(self._measured, true, shown, noise, judges=judges)
+            before, guess = guess, guess.after(measured, true, shown, noise, judges=judges)
             if guess.is_near(before, noise):
                 break
         return guess, true, shown

@@ -42,10 +42,12 @@ def first_noise(
     given : sequence of Effect
         Unknown from the start: fitted first.
     """
+    declared = (measurements.length_noise_m, measurements.tension_noise_N)
+    if declared[0] is not None and declared[1] is not None:
+        return Noise(declared[0], declared[1], "declared")
     rough = Problem(measured, predict, _rough_noise(measured))
     settings = fit(rough, given, rows).settings if given else ()
     kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
-    declared = (measurements.length_noise_m, measurements.tension_noise_N)
     estimate = _neighbours if measured.settled else _second_differences
     found = [
         estimate(kind, measured) if value is None else value

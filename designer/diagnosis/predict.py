@@ -52,13 +52,13 @@ class Predictor:
         self._measured = measured
         self._fixed = tuple(fixed)
         self._effects = known
-        self._forces = InternalForces(self.built, measured, self._shown)
+        self._forces = InternalForces(self.built, self._shown)
         self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
         self._slopes: dict[tuple[object, ...], FloatArray] = {}
 
     def at(self, measured: Measured) -> Predictor:
         """Return the same model for other rows; for the same rows, one without a memory."""
-        return Predictor(self._machine, measured, self._fixed, self._effects)
+        return type(self)(self._machine, measured, self._fixed, self._effects)
 
     def built(self, settings: Sequence[Setting]) -> Machine:
         """Return the machine with the declared effects and these."""
@@ -71,6 +71,11 @@ class Predictor:
         return self._effects.in_order(s for s in both if not (is_still and s.effect.needs_motion))
 
     @property
+    def row_unknowns(self) -> int:
+        """Readings that each row gives up, for what they alone tell of it."""
+        return self.spare_cables
+
+    @property
     def spare_cables(self) -> int:
         """Cables beyond the degrees of freedom: internal forces of each row."""
         robot = self._machine.robot
@@ -79,7 +84,7 @@ class Predictor:
     def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
         """Return what the sensors would show with these effects."""
         if self.spare_cables:
-            return self._remembered(settings, noise, self._forces.readings)[1]
+            return self._remembered(settings, noise, self._with_forces)[1]
         # Effects on readings leave the machine alone, so that their slopes cost no statics.
         bodily = [s for s in settings if s.effect.on_machine is not None]
         return self._shown(self._remembered(bodily, noise, self._physical)[1], settings)
@@ -98,7 +103,7 @@ class Predictor:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
         shown = self(settings, noise)
         if self.spare_cables:
-            true = self._remembered(settings, noise, self._forces.readings)[0]
+            true = self._remembered(settings, noise, self._with_forces)[0]
         else:
             limp = replace(self.built(settings), flexural_rigidity_N_m2=0.0)
             true = readings_of(limp, self._measured.poses, self._measured)
@@ -134,9 +139,12 @@ class Predictor:
         readings = readings_of(self.built(settings), self._measured.poses, self._measured)
         return readings, readings
 
+    def _with_forces(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
+        return self._forces.readings(settings, noise, self._measured)
+
     def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
         """Judge anew how far readings can be trusted with these effects; tell if that changed."""
-        if not self.spare_cables or not self._forces.trust_anew(settings, noise):
+        if not self.spare_cables or not self._forces.trust_anew(settings, noise, self._measured):
             return False
         self._known.clear()
         self._slopes.clear()

@@ -49,10 +49,11 @@ class Problem:
     def free_readings(self, taken: BoolArray) -> int:
         """Return how many of the readings taken (n_rows, 2 n_cables) are left to test the model.
 
-        A row of a redundant robot gives up one for each cable to spare, for its internal forces.
+        A row of a redundant robot gives up one for each cable to spare, for its internal forces,
+        and as many as its degrees of freedom where its pose was not measured.
         """
-        spare = self.predict.spare_cables
-        return int(np.maximum(taken.sum(axis=1) - spare, 0).sum())
+        given_up = self.predict.row_unknowns
+        return int(np.maximum(taken.sum(axis=1) - given_up, 0).sum())
 
     def predicted(self, settings: Sequence[Setting]) -> Readings:
         """Return what the sensors would show with these effects."""

@@ -10,10 +10,11 @@ from designer.arrays import frozen_array
 from designer.effects.effect import ALL_ANCHORS, NEEDS, Effect, Parameter, Size
 from designer.model.cable import Cable
 from designer.model.machine import Machine
+from designer.model.measurements import POSES
 from designer.model.robot import Platform, Robot
 from designer.units import Dimension, QuantityError, read_quantity
 
-RESERVED_IDS = frozenset({ALL_ANCHORS, "cable"})
+RESERVED_IDS = frozenset({ALL_ANCHORS, POSES, "cable"})
 """Words of the config that stand where an id or a parameter may stand."""
 
 _ID = re.compile(r"[a-z][a-z0-9_]{0,59}")

@@ -38,9 +38,13 @@ def _gain(machine: Machine) -> Size:
 
 
 def _reference(machine: Machine) -> Size:
-    """A tiny gain about a reference far off would be a wrong scale of each winch, not layering."""
+    """A tiny gain about a reference far off would be a wrong scale of each winch, not layering.
+
+    Fits start at a tenth of the typical size: among the lengths, since from far off they end at no
+    gain at all.
+    """
     size = frame_size_m(machine)
-    return Size(0.1 * size, bounds=(0.0, 2 * size), plausible=(0.0, 2 * size))
+    return Size(5.0 * size, bounds=(0.0, 2 * size), plausible=(0.0, 2 * size))
 
 
 EFFECT = Effect(

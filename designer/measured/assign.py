@@ -20,7 +20,7 @@ from designer.measured.names import (
     tension_names,
 )
 from designer.measured.table import RawColumn, Table
-from designer.model.measurements import LogColumn, Measurements
+from designer.model.measurements import POSES, LogColumn, Measurements
 from designer.spelling import did_you_mean
 from designer.study import Study
 
@@ -80,7 +80,9 @@ def assign(table: Table, study: Study, measurements: Measurements) -> Assigned:
         if column.name not in mapped:
             _assign_by_name(found, column, study)
     _set_half_a_wind_aside(found)
-    found.faults.extend(_missing(found, study))
+    if not measurements.has_poses:
+        _set_poses_aside(found)
+    found.faults.extend(_missing(found, study, has_poses=measurements.has_poses))
     return found
 
 
@@ -129,15 +131,29 @@ def _set_half_a_wind_aside(found: Assigned) -> None:
             found.covariates[name] = found.ours.pop(name)
 
 
-def _missing(found: Assigned, study: Study) -> Iterator[Fault]:
+def _set_poses_aside(found: Assigned) -> None:
+    """Leave out columns of a pose that is said to be unknown."""
+    given = [name for name in found.ours if name in POSITION or is_rotation(name)]
+    for name in given:
+        del found.ours[name]
+    if given:
+        found.notes.append(f"{', '.join(given)} left out: poses are said to be unknown")
+
+
+def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Fault]:
     lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
     known = {*found.ours, *found.awaited}
-    if known.isdisjoint(POSITION):
+    if not has_poses:
+        pass
+    elif known.isdisjoint(POSITION):
         problem = (
             "there is no measured pose; the diagnosis holds readings against the pose of each row, "
-            "which is indispensable and has to be measured by other means than the winches"
+            "which has to be measured by other means than the winches"
         )
-        expected = f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}"
+        expected = (
+            f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}; or, with both "
+            f"lengths and tensions, 'unknown: [{POSES}]'"
+        )
         hint = did_you_mean(POSITION[0], found.covariates)
         yield found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
     else:

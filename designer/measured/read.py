@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
@@ -15,7 +17,7 @@ from designer.measured.surroundings import covariates, temperature_C, time_s, wi
 from designer.measured.table import Table, read_table
 from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
-from designer.model.robot import Poses
+from designer.model.robot import Poses, Robot
 from designer.study import Study
 
 MOST_FAULTS = 100
@@ -45,9 +47,16 @@ def read_measured(study: Study) -> Measured:
         rows = usable_rows(found, study.robot.n_cables, settled=measurements.settled)
         faults = [*found.table.faults, *found.faults, *cell_faults(found), *rows.faults]
         _refuse([*faults, *quaternion_faults(found, rows.kept)])
-    poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
-    _refuse_one_pose(table, poses)
+    if measurements.has_poses:
+        poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
+        _refuse_one_pose(table, poses)
+    else:
+        poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
+    if not measurements.has_poses:
+        measured = replace(measured, has_poses=False)
+        _refuse_without_spare_readings(study.robot, measured, table)
+        return measured
     told = (*(effect.id for effect in study.effects), *measurements.unknown)
     known = study.known_effects.effects
     is_homed = not any(effect.shifts_lengths and effect.is_among(told) for effect in known)
@@ -98,6 +107,21 @@ def _refuse_one_pose(table: Table, poses: Poses) -> None:
     if not has_moved and not has_turned:
         problem = "all rows are at one pose, so nothing can be told apart"
         raise InputError([Fault(table.name, None, "", problem, "different poses")])
+
+
+def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Table) -> None:
+    """Refuse rows that readings only just settle: nothing is left to test the model with."""
+    if not robot.has_enough_cables:
+        problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"
+        raise InputError([Fault(table.name, None, "", problem, "measured poses")])
+    most = int(measured.n_readings.max())
+    if most <= robot.n_cables:
+        spare = robot.n_cables - robot.degrees_of_freedom
+        unknown = f"{robot.degrees_of_freedom} of the pose"
+        unknown += f" and {spare} of internal forces" if spare else ""
+        problem = f"rows have at most {most} readings, for {robot.n_cables} unknowns: {unknown}"
+        expected = f"more than {robot.n_cables}, so lengths and tensions; or measured poses"
+        raise InputError([Fault(table.name, None, "", problem, expected)])
 
 
 def _measured(

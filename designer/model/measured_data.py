@@ -18,7 +18,7 @@ class Measured:
     Parameters
     ----------
     poses : Poses
-        Measured poses (n_rows,).
+        Poses (n_rows,): measured, or estimated; NaN before that.
     length_m : array (n_rows, n_cables)
         Unstrained lengths by the winches' own scales [m]; NaN where missing.
     tension_N : array (n_rows, n_cables)
@@ -37,6 +37,8 @@ class Measured:
         What the reader of a report should know: columns that were left out, and why.
     sha256 : str
         Digest of the file's bytes; empty where there is no file.
+    has_poses : bool
+        Whether poses were measured; else each row's own readings have to tell its pose.
     """
 
     poses: Poses
@@ -50,11 +52,17 @@ class Measured:
     row_numbers: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     notes: tuple[str, ...] = ()
     sha256: str = ""
+    has_poses: bool = True
 
     @property
     def n_rows(self) -> int:
         """Number of rows."""
         return len(self.length_m)
+
+    @property
+    def n_readings(self) -> IntArray:
+        """Number of lengths and tensions in each row (n_rows,)."""
+        return np.asarray(np.isfinite(np.hstack([self.length_m, self.tension_N])).sum(axis=1))
 
     @property
     def columns(self) -> frozenset[str]:

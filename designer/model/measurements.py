@@ -9,6 +9,8 @@ from typing import Literal, get_args
 from designer.arrays import require_number, require_one_of
 
 Reading = Literal["length", "tension"]
+POSES = "poses"
+"""What ``unknown`` calls the poses of all rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +50,7 @@ class Measurements:
     settled : bool
         Whether the rows are poses at rest; False for samples of a slow motion.
     unknown : tuple of str
-        Ids of what is fitted from the start and not counted as a finding.
+        Ids of what is fitted from the start and not counted as a finding; `POSES` as well.
     length_noise_m : float or None
         Standard deviation of a measured length [m]; None where not given.
     tension_noise_N : float or None
@@ -75,6 +77,11 @@ class Measurements:
     minimum_breaking_load_N: float | None = None
     estimated_noise: tuple[Reading, ...] = ()
     search_time_s: float = 600.0
+
+    @property
+    def has_poses(self) -> bool:
+        """Whether poses were measured; else each row's own readings have to tell its pose."""
+        return POSES not in self.unknown
 
     def __post_init__(self) -> None:
         for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):

@@ -108,8 +108,7 @@ class _Search:
         self.robot, self.cable, self.length_m, self.force_N = robot, cable, length_m, force_N
         self.position = start.position_m.copy()
         self.rotation = start.rotation.copy()
-        self.reach = reach_m(robot)
-        self.size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0))) + self.reach
+        self.size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0))) + reach_m(robot)
         self.radius = np.full(len(length_m), _FIRST_RADIUS * self.size)
         self.left = np.full(len(length_m), _POLISH)
 
@@ -146,7 +145,7 @@ class _Search:
         length = np.linalg.norm(step, axis=-1)
         radius = self.radius[active]
         step = step * np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
-        trial = self._moved(here, step)
+        trial = moved_poses(self.robot, here, step)
         push = _push(self.statics(active, trial))
         before, after = self.push[active], push
         rests = np.linalg.norm(before, axis=-1) <= rounding
@@ -163,15 +162,17 @@ class _Search:
         self.rotation[moved] = trial.rotation[kept]
         self.push[moved] = push[kept]
 
-    def _moved(self, poses: Poses, step: FloatArray) -> Poses:
-        twist = np.zeros((len(step), 6))
-        twist[:, self.robot.balance_rows] = step
-        upright = self.robot.upright
-        position = poses.position_m + twist[:, :3] @ upright
-        if self.robot.is_point_mass:
-            return Poses(position, poses.rotation)
-        turn = Rotation.from_rotvec(twist[:, 3:] @ upright / self.reach).as_matrix()
-        return Poses(position, turn @ poses.rotation)
+
+def moved_poses(robot: Robot, poses: Poses, step_m: FloatArray) -> Poses:
+    """Return poses (n,) moved by steps (n, dof) [m], those of a turn times the robot's reach."""
+    twist = np.zeros((len(step_m), 6))
+    twist[:, robot.balance_rows] = step_m
+    upright = robot.upright
+    position = poses.position_m + twist[:, :3] @ upright
+    if robot.is_point_mass:
+        return Poses(position, poses.rotation)
+    turn = Rotation.from_rotvec(twist[:, 3:] @ upright / reach_m(robot)).as_matrix()
+    return Poses(position, turn @ poses.rotation)
 
 
 def _push(statics: Statics) -> FloatArray:

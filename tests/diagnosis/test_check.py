@@ -50,12 +50,16 @@ def run(monkeypatch, *arguments: str) -> int:
     return 0
 
 
-def test_it_tells_both_models_and_writes_one_file(config, monkeypatch, capsys) -> None:
+def test_it_tells_both_models_and_writes_page_and_numbers(config, monkeypatch, capsys) -> None:
     declare(config, HEAVIER)
     config.with_name("measured.csv").rename("new.csv")
     assert run(monkeypatch, "--check", str(config), "--data", "new.csv") == 0
     assert "with the effects, nothing fitted" in capsys.readouterr().out
-    assert [path.name for path in Path("config-check").iterdir()] == ["diagnosis.json"]
+    written = sorted(path.name for path in Path("config-check").iterdir())
+    assert written == ["check.html", "check.pdf", "diagnosis.json"]
+    page = Path("config-check/check.html").read_text(encoding="utf-8")
+    assert "The declared model stands" in page
+    assert "platform_mass" in page
     answer = json.loads(Path("config-check/diagnosis.json").read_text())
     tension = answer["check"]["tension_N"]
     assert tension["with"]["rms"] < 1.15 * YARD3.noise_N < 3.0 * YARD3.noise_N

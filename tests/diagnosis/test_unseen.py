@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from twins.dataset import DataSet, make
-from twins.robots import HALL8, YARD3
+from twins.robots import FAST3, HALL6, HALL8, YARD3, TwinRobot
 from twins.troubles import troubled
 
 from designer.diagnosis.blocks import heldout_rows
@@ -27,8 +27,8 @@ def case_in(dataset: DataSet, folder) -> Case:
     return case_of(study, study.measurements, read_measured(study))
 
 
-def diagnosed(kind: str, seed: int, folder) -> Diagnosis:
-    return diagnose(case_in(troubled(YARD3, kind, seed), folder))
+def diagnosed(kind: str, seed: int, folder, robot: TwinRobot = YARD3) -> Diagnosis:
+    return diagnose(case_in(troubled(robot, kind, seed), folder))
 
 
 def test_a_gain_is_clear_of_zero_by_twice_its_deviation() -> None:
@@ -38,9 +38,11 @@ def test_a_gain_is_clear_of_zero_by_twice_its_deviation() -> None:
     assert not Gain(-0.1, 0.01).is_clear
 
 
-@pytest.mark.parametrize("seed", [1, 7])
-def test_noise_that_lasts_is_no_effect(seed, tmp_path) -> None:
-    found = diagnosed("serial noise", seed, tmp_path)
+@pytest.mark.parametrize(
+    ("robot", "seed"), [(YARD3, 1), (YARD3, 7), (FAST3, 930045), (HALL6, 910014)]
+)
+def test_noise_that_lasts_is_no_effect(robot, seed, tmp_path) -> None:
+    found = diagnosed("serial noise", seed, tmp_path, robot)
     assert found.findings == ()
     assert found.verdict is Verdict.NOTHING
     assert found.structure_after.lasting.rows > 5.0

@@ -86,7 +86,7 @@ def test_a_log_without_any_pose_is_told_in_one_line(body: Log) -> None:
     fault = only(body.faults())
     assert fault.field == "x_m, y_m, z_m"
     assert "there is no measured pose" in fault.problem
-    assert "indispensable" in fault.problem
+    assert "by other means than the winches" in fault.problem
 
 
 def test_neither_lengths_nor_tensions(log: Log) -> None:

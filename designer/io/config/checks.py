@@ -13,13 +13,14 @@ from designer.arrays import FloatArray
 from designer.documents.document import Document
 from designer.documents.picture import picture_type
 from designer.documents.section import reader_of
-from designer.effects.effect import Effect
+from designer.effects.effect import ALL_ANCHORS, Effect
 from designer.errors import Fault
 from designer.io.config.columns import ColumnSection
 from designer.io.config.load_cases import load_cases_fit
 from designer.io.config.parts import Parts, valid
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, rank
 from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
+from designer.model.measurements import POSES
 from designer.model.region import Prism, Rectangle
 from designer.spelling import did_you_mean
 from designer.units import describe
@@ -29,6 +30,7 @@ _GROUPS = "selection.groups"
 _COLUMNS = "measurements.columns"
 _LOGO = "document.logo"
 LARGEST_LOGO_BYTES = 1_000_000
+_UNKNOWN = "measurements.unknown"
 
 
 def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
@@ -189,17 +191,35 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
 
 def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
-    path, seen = "measurements.unknown", set()
+    path, seen = _UNKNOWN, set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
-    known = (*parts.effects, *together)
+    known = (*parts.effects, *together, POSES)
     for index, name in _texts(parts, path):
         if name not in known:
-            listed = f"{', '.join(together)}, or an effect: {', '.join(parts.effects)}"
+            listed = f"{', '.join((*together, POSES))}, or an effect: {', '.join(parts.effects)}"
             expected = listed + did_you_mean(name, known)
             yield parts.fault(path, f"{describe(name)} is not known", expected, index)
         if name in seen:
             yield parts.fault(path, f"'{name}' is given twice", "once", index)
         seen.add(name)
+
+
+def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
+    """Where poses are unknown, exit points and the noise of both kinds of readings are not."""
+    unknown = {name: index for index, name in _texts(parts, _UNKNOWN)}
+    if POSES not in unknown:
+        return
+    for name in unknown.keys() & {ALL_ANCHORS, "anchor_offset", "base_tilt"}:
+        problem = f"'{name}' and '{POSES}' are both unknown, and nothing tells one from the other"
+        yield parts.fault(_UNKNOWN, problem, "one of them", unknown[name])
+    if parts.raw("workspace.region") is None:
+        expected = "where the platform may be, since its poses are unknown"
+        yield parts.fault("workspace.region", "is missing", expected)
+    for kind in ("length", "tension"):
+        if parts.raw(f"measurements.noise.{kind}") is None:
+            problem = f"is missing, and weighs {kind}s where poses are unknown"
+            expected = "a standard deviation of each kind of reading"
+            yield parts.fault(f"measurements.noise.{kind}", problem, expected)
 
 
 def _texts(parts: Parts, path: str) -> Iterator[tuple[int, str]]:
@@ -240,4 +260,5 @@ _CHECKS = (
     columns_fit_the_robot,
     unknowns_are_known,
     logo_is_a_picture,
+    unknown_poses_can_be_told,
 )

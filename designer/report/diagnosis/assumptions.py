@@ -10,8 +10,7 @@ from designer.report.blocks import Bullets, Section
 def section(diagnosis: Diagnosis) -> Section:
     """Return what the diagnosis rests on."""
     items = (
-        "Each pose is taken as measured, without an error of its own; what is compared are lengths "
-        "and tensions.",
+        _poses(diagnosis),
         "Static equilibrium in each row. Each cable is an elastic catenary; lengths are unstrained "
         "at 20 °C, tensions are those at the winch.",
         _internal_forces(diagnosis),
@@ -29,6 +28,20 @@ def section(diagnosis: Diagnosis) -> Section:
     )
     shown = Bullets(tuple(item for item in items if item))
     return Section.of("assumptions", "Assumptions and limits", shown, kind="keep")
+
+
+def _poses(diagnosis: Diagnosis) -> str:
+    if diagnosis.measured.has_poses:
+        return (
+            "Each pose is taken as measured, without an error of its own; what is compared are "
+            "lengths and tensions."
+        )
+    return (
+        "No pose was measured. Each is estimated from the row's own readings, anew with every "
+        "model, which gives up as many readings of a row as there are cables; only what "
+        "contradicts the others is held against the model, and errors are smaller than those of "
+        "readings against measured poses."
+    )
 
 
 def _internal_forces(diagnosis: Diagnosis) -> str:

@@ -48,6 +48,7 @@ def _facts(diagnosis: Diagnosis) -> Facts:
         facts.append(Fact("File", study.measurements.file.name))
     facts += [
         Fact("Rows", fmt.count(measured.n_rows), kind),
+        Fact("Poses", "measured" if measured.has_poses else "estimated from the readings"),
         Fact("Fitted", fmt.count(measured.n_rows - heldout)),
         Fact("Held out", fmt.count(heldout), "contiguous blocks that no fit has seen"),
         Fact("Robot", f"{robot.n_cables} cables", degrees),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+from designer.diagnosis.free_poses import TAKEN_UP
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding, Reason, Withdrawn
 from designer.diagnosis.search import Trial
 from designer.report import format as fmt
@@ -21,6 +22,11 @@ def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
     if not_tried:
         text = f"The search ended early. Not tried: {'; '.join(not_tried)}."
         yield Statement("Out of time", text, "bad")
+    if not diagnosis.measured.has_poses:
+        hidden = [key for key, why in diagnosis.skipped if why.startswith(TAKEN_UP)]
+        more = f" They hide {fmt.listing(hidden, 'or')}, if there is any." if hidden else ""
+        text = f"No pose was measured; each is estimated from the row's own readings.{more}"
+        yield Statement("Poses estimated", text, "doubt")
     for group in words.grouped(findings):
         yield _significance(diagnosis, group)
     alone = [
@@ -37,8 +43,10 @@ def sureness(diagnosis: Diagnosis) -> Iterator[Statement]:
         if finding.rivals:
             text = (
                 f"These data cannot tell {finding.effect.key} from "
-                f"{fmt.listing(finding.rivals, 'or')}. Poses that would are proposed below."
+                f"{fmt.listing(finding.rivals, 'or')}."
             )
+            if diagnosis.proposals:
+                text += " Poses that would are proposed below."
             yield Statement("Rivals", text, "doubt")
         for warning in finding.warnings:
             yield Statement("Hard to believe", f"{finding.effect.key}: {warning}.", "bad")

@@ -1,0 +1,238 @@
+r"""Poses that nobody measured, taken row by row from what was read.
+
+Lengths and tensions of all cables are twice as many readings as a row's balance has unknowns: its
+pose, and one internal force for each cable to spare, together as many as cables. For any effects
+each row is put where it suits its own readings best; what is left then is a residual of those
+effects alone (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973). The work is
+linear in the rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
+from designer.diagnosis.physical import readings_of
+from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.search import SIGNIFICANCE
+from designer.effects.effect import Effect, Readings, Setting, frame_size_m
+from designer.effects.known import KnownEffects
+from designer.effects.registry import SHIPPED
+from designer.model.machine import Machine
+from designer.model.measured_data import EVEN, Measured, Noise
+from designer.model.region import Region
+from designer.model.robot import Poses
+from designer.statics.forward import moved_poses
+
+TAKEN_UP = "taken up by the estimated poses"
+"""Why an effect cannot be told."""
+_CANDIDATES = 4000
+"""Places to start from: neighbours are a sixteenth of the region's side apart."""
+_STEP = 1e-6
+"""Over the frame's size: slopes to six digits, as the catenaries have ten."""
+_MOST_SLOPES, _CHORDS = 6, 4
+"""Turns at most, and steps that are taken with the slopes of each: near the end two will do."""
+_STILL = 1e-2
+"""Of the noise, or of what is left where that is more: the rest of the way is straight, to a small
+share of this."""
+_RIDGE = 1e-13
+"""Over the trace: of the digits of a double, those that no slope has."""
+_UNHELD = 1e9
+"""What is left of a reading where the model cannot hold the pose: worse than any error."""
+
+
+class FreePredictor(Predictor):
+    """Predicts readings of rows without poses, each where it suits its own readings best."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        measured: Measured,
+        fixed: Sequence[Setting] = (),
+        known: KnownEffects = SHIPPED,
+    ) -> None:
+        super().__init__(machine, measured, fixed, known)
+        self._near: dict[tuple[object, ...], tuple[Poses, FloatArray]] = {}
+
+    @property
+    def row_unknowns(self) -> int:
+        """The pose and the internal forces: as many as cables."""
+        return self._machine.robot.n_cables
+
+    def __call__(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return what the sensors would show with these effects, in the poses that suit them."""
+        return self._remembered(settings, noise, self._nearest)[1]
+
+    def surroundings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+        """Return lengths and tensions that a residual may go with."""
+        return self(settings, noise)
+
+    def trust_anew(self, settings: Sequence[Setting], noise: Noise) -> bool:
+        """Judge anew how far readings can be trusted in the poses that suit these effects."""
+        if self.spare_cables:
+            self._nearest(settings, noise)
+        return super().trust_anew(settings, noise)
+
+    def poses(self, settings: Sequence[Setting], noise: Noise) -> Poses:
+        """Return the poses that suit the readings with these effects."""
+        self._nearest(settings, noise)
+        return self._measured.poses
+
+    def _nearest(self, settings: Sequence[Setting], noise: Noise) -> tuple[Readings, Readings]:
+        """Put each row where its robust loss is least; Gauss-Newton, with slopes that are kept."""
+        kind = (noise, *(setting.effect.key for setting in settings))
+        start = self._near.get(kind, self._near.get((noise,)))
+        poses, slopes = start if start else (self._measured.poses, None)
+        answer, left = self._left_at(poses, settings, noise)
+        share = np.ones(len(left))
+        for _ in range(_MOST_SLOPES):
+            slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes
+            for _ in range(_CHORDS):
+                step = share[:, None] * _step(slopes, left)
+                rest = np.einsum("rcp,rp->rc", slopes, step)
+                if np.all(np.abs(rest).max(axis=1) < _STILL * _at_least_noise(left)):
+                    self._near[kind] = poses, slopes
+                    return _further(answer, rest, noise)
+                trial = moved_poses(self._machine.robot, poses, step)
+                answer, there = self._left_at(trial, settings, noise)
+                closer = _loss(there) <= _loss(left)
+                poses = _either(closer, trial, poses)
+                left = np.where(closer[:, None], there, left)
+                share = np.where(closer, np.minimum(1.0, 4.0 * share), 0.25 * share)
+                if not closer.all():
+                    answer, left = self._left_at(poses, settings, noise)
+            slopes = None
+        self._near[kind] = poses, self._slopes_at(poses, settings, noise)
+        return self._left_at(poses, settings, noise)[0]
+
+    def _left_at(
+        self, poses: Poses, settings: Sequence[Setting], noise: Noise
+    ) -> tuple[tuple[Readings, Readings], FloatArray]:
+        """Return true and shown readings in poses, and what is left in units of noise."""
+        measured = self._measured = replace(self._measured, poses=poses)
+        if self.spare_cables:
+            answer = self._with_forces(settings, noise)
+        else:
+            true, _ = self._physical(settings, noise)
+            answer = true, self._shown(true, settings)
+        shown = answer[1]
+        length = (measured.length_m - shown.length_m) / noise.length_m
+        tension = (measured.tension_N - shown.tension_N) / noise.tension_N
+        left = np.hstack([length, tension])
+        is_read = np.isfinite(np.hstack([measured.length_m, measured.tension_N]))
+        left = np.where(np.isnan(left), _UNHELD, left)
+        return answer, np.where(is_read, left, 0.0)
+
+    def _slopes_at(self, poses: Poses, settings: Sequence[Setting], noise: Noise) -> FloatArray:
+        """Return how much less is left for a step of each degree of freedom (rows, …, dof)."""
+        robot = self._machine.robot
+        here = self._left_at(poses, settings, noise)[1]
+        step_m = _STEP * frame_size_m(self._machine)
+        slopes = np.empty((*here.shape, robot.degrees_of_freedom))
+        for k in range(robot.degrees_of_freedom):
+            step = np.zeros((len(here), robot.degrees_of_freedom))
+            step[:, k] = step_m
+            there = self._left_at(moved_poses(robot, poses, step), settings, noise)[1]
+            slopes[..., k] = (here - there) / step_m
+        self._left_at(poses, settings, noise)
+        return slopes
+
+
+def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
+    """Return for each row the place, of many in a region, whose readings are most like its own.
+
+    The platform is level there. Lengths and tensions count over their scatter in the region.
+
+    Parameters
+    ----------
+    machine : Machine
+        With the declared effects.
+    measured : Measured
+        Rows without poses.
+    region : Region
+        Where the robot works.
+    """
+    places = np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
+    shown = readings_of(machine, Poses.at(places)).stacked
+    scale = np.maximum(np.nanstd(shown, axis=0), 1e-12)
+    unlike = np.where(np.isnan(shown), np.inf, 0.0).sum(axis=1)  # what the machine cannot hold
+    read = np.hstack([measured.length_m, measured.tension_N])
+    nearest = [
+        int(np.argmin(np.nansum(((row - shown) / scale) ** 2, axis=1) + unlike)) for row in read
+    ]
+    rotation = np.eye(3)
+    if not machine.robot.is_point_mass:
+        rotation = np.tile(rotation, (len(read), 1, 1))
+    return Poses(places[nearest], rotation)
+
+
+def taken_up(
+    problem: Problem, effects: Sequence[Effect], given: Sequence[Effect], rows: BoolArray
+) -> list[tuple[str, str]]:
+    """Return effects that poses take up, each with the reason.
+
+    Such an effect, even as large as an engineer would believe, would leave less in the readings
+    than a search takes for chance.
+
+    Parameters
+    ----------
+    problem, effects, given, rows
+        As for `designer.diagnosis.search.Searcher`.
+    """
+    from scipy.stats import chi2
+
+    answer = []
+    for effect in effects:
+        both = [*given, effect]
+        slopes = jacobian(problem, both, starting_vector(both, (), {}))[rows]
+        own = np.nan_to_num(slopes[..., -len(effect.parameters) :])  # 0 where nothing was read
+        most = [max(abs(end - p.neutral) for end in p.plausible) for p in effect.parameters]
+        gain = float(np.max(np.sum(own**2, axis=(0, 1)) * np.square(most)))
+        if chi2.sf(gain, len(effect.parameters)) * len(effects) > SIGNIFICANCE:
+            size = f"{np.sqrt(gain):.2g} standard deviations in all at its largest plausible value"
+            answer.append((effect.key, f"{TAKEN_UP}: {size}"))
+    return answer
+
+
+def _step(slopes: FloatArray, left: FloatArray) -> FloatArray:
+    """Return the Gauss-Newton step of each row (n_rows, dof), outliers weighted down."""
+    size = np.abs(left)
+    weight = np.where(size < _UNHELD, np.minimum(1.0, HUBER / np.maximum(size, HUBER)), 0.0)
+    weighted = slopes * weight[..., None]
+    square = np.einsum("rcp,rcq->rpq", weighted, slopes)
+    pull = np.einsum("rcp,rc->rp", weighted, left)
+    # Nothing moves where nothing was read.
+    least = _RIDGE * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
+    ridge = least[:, None, None] * np.eye(square.shape[-1])
+    return np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
+
+
+def _further(
+    answer: tuple[Readings, Readings], rest: FloatArray, noise: Noise
+) -> tuple[Readings, Readings]:
+    """Return readings after a last short step, which takes ``rest`` off what is left."""
+    true, shown = answer
+    length, tension = np.hsplit(rest, 2)
+    length, tension = noise.length_m * length, noise.tension_N * tension
+    return true, Readings(shown.length_m + length, shown.tension_N + tension)
+
+
+def _at_least_noise(left: FloatArray) -> FloatArray:
+    return np.asarray(np.maximum(1.0, np.abs(left).max(axis=1)))
+
+
+def _loss(left: FloatArray) -> FloatArray:
+    return np.asarray(huber(left).sum(axis=1))
+
+
+def _either(first: BoolArray, one: Poses, other: Poses) -> Poses:
+    """Return the poses of one where ``first`` (n_rows,), else of the other."""
+    rotation = one.rotation
+    if rotation.ndim > 2:
+        rotation = np.where(first[:, None, None], rotation, other.rotation)
+    return Poses(np.where(first[:, None], one.position_m, other.position_m), rotation)

@@ -1,0 +1,191 @@
+"""Rows without poses: estimated from what was read, and diagnosed from what is to spare."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from twins.dataset import DataSet, make, size_for
+from twins.robots import FAST3, FIELD4, HALL8, YARD3, TwinRobot
+
+from designer.diagnosis.case import Case, case_of
+from designer.diagnosis.check import check
+from designer.diagnosis.diagnose import diagnose
+from designer.diagnosis.fit import fit
+from designer.diagnosis.free_poses import TAKEN_UP, FreePredictor
+from designer.diagnosis.problem import Problem
+from designer.diagnosis.result import Diagnosis
+from designer.errors import InputError
+from designer.io.config import read_study
+from designer.measured.read import read_measured
+from designer.model.measured_data import Noise
+from designer.report.diagnosis.first_page import first_page
+
+BOTH = ("length", "tension")
+
+
+def written(dataset: DataSet, folder: Path, quantities=BOTH, **measurements: object) -> Path:
+    """Write a data set without poses; return its config."""
+    path = dataset.write(folder, quantities)
+    table = dataset.columns(quantities)
+    kept = [name for name in table if name[:2] not in ("x_", "y_", "z_", "rx", "ry", "rz")]
+    rows = zip(*(table[name] for name in kept), strict=True)
+    text = "\n".join([",".join(kept), *map(",".join, rows)])
+    (folder / "measured.csv").write_text(f"{text}\n", encoding="utf-8")
+    config = yaml.safe_load(path.read_text(encoding="utf-8"))
+    config["measurements"] |= {"unknown": ["poses"], **measurements}
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    return path
+
+
+def case_in(config: Path) -> Case:
+    study = read_study(config)
+    assert study.measurements is not None
+    return case_of(study, study.measurements, read_measured(study))
+
+
+def drawn(robot: TwinRobot, effect: str, over_noise: float, seed: int) -> dict:
+    return {effect: robot.draw(effect, size_for(robot, effect, over_noise, seed), seed)}
+
+
+def diagnosed(robot: TwinRobot, effects: dict, seed: int, folder: Path, **how) -> Diagnosis:
+    return diagnose(case_in(written(make(robot, effects, rows=40, seed=seed), folder, **how)))
+
+
+def faults_of(config: Path) -> str:
+    with pytest.raises(InputError) as refused:
+        case_in(config)
+    return str(refused.value)
+
+
+@pytest.mark.parametrize("robot", [YARD3, FAST3, HALL8], ids=lambda robot: robot.name)
+def test_poses_are_where_they_were(robot, tmp_path) -> None:
+    dataset = make(robot, rows=40, seed=3301)
+    case = case_in(written(dataset, tmp_path))
+    predictor = case.predictor()
+    assert isinstance(predictor, FreePredictor)
+    noise = Noise(robot.noise_m, robot.noise_N, "declared")
+    off_m = predictor.poses((), noise).position_m - dataset.scene.position_m
+    assert np.linalg.norm(off_m, axis=1).max() < 10.0 * robot.noise_m
+    shown = predictor((), noise)
+    left = np.hstack(
+        [
+            (case.measured.length_m - shown.length_m) / noise.length_m,
+            (case.measured.tension_N - shown.tension_N) / noise.tension_N,
+        ]
+    )
+    # As many readings of a row as cables went into its pose and internal forces.
+    assert np.sum(left**2) / (40 * robot.cables) == pytest.approx(1.0, abs=0.25)
+
+
+def test_nothing_is_found_where_nothing_is(tmp_path) -> None:
+    found = diagnosed(YARD3, {}, 3302, tmp_path)
+    assert found.verdict.value == "nothing_to_find"
+    assert found.foretold_after is None
+
+
+@pytest.mark.parametrize("seed", [3303, pytest.param(3304, marks=pytest.mark.slow)])
+def test_an_effect_shows_in_what_is_to_spare(seed, tmp_path) -> None:
+    truth = drawn(YARD3, "tension_gain", 10.0, seed)["tension_gain"]
+    found = diagnosed(YARD3, {"tension_gain": truth}, seed, tmp_path)
+    (finding,) = found.findings
+    assert finding.effect.key == f"tension_gain of cable {truth['cable']:.0f}"
+    gain = finding.parameters["gain"]
+    assert abs(gain.value - truth["gain"]) < 4.0 * gain.std
+    assert np.isfinite(found.measured.poses.position_m).all()
+    told = found.to_dict()
+    assert told["rows"]["poses"] == "estimated"
+    assert "Poses estimated" in {s.title for s in first_page(found).sureness}
+
+
+def test_what_poses_take_up_is_named_and_never_found(tmp_path) -> None:
+    """Warm cables look like a lower platform, unless load cells are fine enough to tell."""
+    coarse = replace(YARD3, noise_N=80.0)
+    warm = drawn(coarse, "thermal_expansion", 5.0, 3305)
+    dataset = make(coarse, warm, rows=40, seed=3305)
+    known = diagnose(case_in(dataset.write(tmp_path / "known")))
+    assert [finding.effect.id for finding in known.findings] == ["thermal_expansion"]
+    found = diagnose(case_in(written(dataset, tmp_path / "free")))
+    assert found.findings == ()
+    assert dict(found.skipped)["thermal_expansion"].startswith(TAKEN_UP)
+    (told,) = (s for s in first_page(found).sureness if s.title == "Poses estimated")
+    assert "thermal_expansion" in told.text
+
+
+@pytest.mark.slow
+def test_eight_cables(tmp_path) -> None:
+    truth = drawn(HALL8, "elastic_modulus", 10.0, 3306)
+    found = diagnosed(HALL8, truth, 3306, tmp_path)
+    (finding,) = found.findings
+    scale = finding.parameters["scale"]
+    assert "elastic_modulus" in {finding.effect.id, *finding.rivals}
+    if finding.effect.id == "elastic_modulus":
+        assert abs(scale.value - truth["elastic_modulus"]["scale"]) < 4.0 * scale.std
+
+
+def test_a_diagnosed_model_is_checked_without_poses(tmp_path) -> None:
+    truth = drawn(YARD3, "platform_mass", 10.0, 3307)
+    config = written(make(YARD3, truth, rows=40, seed=3307), tmp_path)
+    study = read_study(config)
+    measured = read_measured(study)
+    bare = check(study, study.measurements, measured)
+    declared = yaml.safe_load(config.read_text(encoding="utf-8")) | {"effects": truth}
+    config.write_text(yaml.safe_dump(declared), encoding="utf-8")
+    study = read_study(config)
+    helped = check(study, study.measurements, measured)
+    assert helped.is_positive
+    assert helped.declared.tension_N.rms.value < 0.5 * bare.declared.tension_N.rms.value
+    assert json.loads(helped.to_json())["rows"]["poses"] == "estimated"
+
+
+@pytest.mark.parametrize("robot", [YARD3, HALL8], ids=lambda robot: robot.name)
+def test_lengths_alone_have_nothing_to_spare(robot, tmp_path) -> None:
+    told = faults_of(written(make(robot, rows=12, seed=3308), tmp_path, ("length",)))
+    n = robot.cables
+    assert f"rows have at most {n} readings, for {n} unknowns" in told
+
+
+def test_a_swaying_platform_is_refused(tmp_path) -> None:
+    told = faults_of(written(make(FIELD4, rows=12, seed=3309), tmp_path))
+    assert "fewer cables than degrees of freedom" in told
+
+
+def test_what_the_config_has_to_say(tmp_path) -> None:
+    dataset = make(YARD3, rows=12, seed=3310)
+    noisy = {"noise": {"length": "1 mm"}, "unknown": ["poses", "anchors"]}
+    path = written(dataset, tmp_path, **noisy)
+    config = yaml.safe_load(path.read_text(encoding="utf-8"))
+    del config["workspace"]
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    told = faults_of(path)
+    assert "measurements.noise.tension: is missing" in told
+    assert "workspace.region: is missing" in told
+    assert "'anchors' and 'poses' are both unknown" in told
+
+
+def test_given_poses_that_are_said_to_be_unknown_are_left_out(tmp_path) -> None:
+    dataset = make(YARD3, rows=12, seed=3311)
+    path = written(dataset, tmp_path)
+    dataset.write(tmp_path / "whole")
+    config = yaml.safe_load(path.read_text(encoding="utf-8"))
+    config["measurements"]["file"] = "whole/measured.csv"
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    measured = read_measured(read_study(path))
+    assert "x_m, y_m, z_m left out: poses are said to be unknown" in measured.notes
+    assert not measured.has_poses
+
+
+def test_winches_that_were_homed_anywhere(tmp_path) -> None:
+    """Tensions tell roughly where the platform is, and many rows then where the winches began."""
+    true_m = {"offset_1_m": 0.4, "offset_2_m": -0.3, "offset_3_m": 0.25}
+    dataset = make(YARD3, {"length_offset": true_m}, rows=40, seed=3312)
+    case = case_in(written(dataset, tmp_path, unknown=["poses", "length_offset"]))
+    noise = Noise(YARD3.noise_m, YARD3.noise_N, "declared")
+    problem = Problem(case.measured, case.predictor(), noise)
+    found = fit(problem, case.given, np.ones(40, dtype=np.bool_), thorough=True)
+    assert np.abs(found.vector - list(true_m.values())).max() < 0.02
+    assert (np.abs(found.vector - list(true_m.values())) < 4.0 * found.std).all()
