@@ -66,7 +66,17 @@ def read_document(path: Path, kind: FileKind = STUDY) -> Document:
         deeply, expands to too many values, or is no mapping.
     """
     name = str(path)
-    raw = _read_bytes(path, name)
+    return document_of(_read_bytes(path, name), name, kind)
+
+
+def document_of(raw: bytes, name: str, kind: FileKind = STUDY) -> Document:
+    """Return the YAML mapping in what a file holds, or would hold, as `read_document` does.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     composer = _Composer(name)
     root = composer.compose(_decode(raw, name))
     if root is None:

@@ -41,9 +41,18 @@ def read_study(
         If anything is wrong with it; carries every fault, a hundred at most, in the order of the
         lines.
     """
+    return study_of(read_document(path), path, known_effects, plugins)
+
+
+def study_of(
+    document: Document,
+    path: Path,
+    known_effects: KnownEffects | None = None,
+    plugins: Plugins | None = None,
+) -> Study:
+    """Return the study of a document that lies, or is to lie, at a path; see `read_study`."""
     known = known_effects or SHIPPED
-    document = read_document(path)
-    section = _checked(document, known)
+    section = checked(document, known)
     if section.name is None:
         section = section.model_copy(update={"name": path.stem})
     entries = all_entries(section, document.root)
@@ -56,7 +65,8 @@ def read_study(
     return build_study(section, source, document, known, plugins)
 
 
-def _checked(document: Document, known: KnownEffects) -> StudySection:
+def checked(document: Document, known: KnownEffects) -> StudySection:
+    """Return what the document holds by the schema; `InputError` with all faults otherwise."""
     faults = [*document.faults, *all_faults(document, known.by_id)]
     section = None
     try:
