@@ -9,7 +9,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.explore.grids import map_grids
-from designer.explore.quantities import CHEAP
+from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question
 from designer.explore.shape import sag_m
 from designer.model.cable import Cable
@@ -48,17 +48,34 @@ class MapAnswer:
         Whether all rows and columns of the grids are there.
     with_rope : bool
         Whether tensions are those of the chosen rope.
+    before : mapping of str to mapping of str to array (n, m), or None
+        The same of the state that is compared with, at the same positions.
     """
 
     grids: Mapping[str, FloatArray]
     values: Mapping[str, Values]
     is_fine: bool
     with_rope: bool
+    before: Mapping[str, Values] | None = None
 
     @property
     def geometry_key(self) -> tuple[object, ...]:
         """Equal where the grids have the same names and shapes."""
         return tuple((name, grid.shape) for name, grid in self.grids.items())
+
+    def difference(self, grid: str, key: str) -> FloatArray | None:
+        """Return what a quantity has become less what it was, SI; None without a comparison.
+
+        NaN where there is none in either state. Categories have no difference but whether they are
+        another one, 1, or not, 0.
+        """
+        if self.before is None or key not in self.before.get(grid, {}):
+            return None
+        now, was = self.values[grid][key], self.before[grid][key]
+        if key in BY_KEY and BY_KEY[key].is_category:
+            both_nan = np.isnan(now) & np.isnan(was)
+            return np.asarray((now != was) & ~both_nan, dtype=np.float64)
+        return np.asarray(now - was)
 
     def all_of(self, key: str) -> FloatArray:
         """Return the values of one quantity on all grids (n_points,), for a common scale."""
@@ -74,6 +91,7 @@ def map_answer(
     toward_m: FloatArray | None = None,
     parts: frozenset[str] | None = None,
     quantities: frozenset[str] = frozenset(),
+    against: Question | None = None,
 ) -> MapAnswer:
     """Compute the map.
 
@@ -85,21 +103,36 @@ def map_answer(
         Names of the grids to compute; all if left out.
     quantities : frozenset of str
         What is asked for beside the quick ones: ``stiffness``, ``unserved``.
+    against : Question, optional
+        A state to compare with, at the same positions.
     """
     workspace, with_rope = question.workspace, question.cable is not None
     if workspace is None:
         return MapAnswer({}, {}, fine, with_rope)
     grids = map_grids(workspace.region, slice_share, toward_m, fine=fine)
     grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
+    values = _on_grids(question, workspace, grids, CHEAP | quantities)
+    before = None
+    if against is not None and against.workspace is not None:
+        before = _on_grids(against, against.workspace, grids, CHEAP | quantities)
+    return MapAnswer(grids, values, fine, with_rope, before)
+
+
+def _on_grids(
+    question: Question, workspace: Workspace, grids: Mapping[str, FloatArray], keys: frozenset[str]
+) -> Mapping[str, Values]:
+    if not grids:
+        return {}
     flat = np.concatenate([grid.reshape(-1, 3) for grid in grids.values()])
-    found = values_at(question, workspace, flat, CHEAP | quantities)
     ends = np.cumsum([grid[..., 0].size for grid in grids.values()])[:-1]
-    split = {key: np.split(values, ends) for key, values in found.items()}
-    values = {
+    split = {
+        key: np.split(values, ends)
+        for key, values in values_at(question, workspace, flat, keys).items()
+    }
+    return {
         name: {key: each[k].reshape(grid.shape[:2]) for key, each in split.items()}
         for k, (name, grid) in enumerate(grids.items())
     }
-    return MapAnswer(grids, values, fine, with_rope)
 
 
 def values_at(

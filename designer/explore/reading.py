@@ -18,7 +18,7 @@ from designer.io.config.reader import checked, study_of
 from designer.io.config.schema import StudySection
 from designer.io.output import write_whole
 from designer.plugins.find import Plugins
-from designer.study import Study, require_enough_cables
+from designer.study import Study
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +35,6 @@ class Context:
             document = document_of(text.encode(), str(self.path))
             section = checked(document, self.known)
             study = study_of(document, self.path, self.known, self.plugins)
-            require_enough_cables(study)
         except InputError as error:
             return Reading(self, text, None, error.faults)
         except DesignerError as error:
