@@ -5,12 +5,15 @@ A library that writes the whole document anew keeps comments, but not how its au
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
 from designer.documents.node import Key
 
 _Node = Any
+_PLAIN = re.compile(r"[+-]?[\w.°][\w.°²³·^*/%()+-]*(?: [\w.°/(][\w.°²³·^*/%()+-]*)*")
+"""Words, numbers and units, without a letter that means something to YAML."""
 
 
 def compose(text: str) -> _Node:
@@ -21,17 +24,9 @@ def compose(text: str) -> _Node:
 
 
 def scalar(typed: str) -> str:
-    """Return what somebody typed as a value on one line, in quotes only where it needs them."""
-    import yaml
-
+    """Return what somebody typed as a value on one line, in quotes unless it surely needs none."""
     plain = " ".join(typed.split())
-    try:
-        node = compose(f"[{plain}]").value
-        if len(node) == 1 and isinstance(node[0], yaml.ScalarNode) and node[0].value == plain:
-            return plain
-    except yaml.YAMLError:
-        pass
-    return "'" + plain.replace("'", "''") + "'"
+    return plain if _PLAIN.fullmatch(plain) else "'" + plain.replace("'", "''") + "'"
 
 
 def value_text(text: str, keys: Sequence[Key]) -> str | None:
@@ -127,6 +122,11 @@ def _line_end(text: str, at: int) -> int:
 def _is_inline(text: str, start: int) -> bool:
     """Tell whether something beside blanks stands before this place in its line."""
     return bool(text[text.rfind("\n", 0, start) + 1 : start].strip())
+
+
+def field_count(text: str, keys: Sequence[Key]) -> int:
+    """Return how many fields a mapping has that is there."""
+    return len(_nearest(compose(text), keys)[0].value)
 
 
 def flow(value: str) -> str:

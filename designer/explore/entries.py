@@ -52,7 +52,7 @@ def put_back(now: Reading, saved: Reading, path: str) -> str:
         here = here[:-1]
     else:
         text = edits.without(text, here)
-    return _without_new(now, saved.text, text, here)
+    return _shortened(saved.text, _without_new(now, saved.text, text, here), here)
 
 
 def _without_new(now: Reading, saved_text: str, text: str, keys: Sequence[Key]) -> str:
@@ -64,6 +64,17 @@ def _without_new(now: Reading, saved_text: str, text: str, keys: Sequence[Key]) 
             shorter = edits.without(text, keys[:end])
             if section is not None and now.context.read(shorter).section == section:
                 return shorter
+    return text
+
+
+def _shortened(saved_text: str, text: str, keys: Sequence[Key]) -> str:
+    """Return the text with a list in place of a mapping on this path, where the file has one."""
+    for end in range(1, len(keys)):
+        around = keys[:end]
+        only = edits.value_text(text, (*around, _shorthand(around)))
+        was_list = only is not None and _is_list(edits.value_text(saved_text, around))
+        if only is not None and was_list and edits.field_count(text, around) == 1:
+            return edits.with_value(text, around, only)
     return text
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from designer.errors import OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer
+from designer.explore.quantities import CHEAP
 from designer.explore.question import Question
 from designer.explore.ropes import RopeRow, Ropes, quick_ropes
 from designer.io.output import output_folder
@@ -32,7 +33,7 @@ COLUMNS = {
     "unserved": "unserved",
 }
 """Names of the quantities in files."""
-_EXTRA = frozenset({"stiffness", "unserved"})
+_ALL = CHEAP | {"stiffness", "unserved"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +98,7 @@ def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Exported:
     tables = {
         "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, found.cables)),
     }
-    chart = map_answer(question, fine=True, quantities=_EXTRA)
+    chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:
         columns = map_columns(chart)
         rows = np.column_stack([*columns.values()])
@@ -145,7 +146,7 @@ def _vtk(question: Question, target: Path) -> Exported:
 
     if target.suffix != ".vtu":
         raise OutputError(f"{target}: the map for ParaView is a file that ends in .vtu")
-    chart = map_answer(question, fine=True, quantities=_EXTRA)
+    chart = map_answer(question, fine=True, quantities=_ALL)
     if not chart.grids:
         raise OutputError(f"{target}: the study has no workspace, and so no map")
     pieces = pv.MultiBlock()

@@ -11,23 +11,15 @@ from designer.arrays import FloatArray
 from designer.model.region import PointList, Rectangle, Region
 
 _MOST_POINTS = 3000
-_RINGS, _SPOKES = 45, 120
+_RINGS, _SPOKES, _ROWS = 45, 120, 24
 
 
-def map_grids(
-    region: Region, slice_share: float, toward_m: FloatArray | None = None, *, fine: bool
-) -> Mapping[str, FloatArray]:
+def map_grids(region: Region, slice_share: float, *, fine: bool) -> Mapping[str, FloatArray]:
     """Return grids of positions (n, m, 3) [m], by their names.
 
-    Of a prism the outside with a piece cut out, as `designer.analysis.grids.cutaway_m` has it, and
-    ``slice``, level, at a share of the height; of a rectangle ``section``; of a list ``points``
-    (n, 1, 3), thinned out where there are very many. Unless ``fine``, every second row and column.
-
-    Parameters
-    ----------
-    toward_m : array (3,), optional
-        One of the two cuts runs from the axis of the region through this position; through the
-        first corner, if left out.
+    Of a prism its ``top``, ``bottom`` and ``wall``, and ``slice``, level, at a share of the height;
+    of a rectangle ``section``; of a list ``points`` (n, 1, 3), thinned out where there are very
+    many. Unless ``fine``, every second row and column.
     """
     if isinstance(region, PointList):
         every = -(-len(region.points_m) // _MOST_POINTS)
@@ -36,9 +28,12 @@ def map_grids(
         found = {"section": grids.upright_disc_m(region)}
     else:
         low, high = region.z_m
-        toward = np.append(region.polygon_m[0], low) if toward_m is None else toward_m
-        level = grids.disc_m(region, low + slice_share * (high - low), _RINGS, _SPOKES)
-        found = {**grids.cutaway_m(region, toward), "slice": level}
+        heights = {"top": high, "bottom": low, "slice": low + slice_share * (high - low)}
+        found = {name: grids.disc_m(region, z, _RINGS, _SPOKES) for name, z in heights.items()}
+        rim = found["bottom"][-1]
+        found["wall"] = np.stack(
+            [rim + np.array([0.0, 0.0, z - low]) for z in np.linspace(low, high, _ROWS)]
+        )
     return found if fine else {name: _every_second(grid) for name, grid in found.items()}
 
 

@@ -88,33 +88,33 @@ def map_answer(
     *,
     fine: bool = False,
     slice_share: float = 0.5,
-    toward_m: FloatArray | None = None,
     parts: frozenset[str] | None = None,
-    quantities: frozenset[str] = frozenset(),
+    quantities: frozenset[str] = CHEAP,
     against: Question | None = None,
 ) -> MapAnswer:
     """Compute the map.
 
     Parameters
     ----------
-    fine, slice_share, toward_m
+    fine, slice_share
         Of the grids, see `designer.explore.grids.map_grids`.
     parts : frozenset of str, optional
         Names of the grids to compute; all if left out.
     quantities : frozenset of str
-        What is asked for beside the quick ones: ``stiffness``, ``unserved``.
+        Keys of what is asked for, with ``unserved`` among them; what costs nothing more is there
+        as well. The less, the quicker.
     against : Question, optional
         A state to compare with, at the same positions.
     """
     workspace, with_rope = question.workspace, question.cable is not None
     if workspace is None:
         return MapAnswer({}, {}, fine, with_rope)
-    grids = map_grids(workspace.region, slice_share, toward_m, fine=fine)
+    grids = map_grids(workspace.region, slice_share, fine=fine)
     grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
-    values = _on_grids(question, workspace, grids, CHEAP | quantities)
+    values = _on_grids(question, workspace, grids, quantities)
     before = None
     if against is not None and against.workspace is not None:
-        before = _on_grids(against, against.workspace, grids, CHEAP | quantities)
+        before = _on_grids(against, against.workspace, grids, quantities)
     return MapAnswer(grids, values, fine, with_rope, before)
 
 
@@ -153,22 +153,23 @@ def values_at(
 def _values(
     question: Question, workspace: Workspace, positions_m: FloatArray, keys: frozenset[str]
 ) -> Values:
-    cable = question.cable
-    _, sizing = size_worst(question.robot, workspace, positions_m, question.material)
-    statics, allowable = sizing.statics, np.asarray(np.nan)
+    cable, found = question.cable, {}
+    if cable is None or "diameter" in keys:
+        _, sizing = size_worst(question.robot, workspace, positions_m, question.material)
+        statics, found["diameter"] = sizing.statics, sizing.diameter_m
     if cable is not None:
         statics = _worst_with(question, workspace, positions_m, cable)
-        allowable = np.asarray(cable.allowable_tension_N)
-    with np.errstate(invalid="ignore"):
-        found = {
-            "utilisation": statics.largest_tension_N / allowable,
-            "diameter": sizing.diameter_m,
-            "tension": statics.largest_tension_N,
-            "governing": _governing(statics),
-            "sag": (sag_m(statics) / statics.geometry().chord_m).max(axis=-1),
-            "verdict": statics.verdict.astype(np.float64),
-            "left_out": is_left_out(statics, workspace.hangs_below).astype(np.float64),
-        }
+    allowable = np.nan if cable is None else cable.allowable_tension_N
+    found |= {
+        "utilisation": statics.largest_tension_N / allowable,
+        "tension": statics.largest_tension_N,
+        "governing": _governing(statics),
+        "verdict": statics.verdict.astype(np.float64),
+        "left_out": is_left_out(statics, workspace.hangs_below).astype(np.float64),
+    }
+    if "sag" in keys:
+        with np.errstate(invalid="ignore"):
+            found["sag"] = (sag_m(statics) / statics.geometry().chord_m).max(axis=-1)
     if cable is None:  # the thinnest cable is used up to its limit, by definition
         found["utilisation"] = np.where(statics.is_solved, 1.0, np.nan)
     if "stiffness" in keys:

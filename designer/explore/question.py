@@ -52,7 +52,7 @@ class Question:
         Whose grades are in the catalogue.
     """
 
-    study: Study
+    study: Study = field(repr=False)
     place: FloatArray
     rope: Rope | None
     text: str = field(repr=False)

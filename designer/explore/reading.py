@@ -34,7 +34,7 @@ class Context:
         try:
             document = document_of(text.encode(), str(self.path))
             section = checked(document, self.known)
-            study = study_of(document, self.path, self.known, self.plugins)
+            study = study_of(section, document, self.path, self.known, self.plugins)
         except InputError as error:
             return Reading(self, text, None, error.faults)
         except DesignerError as error:

@@ -41,18 +41,18 @@ def read_study(
         If anything is wrong with it; carries every fault, a hundred at most, in the order of the
         lines.
     """
-    return study_of(read_document(path), path, known_effects, plugins)
+    known, document = known_effects or SHIPPED, read_document(path)
+    return study_of(checked(document, known), document, path, known, plugins)
 
 
 def study_of(
+    section: StudySection,
     document: Document,
     path: Path,
-    known_effects: KnownEffects | None = None,
+    known: KnownEffects,
     plugins: Plugins | None = None,
 ) -> Study:
-    """Return the study of a document that lies, or is to lie, at a path; see `read_study`."""
-    known = known_effects or SHIPPED
-    section = checked(document, known)
+    """Return the study of a document, `checked`, that lies, or is to lie, at a path."""
     if section.name is None:
         section = section.model_copy(update={"name": path.stem})
     entries = all_entries(section, document.root)
