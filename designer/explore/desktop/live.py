@@ -38,7 +38,8 @@ class Live(QObject):
         self._worker = Worker(self._delivered.emit)
         self.question: Question | None = None
         self.slice_share = 0.5
-        self.wants_stiffness = False
+        self.quantity = "utilisation"
+        self.against: Question | None = None
         self._pending: dict[Kind, int] = {}
         self._newest: dict[Kind, int] = {}
         self._last = self._since = 0
@@ -113,9 +114,10 @@ class Live(QObject):
 
     def _ask(self, kind: Kind, question: Question, **options: Any) -> None:
         if kind in ("coarse", "fine"):
-            wanted = {"unserved": kind == "fine", "stiffness": self.wants_stiffness}
+            whole = {"unserved", "sag", "diameter"} if kind == "fine" else set()
+            options["quantities"] = frozenset({self.quantity, *whole})
             options["slice_share"] = self.slice_share
-            options["quantities"] = frozenset(key for key, is_so in wanted.items() if is_so)
+            options["against"] = self.against
         self._last = self._pending[kind] = self._worker.ask(kind, question, **options)
         self.busy_changed.emit()
 

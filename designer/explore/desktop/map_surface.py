@@ -74,7 +74,7 @@ class MapSurface:
             for start, grid in zip(starts[:-1], grids_m.values(), strict=True)
         ]
         self._faces = np.concatenate([np.empty((0, 4), dtype=np.int64), *faces])
-        self._is_closed = self._seen_inside and len(grids_m) > 1 and "cut" not in grids_m
+        self._is_closed = self._seen_inside and len(grids_m) > 1
         if self._is_closed:
             self._faces = _outward(points, self._faces)
         self._put_points()
@@ -107,7 +107,7 @@ class MapSurface:
         low, high = painting.span
         mapper.lookup_table, mapper.scalar_range = painting.table, (low, high)
         mapper.scalar_visibility = True
-        if painting.quantity.is_category:
+        if painting.is_category:
             mesh.cell_data["category"] = values.shown[faces[valued][:, 0]]
             mapper.scalar_map_mode = "cell"
         else:

@@ -55,6 +55,21 @@ class Menus:
             Entry("save as", "Save &as …", "Ctrl+Shift+S", "Save another file", files.save_as),
             Entry("reload", "Re&load", "F5", "Take what the file holds now", files.reload),
             None,
+        )
+        self._add(
+            menu.addMenu("E&xport"),
+            Entry("export report", "&Report …", "Ctrl+R", "All that the command writes",
+                  window.keeping.report),
+            Entry("export picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen",
+                  window.keeping.picture),
+            Entry("export tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV",
+                  window.keeping.tables),
+            Entry("export map", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid",
+                  window.keeping.map_file),
+        )  # fmt: skip
+        self._add(
+            menu,
+            None,
             Entry("text", "Study as &text", "Ctrl+E", "Edit the file itself", window.show_text),
             Entry("scene", "S&cene", "Ctrl+Return", "Back to the scene", window.show_work),
             None,
@@ -123,6 +138,10 @@ class Menus:
             Entry("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
                   window.to_pose),
             None,
+            Entry("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
+                  window.pin),
+            Entry("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing", window.release),
+            None,
             Entry("keep pose", "&Keep as the pose of the study", "Ctrl+K",
                   "Writes this place under `pose`", window.keep_pose),
         )  # fmt: skip
@@ -164,6 +183,9 @@ class Menus:
             "to pose": at_work and session is not None and session.study is not None
             and session.study.pose is not None,
             "keep pose": at_work,
+            "pin": at_work,
+            "release": session is not None and session.state.pin is not None,
+            **{f"export {what}": at_work for what in ("report", "picture", "tables", "map")},
             **{f"look {where}": at_work for where in ("home", "top", "front", "side")},
         }  # fmt: skip
         for name, is_so in allowed.items():

@@ -15,6 +15,7 @@ from designer.explore.desktop.theme import Theme
 from designer.explore.quantities import category_labels
 from designer.model.verdict import Verdict
 from designer.report.figures.colours import Steps, steps_for
+from designer.report.figures.palette import DIFFERENCES
 
 if TYPE_CHECKING:
     from designer.explore.map import MapAnswer
@@ -37,14 +38,17 @@ class Values:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Painting:
-    """A quantity, and its scale: steps, or colours of categories."""
+    """A quantity or its difference to A, and its scale: steps, or colours of categories."""
 
     quantity: Quantity
     steps: Steps | None
+    is_difference: bool = False
 
     @classmethod
     def over(cls, answer: MapAnswer, quantity: Quantity, held: Steps | None = None) -> Painting:
         """Return what paints an answer; with the steps of another one, where they are held."""
+        if answer.before is not None:
+            return cls._of_difference(answer, quantity)
         plain = cls(quantity, None)
         if quantity.is_category:
             return plain
@@ -52,16 +56,35 @@ class Painting:
         counts = ~(shown.is_unserved | shown.is_left_out)
         return cls(quantity, held if held is not None else steps_for(shown.shown[counts]))
 
+    @classmethod
+    def _of_difference(cls, answer: MapAnswer, quantity: Quantity) -> Painting:
+        plain = cls(quantity, None, is_difference=True)
+        values = plain.of(answer, tuple(answer.grids)).shown
+        steps = steps_for(np.abs(values))
+        if steps is None or not np.nanmax(np.abs(values)) > 0.0:
+            return cls(quantity, Steps(np.array([-1.0, 0.0, 1.0]), "neither", DIFFERENCES), True)
+        largest = steps.levels[-1]
+        width = steps.levels[1] - steps.levels[0]
+        count = max(round(largest / width), 1)
+        levels = np.linspace(-count * width, count * width, 2 * count + 1)
+        return cls(quantity, Steps(levels, "neither", DIFFERENCES), is_difference=True)
+
+    @property
+    def is_category(self) -> bool:
+        """Whether the values are whole numbers that stand for something."""
+        return self.quantity.is_category and not self.is_difference
+
     @property
     def title(self) -> str:
         """The quantity with its unit."""
         unit = self.quantity.unit
-        return f"{self.quantity.title} [{unit}]" if unit else self.quantity.title
+        title = f"{self.quantity.title} [{unit}]" if unit else self.quantity.title
+        return f"{title}, now less A" if self.is_difference else title
 
     @property
     def span(self) -> tuple[float, float]:
         """Of the values that have a colour of their own."""
-        if self.quantity.is_category:
+        if self.is_category:
             return -0.5, len(CATEGORIES) - 0.5
         if self.steps is None:
             return 0.0, 1.0
@@ -74,7 +97,7 @@ class Painting:
         import pyvista
         from matplotlib.colors import ListedColormap
 
-        if self.quantity.is_category:
+        if self.is_category:
             colours: Any = ListedColormap(list(CATEGORIES))
         elif self.steps is None:
             colours = matplotlib.colormaps["viridis"].resampled(2)
@@ -89,8 +112,13 @@ class Painting:
             parts = [np.asarray(answer.values[grid][key], dtype=float).ravel() for grid in grids]
             return np.concatenate(parts or [np.empty(0)])
 
-        shown = column(self.quantity.key)
-        if self.quantity.is_category:
+        if self.is_difference:
+            parts = [answer.difference(grid, self.quantity.key) for grid in grids]
+            flat = [part.ravel() for part in parts if part is not None]
+            shown = np.concatenate(flat or [np.empty(0)])
+        else:
+            shown = column(self.quantity.key)
+        if self.is_category:
             shown = np.where(np.isfinite(shown), np.mod(shown, len(CATEGORIES)), np.nan)
         else:
             shown = shown * self.quantity.scale
@@ -115,7 +143,7 @@ class Painting:
         """Return what beside the scale has to be explained, where it occurs."""
         values = self.of(answer, tuple(answer.grids))
         found: list[Key] = []
-        if self.quantity.is_category:
+        if self.is_category:
             labels = category_labels(self.quantity.key, len(CATEGORIES))
             present = np.unique(values.shown[np.isfinite(values.shown)]).astype(int)
             for code, meaning in labels.items():

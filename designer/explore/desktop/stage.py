@@ -15,7 +15,6 @@ from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.pieces import Body, Dots, Faces, Lines
 from designer.explore.desktop.theme import LIGHT, Theme
 from designer.model.robot import Poses
-from designer.report.figures import palette
 from designer.report.figures.overlay import ticks_between
 from designer.report.figures.scenes import base_outline_m
 from designer.report.figures.stage import hull_faces
@@ -38,6 +37,7 @@ class Stage:
         self.dots = Dots(plotter, "points", 9.0)
         self.floor = Lines(plotter, "floor", 1.0, before=0.0, opacity=0.5)
         self.region = Lines(plotter, "region", 1.2, before=1.0)
+        self.rim = Lines(plotter, "slice rim", 1.4, before=2.0)
         self.base = Lines(plotter, "base", 2.0)
         self.posts = Lines(plotter, "posts", 1.2, before=0.0)
         self.chords = Lines(plotter, "chords", 1.0, opacity=0.6)
@@ -46,9 +46,7 @@ class Stage:
         self.body = Body(plotter, "platform", before=3.0)
         self.edges = Lines(plotter, "platform edges", 1.6, before=4.0)
         self.mass = Dots(plotter, "load", 12.0, before=5.0)
-        self.ghost = Lines(plotter, "cables of A", 1.6, before=2.0, opacity=0.8)
-        self.residuals = Lines(plotter, "residuals", 1.6, before=3.0)
-        self.rows = Dots(plotter, "measured rows", 5.0, before=3.0)
+        self.rows = Dots(plotter, "measured rows", 7.0, before=6.0)
         self.theme = LIGHT
         self.names: tuple[str, ...] = ()
         self.is_planar = False
@@ -70,10 +68,8 @@ class Stage:
         colours: Mapping[str, list[Any]] = {
             theme.border: [self.floor],
             theme.muted: [self.region, self.base, self.posts, self.chords],
-            theme.cable: [self.cables, self.exits, self.mass, self.edges],
-            theme.accent: [self.body, self.rows],
-            theme.good: [self.ghost],
-            palette.WARNING: [self.residuals],
+            theme.cable: [self.cables, self.exits, self.mass, self.edges, self.rim],
+            theme.accent: [self.body],
         }
         for colour, pieces in colours.items():
             for piece in pieces:
@@ -128,10 +124,21 @@ class Stage:
             surface.put_grids({name: grids[name] for name in names})
             if answer is not None and painting is not None:
                 surface.paint(painting, painting.of(answer, names))
+        self.rim.put([grids["slice"][-1]] if "slice" in grids else [])
         self._points_m = grids["points"].reshape(-1, 3) if "points" in grids else np.empty((0, 3))
         self.dots.put(self._points_m)
         if len(self._points_m) and answer is not None and painting is not None:
             self.dots.paint(painting.colours(painting.of(answer, ["points"]), self.theme))
+
+    def put_rows(self, position_m: FloatArray, sizes: FloatArray, most: float) -> None:
+        """Show measured rows (n,), coloured by how much is left of them, up to ``most``."""
+        import matplotlib
+
+        self.rows.put(position_m)
+        if len(position_m):
+            share = np.clip(np.nan_to_num(sizes) / most, 0.0, 1.0)
+            table = matplotlib.colormaps["magma"]
+            self.rows.paint(np.round(255.0 * table(share)[:, :3]).astype(np.uint8))
 
     def hit(
         self, start_m: FloatArray, end_m: FloatArray, pixel: FloatArray, camera: Camera

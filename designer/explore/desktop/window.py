@@ -19,12 +19,16 @@ from PySide6.QtWidgets import (
 )
 
 from designer.arrays import FloatArray
+from designer.explore.compare import Pin, compare
 from designer.explore.desktop import theme as themes
 from designer.explore.desktop.files import Files
+from designer.explore.desktop.keeping import Keeping
 from designer.explore.desktop.live import LONG, Live
 from designer.explore.desktop.long_work import LongWork
 from designer.explore.desktop.menus import Menus
+from designer.explore.desktop.panel_compare import PanelCompare
 from designer.explore.desktop.panel_here import PanelHere
+from designer.explore.desktop.panel_measured import PanelMeasured
 from designer.explore.desktop.panel_ropes import PanelRopes
 from designer.explore.desktop.panel_study import PanelStudy
 from designer.explore.desktop.settings import Settings
@@ -68,7 +72,7 @@ class Window(QMainWindow):
         for page in (self.start, self.work, self.text):
             self.pages.addWidget(page)
         self.setCentralWidget(self.pages)
-        self.files = Files(self)
+        self.files, self.keeping = Files(self), Keeping(self)
         self._make_docks()
         self._make_status()
         self.menus = Menus(self)
@@ -83,6 +87,7 @@ class Window(QMainWindow):
 
     def _make_docks(self) -> None:
         self.here, self.study_panel, self.ropes = PanelHere(), PanelStudy(), PanelRopes()
+        self.compare, self.measured = PanelCompare(), PanelMeasured()
         self.messages = QPlainTextEdit(readOnly=True)
         self.messages.setObjectName("messages")
         self.messages.setMaximumBlockCount(500)
@@ -93,10 +98,13 @@ class Window(QMainWindow):
             ("Study", self.study_panel, area.LeftDockWidgetArea),
             ("Here", self.here, area.RightDockWidgetArea),
             ("Ropes", self.ropes, area.BottomDockWidgetArea),
+            ("Compare", self.compare, area.BottomDockWidgetArea),
+            ("Measured data", self.measured, area.BottomDockWidgetArea),
             ("Messages", self.messages, area.BottomDockWidgetArea),
         ):
             self.add_dock(name, widget, where)
-        self.tabifyDockWidget(self.docks["Ropes"], self.docks["Messages"])
+        for name in ("Compare", "Measured data", "Messages"):
+            self.tabifyDockWidget(self.docks["Ropes"], self.docks[name])
         self.docks["Ropes"].raise_()
         for corner, side in (
             (Qt.Corner.BottomLeftCorner, area.LeftDockWidgetArea),
@@ -134,9 +142,15 @@ class Window(QMainWindow):
         self.study_panel.gave_up.connect(self._give_up)
         self.ropes.chosen.connect(self._choose)
         self.ropes.asks_for_selection.connect(lambda: self.begin_long("select"))
+        self.compare.asks_to_pin.connect(self.pin)
+        self.compare.asks_to_release.connect(self.release)
+        self.compare.difference_wanted.connect(self._want_difference)
+        self.measured.asks_to_diagnose.connect(lambda: self.begin_long("diagnose"))
+        self.measured.asks_to_take_over.connect(self._take_over)
+        self.measured.rows_wanted.connect(self._show_rows)
         self.work.slice_moved.connect(self._move_slice)
         self.work.quantity_changed.connect(self._want_quantity)
-        self.work.notice_answered.connect(self.files.answer_notice)
+        self.work.notice_answered.connect(self._answer_notice)
         self.text.edited.connect(self._edit_text)
         self.text.asks_to_reload.connect(self.files.reload)
         self.text.asks_to_leave.connect(self.show_work)
@@ -168,13 +182,19 @@ class Window(QMainWindow):
 
     def _show_page(self, page: QWidget) -> None:
         self.pages.setCurrentWidget(page)
-        for dock in self.docks.values():
-            dock.setVisible(page is self.work and self.menus.wants_dock(dock))
+        for name, dock in self.docks.items():
+            has_any = name != "Measured data" or self._has_data
+            dock.setVisible(page is self.work and has_any and self.menus.wants_dock(dock))
         if page is self.work and self.settings.bytes_of("layout").isEmpty():
             sides = [self.docks["Study"], self.docks["Here"]]
             self.resizeDocks(sides, [252, 392], Qt.Orientation.Horizontal)
             self.resizeDocks([self.docks["Ropes"]], [190], Qt.Orientation.Vertical)
         self.menus.refresh()
+
+    @property
+    def _has_data(self) -> bool:
+        study = None if self.session is None else self.session.study
+        return study is not None and study.measurements is not None
 
     # A session
 
@@ -187,6 +207,10 @@ class Window(QMainWindow):
             self.tell(problem)
         self.ropes.show_ropes(None, None)
         self.here.show_here(None)
+        self.compare.show_differences(None)
+        self.measured.show_residuals(None)
+        self.measured.show_diagnosis(None)
+        self.live.against = None
         if session.study is not None:
             self.work.show_study(session.study, afresh=True)
         self.changed()
@@ -261,6 +285,7 @@ class Window(QMainWindow):
             self.refresh_fields()
             self.changed()
             self.ropes.show_ropes(self.answers.get("ropes"), self.session.state.rope)
+            self._pin_changed()
 
     def put_all_back(self) -> None:
         """Make the whole study as the file has it."""
@@ -349,10 +374,71 @@ class Window(QMainWindow):
         self.live.ask_slice(share, moving=moving)
 
     def _want_quantity(self, key: str) -> None:
-        self.live.wants_stiffness = key == "stiffness"
-        if key == "stiffness":
+        self.live.quantity = key
+        shown = self.work.map
+        if shown is not None and any(key not in values for values in shown.values.values()):
             self.live.ask_map()
         self.menus.refresh()
+
+    # A, and measured data
+
+    def _present(self) -> Pin | None:
+        """The present state with what is known of it."""
+        session, known = self.session, self.answers.get
+        question = None if session is None else session.question()
+        if session is None or question is None:
+            return None
+        return Pin(question, session.fields(), known("here"), known("worst"), known("ropes"))
+
+    def pin(self) -> None:
+        """Keep the present state as A."""
+        if self.session is not None:
+            self.session.set_pin(self._present())
+            self._pin_changed()
+
+    def release(self) -> None:
+        """Compare with nothing any more."""
+        if self.session is not None:
+            self.session.set_pin(None)
+            self._pin_changed()
+
+    def _pin_changed(self) -> None:
+        self._show_differences()
+        self._want_difference(self.compare.in_map.isChecked())
+        self.menus.refresh()
+
+    def _show_differences(self) -> None:
+        pin = None if self.session is None else self.session.state.pin
+        now = self._present()
+        found = compare(pin, now) if isinstance(pin, Pin) and now is not None else None
+        self.compare.show_differences(found)
+
+    def _want_difference(self, wanted: bool) -> None:
+        pin = None if self.session is None else self.session.state.pin
+        against = pin.question if wanted and isinstance(pin, Pin) else None
+        if against is not self.live.against:
+            self.live.against = against
+            self.live.ask_map()
+
+    def _take_over(self, text: str) -> None:
+        assert self.session is not None
+        self.session.set_pin(self._present())
+        self.session.set_text(text)
+        self.refresh_fields()
+        self.changed()
+        self.docks["Compare"].raise_()
+
+    def _show_rows(self, wanted: bool) -> None:
+        found = self.answers.get("residuals") if wanted else None
+        if found is None:
+            self.work.show_rows(np.empty((0, 3)), np.empty(0))
+        else:
+            self.work.show_rows(found.position_m, found.size())
+
+    def _answer_notice(self, name: str) -> None:
+        self.files.answer_notice(name)
+        if name == "Open":
+            self.keeping.open_written()
 
     # Answers
 
@@ -367,6 +453,14 @@ class Window(QMainWindow):
             self.work.show_worst(answer)
         elif kind in ("ropes", "select"):
             self._take_ropes(answer)
+        elif kind == "residuals":
+            self.measured.show_residuals(answer)
+            self._show_rows(self.measured.in_scene.isChecked())
+        elif kind == "diagnose":
+            self.measured.show_diagnosis(answer)
+        elif kind == "export":
+            self.keeping.written(answer)
+        self._show_differences()
         self.menus.refresh()
 
     def _take_ropes(self, ropes: Any) -> None:
@@ -415,6 +509,7 @@ class Window(QMainWindow):
         self.work.put_on(theme)
         self.here.put_on(theme)
         self.ropes.put_on(theme)
+        self.measured.put_on(theme)
         self.menus.refresh()
 
     def _restore(self) -> None:

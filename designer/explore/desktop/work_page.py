@@ -61,6 +61,7 @@ class WorkPage(QWidget):
         self._place = np.zeros(6)
         self._held: Steps | None = None
         self._hit: Hit | None = None
+        self._rows_note = ""
         self._notice = _Notice()
         self._notice.answered.connect(self.notice_answered)
         rows = QVBoxLayout(self)
@@ -142,6 +143,7 @@ class WorkPage(QWidget):
             self.map, self.painting, self._here, self._held = None, None, None, None
             self.held.setChecked(False)
             self.scene.stage.put_map(None, None)
+            self.show_rows(np.empty((0, 3)), np.empty(0))
             self.scene.colour_legend.show_meaning("", None, (), self._theme)
             self.scene.overlay.worst = None
         self._study = study
@@ -172,7 +174,7 @@ class WorkPage(QWidget):
         factor = float(self.exaggeration.currentData())
         self.scene.stage.put_place(self._study, self._place, self._here, factor)
         self.scene.overlay.platform_m = self._place[:3].copy()
-        self.scene.overlay.note = f"sag drawn {factor:g} times" if factor != 1.0 else ""
+        self._write_note()
         self.scene.redraw()
 
     def show_map(self, answer: MapAnswer) -> None:
@@ -187,6 +189,21 @@ class WorkPage(QWidget):
             marked = (worst.place[:3], "worst pose")
         self.scene.overlay.worst = marked
         self.scene.overlay.setToolTip(worst.sentence if worst else "")
+        self.scene.overlay.update()
+
+    def show_rows(self, position_m: FloatArray, sizes: FloatArray) -> None:
+        """Show where was measured (n, 3), by the size of the residuals in units of noise (n,)."""
+        most = 5.0
+        self.scene.stage.put_rows(position_m, sizes, most)
+        text = f"measured rows: residual from 0 (dark) to {most:g} times the noise (bright)"
+        self._rows_note = text if len(position_m) else ""
+        self._write_note()
+        self.scene.redraw()
+
+    def _write_note(self) -> None:
+        factor = self.exaggeration.currentData()
+        sag = f"sag drawn {factor} times" if factor != 1 else ""
+        self.scene.overlay.note = "\n".join(filter(None, [sag, self._rows_note]))
         self.scene.overlay.update()
 
     def _show_map(self) -> None:
@@ -212,6 +229,7 @@ class WorkPage(QWidget):
     def _show_surfaces(self) -> None:
         self.scene.stage.shell.show(self.surface.isChecked())
         self.scene.stage.slice.show(self.slice.isChecked())
+        self.scene.stage.rim.show(self.slice.isChecked())
         has_slice = self.map is not None and "slice" in self.map.grids
         self.height_slider.setVisible(has_slice and self.slice.isChecked())
         self.scene.redraw()
@@ -279,6 +297,10 @@ class WorkPage(QWidget):
         else:
             text = f"{fmt.number(value * quantity.scale, 4)} {quantity.unit}".strip()
         lines = [f"{quantity.title}: {text}", where]
+        change = self.map.difference(hit.grid, quantity.key)
+        if change is not None and not quantity.is_category:
+            less = fmt.number(float(change.ravel()[hit.number]) * quantity.scale, 3)
+            lines.insert(1, f"now less A: {less} {quantity.unit}".strip())
         verdict = Verdict(int(values["verdict"]))
         if verdict is not Verdict.SOLVED:
             lines.append(verdict.reason)
