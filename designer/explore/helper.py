@@ -28,6 +28,8 @@ from designer.explore.requests import (
 
 _GRACE_S = 3.0
 """How long a process may take to clear away what it has half-written."""
+_PATIENCE_S = 1.0
+"""How long whoever closes waits for that; it goes on by itself."""
 
 
 class Helper:
@@ -78,7 +80,7 @@ class Helper:
             self._waiting.append(_NOTHING)
             self._changed.notify()
         if thread is not None:
-            thread.join(_GRACE_S + 1.0)
+            thread.join(_PATIENCE_S)
 
     def _end_running(self) -> None:
         if self._running is not None and self._process is not None:
@@ -114,9 +116,9 @@ class Helper:
         with self._changed:
             self._running = None
             replaced = bool(self._waiting) or self._closing
+        status = self._end() if replaced or end is None else None
         if end is not None:
             return end
-        status = self._end()
         if replaced:
             return Cancelled(request)
         return Failed(request, f"the process that did this ended unexpectedly, status {status}")
@@ -146,8 +148,8 @@ class Helper:
 
     def _started(self) -> subprocess.Popen[bytes]:
         with self._changed:
-            if self._closing:
-                raise EOFError
+            if self._closing or self._waiting:
+                raise EOFError  # given up before it began
             if self._process is None or self._process.poll() is not None:
                 command = [sys.executable, "-m", "designer.explore.process"]
                 pipe = subprocess.PIPE

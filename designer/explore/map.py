@@ -14,6 +14,7 @@ from designer.explore.question import Question
 from designer.explore.shape import sag_m
 from designer.model.cable import Cable
 from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.selection.products import Product, is_allowed, products_of, undominated
 from designer.selection.verify import Verification, refined, verify_sizes
@@ -146,7 +147,10 @@ def values_at(
     ]
     found = {key: np.concatenate([piece[key] for piece in pieces]) for key in pieces[0]}
     if "unserved" in keys:
-        found["unserved"] = unserved(question, workspace, positions_m).astype(np.float64)
+        proved = found["verdict"] == Verdict.OUTSIDE_HULL
+        left = unserved(question, workspace, positions_m[~proved])
+        found["unserved"] = np.ones(len(positions_m))
+        found["unserved"][~proved] = left
     return found
 
 

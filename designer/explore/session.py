@@ -268,6 +268,10 @@ class Session:
         if rope != self.state.rope:
             self._take("Choose a rope", None, rope=rope)
 
+    def begin_with(self, rope: Rope | None) -> None:
+        """Look at a rope that nobody chose; nothing that could be undone."""
+        self._history.state = replace(self.state, rope=rope)
+
     def set_pin(self, pin: object) -> None:
         """Compare with a state from now on; with nothing for None."""
         if pin is not self.state.pin:
