@@ -11,7 +11,6 @@ from designer.arrays import FloatArray
 from designer.report.figures.view import View, fitting
 
 _STEEPEST_RAD = np.radians(89.0)
-_FRAME = (0.06, 0.94, 0.08, 0.92)
 _LARGEST_ZOOM = 1e4
 
 
@@ -24,10 +23,13 @@ class Camera:
     height_px: float
     reach_m: float = 1.0  # Size of all that is on the stage, none of which lies behind the camera
 
-    def fit(self, points_m: FloatArray, azimuth_rad: float, elevation_rad: float) -> None:
-        """See all points (n, 3) from this side."""
+    def fit(
+        self, points_m: FloatArray, azimuth_rad: float, elevation_rad: float, right_px: float
+    ) -> None:
+        """See all points (n, 3) from this side, clear of a strip at the right."""
+        frame = (0.05, 0.97 - right_px / self.width_px, 0.08, 0.92)
         aspect = self.width_px / self.height_px
-        self.view = fitting(points_m, azimuth_rad, elevation_rad, _FRAME, aspect)
+        self.view = fitting(points_m, azimuth_rad, elevation_rad, frame, aspect)
         self.reach_m = float(np.linalg.norm(np.ptp(points_m, axis=0)))
 
     @property

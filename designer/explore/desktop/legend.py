@@ -13,7 +13,7 @@ from designer.explore.desktop.theme import LIGHT, Theme
 from designer.report import format as fmt
 from designer.report.figures.colours import Steps
 
-_WIDTH, _BAR, _MARGIN = 168, 16, 10
+_WIDTH, _BAR, _MARGIN = 136, 14, 8
 
 
 @dataclass(frozen=True, slots=True)

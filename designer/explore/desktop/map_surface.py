@@ -16,12 +16,14 @@ from designer.explore.desktop.theme import Theme
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-_STRIPES = 70.0
+_STRIPES = 50.0
 """Over the size of all that is shown."""
+_ACROSS = np.array([0.9, 0.35, 1.0])
+"""Stripes are planes across this direction, so that no face of a box lies along one."""
 
 
 class MapSurface:
-    """Grids of positions as one surface; three actors: coloured, hatched and left out.
+    """Grids of positions as one surface, in four actors by what is known of its faces.
 
     With ``inside`` only those faces are drawn that are seen from within, so that one looks into a
     closed body from every side.
@@ -29,9 +31,10 @@ class MapSurface:
 
     def __init__(self, plotter: Any, name: str, *, inside: bool = False) -> None:
         self.coloured = Piece(plotter, name)
-        self.hatched = Piece(plotter, f"{name}, hatched")
+        self.blank = Piece(plotter, f"{name}, not held")
         self.left_out = Piece(plotter, f"{name}, left out")
-        self.pieces = (self.coloured, self.hatched, self.left_out)
+        self.hatched = Piece(plotter, f"{name}, hatched", before=0.5)
+        self.pieces = (self.coloured, self.blank, self.left_out, self.hatched)
         self.coloured.mapper.interpolate_before_map = True
         self._seen_inside = inside
         self._is_closed = False
@@ -55,9 +58,12 @@ class MapSurface:
         import pyvista
 
         self.left_out.colour(theme.left_out)
-        stripes = np.empty((1, 64, 3), dtype=np.uint8)
-        stripes[:, :44], stripes[:, 44:] = (rgb(colour) for colour in theme.hatch)
+        self.blank.colour(theme.hatch[0])
+        stripes = np.zeros((1, 64, 4), dtype=np.uint8)
+        stripes[:, :, :3] = rgb(theme.hatch[1])
+        stripes[:, 46:, 3] = 255
         texture = pyvista.Texture(stripes)
+        self.hatched.colour("white")
         texture.repeat = True
         self.hatched.actor.texture = texture
 
@@ -89,7 +95,7 @@ class MapSurface:
                 piece.mesh.points = self._points_m
         if len(self._points_m):
             period = max(float(np.linalg.norm(np.ptp(self._points_m, axis=0))) / _STRIPES, 1e-9)
-            across = self._points_m.sum(axis=1) / (np.sqrt(2.0) * period)
+            across = self._points_m @ _ACROSS / period
             stripes = np.column_stack([across, np.zeros(len(across))])
             self.hatched.mesh.active_texture_coordinates = stripes
 
@@ -100,8 +106,9 @@ class MapSurface:
             return
         hatched = values.is_unserved[faces].any(axis=1)
         left_out = values.is_left_out[faces].any(axis=1) & ~hatched
-        valued = ~np.isnan(values.shown)[faces].any(axis=1) & ~hatched & ~left_out
-        for piece, chosen in zip(self.pieces, (valued, hatched, left_out), strict=True):
+        valued = ~np.isnan(values.shown)[faces].any(axis=1) & ~left_out
+        kinds = (valued, hatched & ~valued, left_out, hatched)
+        for piece, chosen in zip(self.pieces, kinds, strict=True):
             _put_faces(piece.mesh, faces[chosen])
         mesh, mapper = self.coloured.mesh, self.coloured.mapper
         low, high = painting.span

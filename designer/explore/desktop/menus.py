@@ -29,6 +29,11 @@ class Menus:
         self._edit_menu()
         self._view_menu()
         self._platform_menu()
+        self._add(
+            self._menu("&Help", "help menu"),
+            Entry("keys", "&Mouse, keys and quantities", "F1", "What they do and are",
+                  window.show_help),
+        )  # fmt: skip
 
     def _menu(self, title: str, name: str) -> QMenu:
         menu = self._window.menuBar().addMenu(title)

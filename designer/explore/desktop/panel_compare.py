@@ -9,7 +9,6 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
-    QHeaderView,
     QLabel,
     QPushButton,
     QVBoxLayout,
@@ -63,11 +62,12 @@ class PanelCompare(QWidget):
         self._told.setWordWrap(True)
         self._told.setObjectName("ropes gained and lost")
         self.model = RowsModel(_COLUMNS)
+        self.model.hint = lambda row: f"{row.title}: {row.before} → {row.after}"
         self.table = table_view("differences")
         self.table.setModel(self.model)
-        head = self.table.horizontalHeader()
-        head.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        head.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        for column, width in enumerate((190, 190, 190)):
+            self.table.setColumnWidth(column, width)
+        self.table.horizontalHeader().setStretchLastSection(True)
         above = QHBoxLayout()
         for widget in (self._pin, self._release, self.in_map):
             above.addWidget(widget)

@@ -49,11 +49,11 @@ _STANDINGS = ("chosen", "undominated", "dominated", "not_comparable", "too_thin"
 
 
 def _rank(row: RopeRow) -> float:
-    """What became of it, then its mass."""
+    """What became of it, then its mass; of what does not hold, how far it is from that."""
     known = row.standing in _STANDINGS
     standing = _STANDINGS.index(row.standing) if known else len(_STANDINGS)
-    mass_kg = row.total_mass_kg
-    return 1e9 * standing + (5e8 if math.isnan(mass_kg) else min(mass_kg, 1e8))
+    then = row.total_mass_kg if row.holds else row.utilisation
+    return 1e9 * standing + (5e8 if math.isnan(then) else min(then, 1e8))
 
 
 COLUMNS = (
@@ -125,6 +125,7 @@ class PanelRopes(QWidget):
         rows.setContentsMargins(8, 4, 8, 4)
         rows.setSpacing(4)
         rows.addLayout(self._above())
+        rows.addWidget(self.answer)
         rows.addWidget(self.table, 1)
 
     def _above(self) -> QHBoxLayout:
@@ -158,7 +159,7 @@ class PanelRopes(QWidget):
         above = QHBoxLayout()
         for widget in (self.material, self.maker, self.only_holding):
             above.addWidget(widget)
-        above.addWidget(self.answer, 1)
+        above.addStretch(1)
         above.addWidget(family)
         above.addWidget(self.select)
         return above
@@ -240,7 +241,7 @@ class _Filter(QSortFilterProxyModel):
 def _answer(ropes: Ropes) -> str:
     """The best rope, and how far to trust it."""
     if ropes.best is None:
-        return ropes.reason or ""
+        return fmt.capital(ropes.reason)
     sure = "between the samples as well" if ropes.is_final else "at the samples"
     return f"Best: {ropes.best.label} ({sure})"
 

@@ -49,6 +49,7 @@ class Scene(QtInteractor):
     """A direction (3,) along the axes of the frame, and how many steps."""
     asks_for_turn = Signal(object, float)
     """The same for the axes that the platform is to be turned about."""
+    resized = Signal()
     pointed_at = Signal(object)
     """What the mouse is over: a `Hit`, or None."""
 
@@ -65,6 +66,7 @@ class Scene(QtInteractor):
         self.overlay = Overlay(self, self.camera_)
         self.colour_legend = Legend(self)
         self.can_turn = False
+        self.is_turned = False  # Whether the user has chosen where to look from
         self._pressed: QPoint | None = None
         self._last = QPoint()
         self._grip = ""
@@ -113,6 +115,7 @@ class Scene(QtInteractor):
         self.camera_.height_px = max(self.height(), 1)
         self.overlay.setGeometry(self.rect())
         self.place_legend()
+        self.resized.emit()
 
     def place_legend(self) -> None:
         """Put the legend into its corner."""
@@ -147,9 +150,11 @@ class Scene(QtInteractor):
             buttons & Qt.MouseButton.LeftButton
             and not modifiers & Qt.KeyboardModifier.ShiftModifier
         ):
+            self.is_turned = True
             self.camera_.turn(step.x(), step.y())
             self.redraw()
         else:
+            self.is_turned = True
             self.camera_.shift(step.x(), step.y())
             self.redraw()
 
@@ -172,6 +177,7 @@ class Scene(QtInteractor):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom at the mouse."""
+        self.is_turned = True
         factor = 1.0015 ** event.angleDelta().y()
         self.camera_.zoom(factor, event.position().x(), event.position().y())
         self.redraw()

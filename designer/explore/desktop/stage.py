@@ -36,7 +36,7 @@ class Stage:
         self.slice = MapSurface(plotter, "slice")
         self.dots = Dots(plotter, "points", 9.0)
         self.floor = Lines(plotter, "floor", 1.0, before=0.0, opacity=0.5)
-        self.region = Lines(plotter, "region", 1.2, before=1.0)
+        self.region = Lines(plotter, "region", 1.2)
         self.rim = Lines(plotter, "slice rim", 1.4, before=2.0)
         self.base = Lines(plotter, "base", 2.0)
         self.posts = Lines(plotter, "posts", 1.2, before=0.0)

@@ -13,14 +13,15 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QScrollArea,
+    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
 from designer.resources import example_file, example_names, example_summary
 
-_PICTURE_PX = (248, 140)
-_COLUMNS = 3
+_PICTURE_PX = (200, 125)
+_COLUMNS = 4
 
 
 def picture_file(example: str) -> Path:
@@ -45,9 +46,8 @@ class StartPage(QScrollArea):
         columns.setContentsMargins(28, 24, 28, 24)
         columns.setSpacing(28)
         self._recent = QVBoxLayout()
-        self._recent.setAlignment(Qt.AlignmentFlag.AlignTop)
         columns.addLayout(self._recent, 1)
-        columns.addLayout(self._shipped(), 3)
+        columns.addLayout(self._shipped(), 4)
         self.setWidget(inside)
 
     def show_recent(self, studies: Iterable[Path]) -> None:
@@ -73,10 +73,10 @@ class StartPage(QScrollArea):
             self._recent.addWidget(entry)
         if not some:
             self._recent.addWidget(_label("Studies that you open stand here.", "muted"))
+        self._recent.addStretch(1)
 
     def _shipped(self) -> QVBoxLayout:
         column = QVBoxLayout()
-        column.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(_label("Studies to start from", "heading"))
         grid = QGridLayout()
         grid.setSpacing(12)
@@ -86,6 +86,7 @@ class StartPage(QScrollArea):
             entry.clicked.connect(lambda _=False, name=name: self.chosen.emit(example_file(name)))
             grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
         column.addLayout(grid)
+        column.addStretch(1)
         return column
 
 
@@ -97,6 +98,7 @@ class _Choice(QPushButton):
         self.setProperty("role", "study")
         self.setAccessibleName(name)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Expanding)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(10, 10, 10, 10)
         if picture is not None:

@@ -74,9 +74,13 @@ class TextPage(QWidget):
             self.editor.blockSignals(True)
             self.editor.setPlainText(text)
             self.editor.blockSignals(False)
+            self.editor.make_room()
         self.faults.clear()
         for fault in faults:
-            item = QListWidgetItem(str(fault))
+            where = f"line {fault.line}: " if fault.line else ""
+            expected = f" (expected {fault.expected})" if fault.expected else ""
+            field = f"{fault.field}: " if fault.field else ""
+            item = QListWidgetItem(f"{where}{field}{fault.problem}{expected}")
             item.setData(Qt.ItemDataRole.UserRole, fault.line)
             self.faults.addItem(item)
         self.faults.setVisible(bool(faults))
@@ -113,9 +117,9 @@ class _Editor(QPlainTextEdit):
         self.setTabChangesFocus(True)
         self.faulty: set[int] = set()
         self.numbers = _Numbers(self)
-        self.blockCountChanged.connect(self._make_room)
+        self.blockCountChanged.connect(self.make_room)
         self.updateRequest.connect(self._scrolled)
-        self._make_room()
+        self.make_room()
 
     def numbers_width(self) -> int:
         digits = len(str(max(self.blockCount(), 1)))
@@ -143,7 +147,7 @@ class _Editor(QPlainTextEdit):
             painter.drawText(box, Qt.AlignmentFlag.AlignRight, text)
             block, top = block.next(), top + height
 
-    def _make_room(self) -> None:
+    def make_room(self) -> None:
         self.setViewportMargins(self.numbers_width(), 0, 0, 0)
 
     def _scrolled(self, area: QRect, down: int) -> None:

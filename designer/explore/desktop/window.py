@@ -22,6 +22,7 @@ from designer.arrays import FloatArray
 from designer.explore.compare import Pin, compare
 from designer.explore.desktop import theme as themes
 from designer.explore.desktop.files import Files
+from designer.explore.desktop.help import HINT, Help
 from designer.explore.desktop.keeping import Keeping
 from designer.explore.desktop.live import LONG, Live
 from designer.explore.desktop.long_work import LongWork
@@ -218,6 +219,7 @@ class Window(QMainWindow):
             self.show_text()
         else:
             self.show_work()
+            self.statusBar().showMessage(HINT, 20_000)
 
     def changed(self, *, moving: bool = False) -> None:
         """Show the session as it is now, and ask for what follows from it."""
@@ -498,6 +500,10 @@ class Window(QMainWindow):
             self.long.end(self.long.kind)
 
     # Look, and the end
+
+    def show_help(self) -> None:
+        """Show what mouse and keys do."""
+        Help(self).show()
 
     def put_on(self, choice: str) -> None:
         """Take the colours of a theme, or those of the system."""

@@ -62,6 +62,7 @@ class WorkPage(QWidget):
         self._held: Steps | None = None
         self._hit: Hit | None = None
         self._rows_note = ""
+        self._where = "home"
         self._notice = _Notice()
         self._notice.answered.connect(self.notice_answered)
         rows = QVBoxLayout(self)
@@ -75,6 +76,7 @@ class WorkPage(QWidget):
         middle.addWidget(self._slice_slider())
         rows.addLayout(middle, 1)
         self.scene.pointed_at.connect(self._point)
+        self.scene.resized.connect(self._look_again)
 
     def _bar(self) -> QWidget:
         bar = QWidget()
@@ -256,14 +258,20 @@ class WorkPage(QWidget):
     def look(self, where: str) -> None:
         """Look from ``home``, ``top``, ``front`` or ``side`` at all that there is."""
         stage, study = self.scene.stage, self._study
+        self._where, self.scene.is_turned = where, False
         if study is None:
             return
         sides = {"top": (-90.0, 89.0), "front": (-90.0, 0.0), "side": (0.0, 0.0)}
         azimuth, elevation = self._home(study)
         if where in sides:
             azimuth, elevation = (float(angle) for angle in np.radians(sides[where]))
-        self.scene.camera_.fit(stage.everything_m(), azimuth, elevation)
+        legend_px = 0.7 * self.scene.colour_legend.width() if self.map is not None else 90.0
+        self.scene.camera_.fit(stage.everything_m(), azimuth, elevation, legend_px)
         self.scene.redraw()
+
+    def _look_again(self) -> None:
+        if not self.scene.is_turned:
+            self.look(self._where)
 
     def _home(self, study: Study) -> tuple[float, float]:
         robot = study.robot
