@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from designer.explore.fields import Field
 from designer.explore.here import Here
 from designer.explore.map import WorstAnswer
-from designer.explore.question import Question, Rope
+from designer.explore.question import Assignment, Question, Rope
 from designer.explore.ropes import Ropes
 
 
@@ -111,7 +111,7 @@ def _changes(before: Pin, after: Pin) -> Iterator[Change]:
             yield Change(title, old_text, new_text)
 
 
-def _label(rope: Rope | None) -> str:
+def _label(rope: Rope | Assignment | None) -> str:
     return "" if rope is None else rope.label
 
 

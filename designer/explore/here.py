@@ -10,7 +10,7 @@ from designer.analysis.field import cable_curves_m, chords_m
 from designer.arrays import FloatArray
 from designer.explore.question import Question
 from designer.explore.shape import exit_angle_rad, sag_m, stretch_m
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
@@ -176,7 +176,7 @@ def here(question: Question, *, settled: bool = False) -> Here:
     )
 
 
-def _utilisation(statics: Statics, cable: Cable | None) -> FloatArray:
+def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
     allowable = np.nan if cable is None else cable.allowable_tension_N
     return np.asarray(statics.cable_tension_N / allowable)
 
@@ -203,7 +203,7 @@ def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:
 
 
 def _stability(
-    question: Question, statics: Statics, cable: Cable | None, settled: bool
+    question: Question, statics: Statics, cable: Cable | Cables | None, settled: bool
 ) -> tuple[bool | None, str, float]:
     """Return whether the platform stays, in a sentence, and the stiffness."""
     if not statics.is_solved or cable is None:

@@ -12,10 +12,11 @@ from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question
 from designer.explore.shape import sag_m
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
+from designer.selection.groups.trials import verify_groups
 from designer.selection.products import Product, is_allowed, products_of, undominated
 from designer.selection.verify import Verification, refined, verify_sizes
 from designer.statics.inverse import Statics, solve_sagging
@@ -163,19 +164,17 @@ def _values(
         statics, found["diameter"] = sizing.statics, sizing.diameter_m
     if cable is not None:
         statics = _worst_with(question, workspace, positions_m, cable)
-    allowable = np.nan if cable is None else cable.allowable_tension_N
+    used = _used(statics, cable)
     found |= {
-        "utilisation": statics.largest_tension_N / allowable,
+        "utilisation": used.max(axis=-1),
         "tension": statics.largest_tension_N,
-        "governing": _governing(statics),
+        "governing": _governing(statics, used),
         "verdict": statics.verdict.astype(np.float64),
         "left_out": is_left_out(statics, workspace.hangs_below).astype(np.float64),
     }
     if "sag" in keys:
         with np.errstate(invalid="ignore"):
             found["sag"] = (sag_m(statics) / statics.geometry().chord_m).max(axis=-1)
-    if cable is None:  # the thinnest cable is used up to its limit, by definition
-        found["utilisation"] = np.where(statics.is_solved, 1.0, np.nan)
     if "stiffness" in keys:
         softness = largest_displacement_m_per_N(statics)
         stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
@@ -184,7 +183,7 @@ def _values(
 
 
 def _worst_with(
-    question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable
+    question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable | Cables
 ) -> Statics:
     """Solve positions (n, 3) with a rope, each in the orientation in which it is used most."""
     robot, count = question.robot, workspace.orientations.count
@@ -192,15 +191,26 @@ def _worst_with(
     statics = solve_sagging(robot, Poses.at(places), cable)
     if count == 1:
         return statics
-    asked = demand_of(statics.largest_tension_N, statics, workspace.hangs_below)
+    asked = demand_of(_used(statics, cable).max(axis=-1), statics, workspace.hangs_below)
     worst = asked.reshape(-1, count).argmax(axis=1)
     return solve_sagging(robot, Poses.at(places[np.arange(len(worst)) * count + worst]), cable)
 
 
-def _governing(statics: Statics) -> FloatArray:
-    """Return the number of the cable with the largest tension; all cables are alike."""
-    tension = np.nan_to_num(statics.cable_tension_N, nan=-np.inf)
-    return np.where(statics.is_solved, tension.argmax(axis=-1) + 1.0, np.nan)
+def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
+    """Return largest over allowable tension of each cable (..., n_cables).
+
+    The thinnest cable is used up to its limit, by definition.
+    """
+    tension = statics.cable_tension_N
+    if cable is None:
+        return np.asarray(tension / tension.max(axis=-1, keepdims=True))
+    return np.asarray(tension / cable.allowable_tension_N)
+
+
+def _governing(statics: Statics, used: FloatArray) -> FloatArray:
+    """Return the number of the cable that is used most."""
+    most = np.nan_to_num(used, nan=-np.inf).argmax(axis=-1)
+    return np.where(statics.is_solved, most + 1.0, np.nan)
 
 
 def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) -> BoolArray:
@@ -268,11 +278,26 @@ def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer
         found = map_workspace(built.robot, workspace, material, progress=advance)
     if question.cable is None:
         return WorstAnswer(found, None, *_worst_of_family(found))
-    (sampled,) = verify_sizes(built.robot, workspace, [question.cable])
-    met = sampled.verification(question.cable)
-    if not sampled.not_held and np.isfinite(met.utilisation):
-        met = refined(built.robot, workspace, question.cable, sampled)
+    met = _met(question, workspace, question.cable)
     return WorstAnswer(found, met, *_worst_of_rope(met))
+
+
+def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
+    """Return what a rope, or ropes, meet over the whole workspace."""
+    robot = question.robot
+    if isinstance(cable, Cables):
+        one_each = [np.array([k]) for k in range(robot.n_cables)]
+        met = verify_groups(robot, workspace, cable, one_each)
+        worst = int(np.argmax(met.utilisation))
+        used = float(met.utilisation[worst])
+        tension = used * float(cable.allowable_tension_N[worst])
+        unknown = np.full(robot.n_cables, np.nan)
+        place = met.worst_place[worst]
+        return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
+    (sampled,) = verify_sizes(robot, workspace, [cable])
+    if sampled.not_held or not np.isfinite(sampled.utilisation):
+        return sampled.verification(cable)
+    return refined(robot, workspace, cable, sampled)
 
 
 def _worst_of_family(found: WorkspaceMap) -> tuple[FloatArray | None, str]:

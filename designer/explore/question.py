@@ -11,9 +11,8 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
-from designer.grades.grade import Grade, Size
 from designer.grades.registry import Catalogue, load_catalogue
-from designer.model.cable import Cable, Material
+from designer.model.cable import Cable, Cables, Material
 from designer.model.robot import Poses, Robot
 from designer.plugins.find import Plugins
 from designer.selection.efficiency import Allowance
@@ -34,6 +33,18 @@ class Rope:
         return f"{self.size_id} of {self.grade_id}"
 
 
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A rope for each cable, in the order of the anchors."""
+
+    ropes: tuple[Rope, ...]
+
+    @property
+    def label(self) -> str:
+        """The ropes, each once, in one line."""
+        return ", ".join(dict.fromkeys(rope.label for rope in self.ropes))
+
+
 @dataclass(frozen=True, eq=False)
 class Question:
     """A state of the window, as far as answers depend on it; what follows from it is kept.
@@ -44,8 +55,9 @@ class Question:
         The problem.
     place : array (6,)
         Where the platform is, and its rotation vector [m, rad].
-    rope : Rope or None
-        The rope that is looked at; None for the thinnest cable of the configured family.
+    rope : Rope, Assignment or None
+        The rope, or the ropes of groups, that are looked at; None for the thinnest cable of the
+        configured family.
     text, path : str, Path
         The config, and where it lies or its relative paths start from.
     plugins : Plugins
@@ -54,7 +66,7 @@ class Question:
 
     study: Study = field(repr=False)
     place: FloatArray
-    rope: Rope | None
+    rope: Rope | Assignment | None
     text: str = field(repr=False)
     path: Path
     plugins: Plugins = field(repr=False)
@@ -107,41 +119,34 @@ class Question:
         return catalogue_of(self.study, self.plugins)
 
     @cached_property
-    def product(self) -> tuple[Grade, Size] | None:
-        """The rope that is looked at; None where none is.
+    def cable(self) -> Cable | Cables | None:
+        """What is looked at, with its figures as the solver takes them; None for the thinnest.
 
         Raises
         ------
         InputError
             If the catalogue has no such grade.
         DesignerError
-            If the grade has no such size.
+            If a grade has no such size, the sheave leaves nothing of its strength, or there are
+            more or fewer ropes than cables.
         """
-        if self.rope is None:
-            return None
-        grade = self.catalogue.grade(self.rope.grade_id)
-        size = next((one for one in grade.sizes if one.id == self.rope.size_id), None)
+        if self.rope is None or isinstance(self.rope, Rope):
+            return None if self.rope is None else self._cable_of(self.rope)
+        each = {rope: self._cable_of(rope) for rope in self.rope.ropes}
+        if len(self.rope.ropes) != self.robot.n_cables:
+            raise DesignerError("the ropes of the groups are of a robot with other cables")
+        return Cables(tuple(each[rope] for rope in self.rope.ropes))
+
+    def _cable_of(self, rope: Rope) -> Cable:
+        grade = self.catalogue.grade(rope.grade_id)
+        size = next((one for one in grade.sizes if one.id == rope.size_id), None)
         if size is None:
-            raise DesignerError(f"the grade {grade.id} has no size {self.rope.size_id}")
-        return grade, size
-
-    @cached_property
-    def cable(self) -> Cable | None:
-        """The rope that is looked at, with its figures as the solver takes them.
-
-        Raises
-        ------
-        DesignerError
-            If the sheave leaves nothing of its strength.
-        """
-        if self.product is None:
-            return None
-        grade, size = self.product
+            raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
         allowance = Allowance.of(self.selection)
         if not allowance.efficiency(grade, size.diameter_m) > 0.0:
             raise DesignerError(
-                f"{size.id} of {grade.id}: the sheave is thinner than the rope, or than a fibre "
-                "rope may be bent over"
+                f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "
+                "bent over"
             )
         return self.built.cable(allowance.cable(grade, size))
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from designer.analysis.selection_json import candidates_csv
 from designer.arrays import FloatArray
-from designer.explore.question import Question, Rope
+from designer.explore.question import Assignment, Question, Rope
 from designer.grades.grade import Grade, Size
 from designer.progress import SILENT, Reporter
 from designer.selection.compare import Entry, burdens, is_undominated
@@ -104,6 +104,12 @@ class Groups:
     single_mass_kg: float  # Of the lightest one rope for all; NaN where there is none
     proof: str
 
+    @property
+    def assignment(self) -> Assignment | None:
+        """The rope of each cable, to be looked at; None where none was found."""
+        of = {cable: row.rope for row in self.rows for cable in row.cables}
+        return Assignment(tuple(of[cable] for cable in sorted(of))) if of else None
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ropes:
@@ -139,7 +145,7 @@ class Ropes:
     groups: Groups | None = None
     csv: str = ""
 
-    def row(self, rope: Rope | None) -> RopeRow | None:
+    def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
         return next((row for row in self.rows if row.rope == rope), None)
 

@@ -17,7 +17,7 @@ from designer.explore import edits
 from designer.explore.entries import put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History
-from designer.explore.question import Question, Rope, first_place
+from designer.explore.question import Assignment, Question, Rope, first_place
 from designer.explore.reading import Context, Reading, digest_of, text_of, write_text
 from designer.plugins.find import Plugins
 from designer.resources import example_file
@@ -40,8 +40,8 @@ class State:
         text.
     place : array (6,)
         Where the platform is, and its rotation vector [m, rad].
-    rope : Rope or None
-        The rope that is looked at.
+    rope : Rope, Assignment or None
+        The rope, or the ropes of groups, that are looked at.
     pin : object
         What the present state is compared with; None for nothing.
     """
@@ -49,7 +49,7 @@ class State:
     reading: Reading
     live: Reading
     place: FloatArray
-    rope: Rope | None = None
+    rope: Rope | Assignment | None = None
     pin: object = None
 
 
@@ -263,12 +263,12 @@ class Session:
             self._take("Keep the pose", None, reading)
         return reading.faults
 
-    def choose(self, rope: Rope | None) -> None:
-        """Look at a rope; at the thinnest cable of the configured family for None."""
+    def choose(self, rope: Rope | Assignment | None) -> None:
+        """Look at a rope, or ropes; at the thinnest cable of the configured family for None."""
         if rope != self.state.rope:
             self._take("Choose a rope", None, rope=rope)
 
-    def begin_with(self, rope: Rope | None) -> None:
+    def begin_with(self, rope: Rope | Assignment | None) -> None:
         """Look at a rope that nobody chose; nothing that could be undone."""
         self._history.state = replace(self.state, rope=rope)
 

@@ -179,6 +179,34 @@ def test_only_what_is_asked_for(yard: Session) -> None:
     assert {one.key for one in QUANTITIES} - {"stiffness"} <= set(found.values["slice"])
 
 
+@pytest.mark.slow
+def test_ropes_for_groups_of_cables(yard: Session) -> None:
+    yard.set_text(
+        yard.text.replace("samples: 20000", "samples: 100")
+        + "  groups: {high: [1, 2], low: [3]}\n  max_distinct_products: 2\n"
+    )
+    question = question_of(yard)
+    analysis, ropes = analyse(question.study, question.catalogue), full_ropes(question)
+    assert ropes is not None
+    assert analysis.groups is not None
+    assert analysis.groups.chosen is not None
+    assert ropes.groups is not None
+    assert [row.cables for row in ropes.groups.rows] == [(1, 2), (3,)]
+    products = [Rope(one.grade.id, one.size.id) for one in analysis.groups.chosen.products]
+    assert [row.rope for row in ropes.groups.rows] == products
+    assert ropes.groups.total_mass_kg == analysis.groups.chosen.total_mass_kg
+    assert ropes.groups.proof == analysis.groups.proof_sentence
+    yard.choose(ropes.groups.assignment)
+    worst = worst_answer(question_of(yard))
+    assert worst is not None
+    assert worst.rope is not None
+    met = analysis.groups.chosen.verification
+    assert worst.rope.utilisation == pytest.approx(met.utilisation.max(), rel=1e-6)
+    chart, one = map_answer(question_of(yard)), here(question_of(yard))
+    assert chart.all_of("utilisation").max() <= met.utilisation.max() * (1.0 + 1e-9)
+    assert one.utilisation == max(cable.utilisation for cable in one.cables)
+
+
 def test_what_no_rope_serves(yard: Session) -> None:
     yard.edit("robot.platform.mass", "1500 kg")
     question = question_of(yard)
@@ -239,7 +267,8 @@ def test_shapes_of_cables(yard: Session) -> None:
 
 
 def test_a_rope_that_is_too_weak_here_is_told(yard: Session) -> None:
-    yard.choose(Rope(WIRE, "3 mm"))
+    yard.edit("robot.platform.mass", "2 t")
+    yard.choose(Rope(WIRE, "5/32 in"))
     found = here(question_of(yard))
     assert found.utilisation > 1.0
     assert "too weak here" in found.sentence
@@ -252,9 +281,10 @@ def test_outside_the_region_is_told(yard: Session) -> None:
     assert here(question_of(yard)).outside == ""
 
 
+@pytest.mark.slow
 def test_effects_act_as_in_the_report(tmp_path: Path, no_plugins: Plugins, yard: Session) -> None:
     study = tmp_path / "study.yaml"
-    text = yard.text.replace("samples: 20000", "samples: 200")
+    text = yard.text.replace("samples: 20000", "samples: 60")
     effects = "effects:\n  pulley_radius: {radius_m: 90 mm}\n  linear_mass: {scale: 1.3}\n"
     study.write_text(text + effects, encoding="utf-8")
     question = question_of(Session.open(study, no_plugins))
