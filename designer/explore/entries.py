@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from designer.arrays import FloatArray
 from designer.documents.node import Key, path_text
 from designer.explore import edits
 from designer.explore.fields import Field, keys_of
@@ -12,6 +15,7 @@ from designer.explore.reading import Reading
 _SHORTHAND = {"pose": "position"}
 """What a list in place of these mappings is; of all others the rotation vector."""
 _USUAL = "rotation_vector"
+_DIGITS = 9
 
 
 def with_entry(reading: Reading, text: str, one: Field, typed: str) -> str:
@@ -53,6 +57,17 @@ def put_back(now: Reading, saved: Reading, path: str) -> str:
     else:
         text = edits.without(text, here)
     return _shortened(saved.text, _without_new(now, saved.text, text, here), here)
+
+
+def pose_text(place: FloatArray, *, is_point_mass: bool) -> str:
+    """Return a place (6,) as a study has it under ``pose``."""
+    position, turn = (
+        "[" + ", ".join(f"{value + 0.0:.{_DIGITS}g}" for value in part) + "]"
+        for part in np.split(place, 2)
+    )
+    if is_point_mass or not place[3:].any():
+        return position
+    return f"{{position: {position}, rotation_vector: {turn}}}"
 
 
 def _without_new(now: Reading, saved_text: str, text: str, keys: Sequence[Key]) -> str:

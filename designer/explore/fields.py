@@ -68,6 +68,8 @@ class Field:
         Whether it may be left empty, which means that there is none.
     definition : str
         What it is, and between which limits it may lie.
+    dimension : Dimension
+        What kind of quantity it is.
     """
 
     path: str

@@ -151,9 +151,12 @@ class Helper:
             if self._closing or self._waiting:
                 raise EOFError  # given up before it began
             if self._process is None or self._process.poll() is not None:
-                command = [sys.executable, "-m", "designer.explore.process"]
-                pipe = subprocess.PIPE
-                self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe)
+                self._process = subprocess.Popen(
+                    [sys.executable, "-P", "-m", "designer.explore.process"],
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+                )
             return self._process
 
     def _end(self) -> int | None:

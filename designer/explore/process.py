@@ -6,9 +6,6 @@ import os
 import pickle
 import sys
 import threading
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, BinaryIO
@@ -19,12 +16,9 @@ from designer.effects.load import load_effects
 from designer.errors import InputError
 from designer.explore.question import Question
 from designer.explore.reading import Context
-from designer.explore.requests import failure_text
+from designer.explore.requests import Told, failure_text
 from designer.io.process import settle_in
 from designer.plugins.find import find_plugins
-from designer.progress import Advance
-
-_TOLD_EVERY_S = 0.1
 
 
 def main() -> None:
@@ -35,10 +29,11 @@ def main() -> None:
     os.dup2(2, 1)
     tasks: SimpleQueue[dict[str, Any]] = SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
+    told = Told(lambda *how_far: _send(out, ("progress", *how_far)))
     while True:
         task = tasks.get()
         try:
-            _send(out, ("done", _answer(task, Reporting(out))))
+            _send(out, ("done", _answer(task, told)))
         except Exception as error:
             _send(out, ("failed", failure_text(error)))
 
@@ -57,47 +52,17 @@ def _send(out: BinaryIO, message: tuple[Any, ...]) -> None:
     out.flush()
 
 
-class Reporting:
-    """Sends how far a task is, a few times a second at most; a reporter, and a spinner."""
-
-    def __init__(self, out: BinaryIO) -> None:
-        self._out, self._last_s = out, 0.0
-
-    def __call__(self, text: str) -> None:
-        """Tell what is being done."""
-        self._tell(text, 0, 0)
-
-    @contextmanager
-    def task(self, name: str, total: int) -> Iterator[Advance]:
-        """Open a task of ``total`` steps."""
-        done, self._last_s = 0, 0.0
-
-        def advance(steps: int) -> None:
-            nonlocal done
-            done += steps
-            self._tell(name, done, total)
-
-        self._tell(name, 0, total)
-        yield advance
-
-    def _tell(self, name: str, done: int, total: int) -> None:
-        now_s = time.monotonic()
-        if now_s - self._last_s >= _TOLD_EVERY_S:
-            self._last_s = now_s
-            _send(self._out, ("progress", name, done, total))
-
-
-def _answer(task: dict[str, Any], reporting: Reporting) -> Any:
+def _answer(task: dict[str, Any], told: Told) -> Any:
     from designer.explore.diagnosing import diagnosis_answer
     from designer.explore.export import export
     from designer.explore.ropes import full_ropes
 
     question = _question(task)
     if task["kind"] == "select":
-        return full_ropes(question, reporting)
+        return full_ropes(question, told)
     if task["kind"] == "diagnose":
-        return diagnosis_answer(question, reporting)
-    return export(question, reporting, **task["options"])
+        return diagnosis_answer(question, told)
+    return export(question, told, **task["options"])
 
 
 def _question(task: dict[str, Any]) -> Question:

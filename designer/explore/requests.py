@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from designer.errors import DesignerError
 from designer.explore.question import Question
+from designer.progress import Advance
 
 Quick = Literal["here", "coarse", "fine", "ropes", "residuals", "worst"]
 Long = Literal["select", "diagnose", "export"]
 Kind = Quick | Long
+_TOLD_EVERY_S = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,10 +79,45 @@ class Progress(Delivery):
     total: int
 
 
+class Told:
+    """A reporter, and a spinner, that tell how far something is, a few times a second at most.
+
+    Parameters
+    ----------
+    tell : callable
+        Called with what is being done, how many steps are done, and of how many; 0 of 0 where that
+        is not known.
+    """
+
+    def __init__(self, tell: Callable[[str, int, int], None]) -> None:
+        self._tell, self._last_s = tell, -math.inf
+
+    def __call__(self, text: str) -> None:
+        """Tell what is being done."""
+        self._tell_now_and_then(text, 0, 0)
+
+    @contextmanager
+    def task(self, name: str, total: int) -> Iterator[Advance]:
+        """Open a task of ``total`` steps."""
+        done, self._last_s = 0, -math.inf
+
+        def advance(steps: int) -> None:
+            nonlocal done
+            done += steps
+            self._tell_now_and_then(name, done, total)
+
+        self._tell_now_and_then(name, 0, total)
+        yield advance
+
+    def _tell_now_and_then(self, name: str, done: int, total: int) -> None:
+        now_s = time.monotonic()
+        if now_s - self._last_s >= _TOLD_EVERY_S:
+            self._last_s = now_s
+            self._tell(name, done, total)
+
+
 def failure_text(error: BaseException) -> str:
     """Return an error as a user is told of it: our own as they stand, others by their kind."""
-    from designer.errors import DesignerError
-
     if isinstance(error, DesignerError):
         return str(error)
     told = " ".join(str(error).split())

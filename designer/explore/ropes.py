@@ -134,6 +134,8 @@ class Ropes:
         Where the study has groups, and the selection is full.
     csv : str
         ``candidates.csv`` as the report has it; empty unless final.
+    problems : tuple of str
+        What plugins and grade files gave that could not be used, one line each.
     """
 
     rows: tuple[RopeRow, ...]
@@ -144,6 +146,7 @@ class Ropes:
     is_final: bool
     groups: Groups | None = None
     csv: str = ""
+    problems: tuple[str, ...] = ()
 
     def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
@@ -179,7 +182,15 @@ def quick_ropes(question: Question) -> Ropes | None:
     rows = tuple(_quick_row(entry, entry is best, id(entry) in front) for entry in entries)
     reason = "" if best else "none holds at the samples" if not holding else "needs the full search"
     chosen = None if best is None else Rope(best.grade.id, best.size.id)
-    return Ropes(rows, chosen, reason, selection.objectives, "", is_final=False)
+    return Ropes(
+        rows,
+        chosen,
+        reason,
+        selection.objectives,
+        currency="",
+        is_final=False,
+        problems=question.catalogue.problems,
+    )
 
 
 def _front(entries: Sequence[Entry], objectives: Sequence[Objective]) -> Sequence[bool]:
@@ -252,7 +263,7 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes | None:
     groups = None
     if selection.groups:
         groups = choose_groups_of(workspace, selection, grades, built, found.chosen, reporter)
-    return ropes_of(found, groups)
+    return replace(ropes_of(found, groups), problems=question.catalogue.problems)
 
 
 def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes:

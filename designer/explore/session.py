@@ -2,63 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import FloatArray, frozen_array
+from designer.arrays import frozen_array
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
 from designer.explore import edits
-from designer.explore.entries import put_back, with_entry
+from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History
 from designer.explore.question import Assignment, Question, Rope, first_place
 from designer.explore.reading import Context, Reading, digest_of, text_of, write_text
+from designer.explore.state import Rejected, State
 from designer.plugins.find import Plugins
 from designer.resources import example_file
 from designer.study import Study
 
 OnDisk = Literal["same", "changed", "gone", "never saved"]
-_DIGITS = 9
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
-    """All that a step may change.
-
-    Parameters
-    ----------
-    reading : Reading
-        The text, and what it is.
-    live : Reading
-        The same, or, where the text is faulty, what was sound last; where nothing ever was, the
-        text.
-    place : array (6,)
-        Where the platform is, and its rotation vector [m, rad].
-    rope : Rope, Assignment or None
-        The rope, or the ropes of groups, that are looked at.
-    pin : object
-        What the present state is compared with; None for nothing.
-    """
-
-    reading: Reading
-    live: Reading
-    place: FloatArray
-    rope: Rope | Assignment | None = None
-    pin: object = None
-
-
-@dataclass(frozen=True, slots=True)
-class Rejected:
-    """An entry that was refused: what was typed, and why."""
-
-    text: str
-    faults: tuple[Fault, ...]
 
 
 class Session:
@@ -82,6 +48,8 @@ class Session:
         """Entries that were refused, by the path of their field."""
         self._saved = context.read(text)
         self._digest = digest_of(text)
+        self._asked: tuple[State, Question] | None = None
+        self._shown: tuple[Reading, Reading, tuple[Field, ...]] | None = None
         place = first_place(self._saved.study)
         self._history = History(State(self._saved, self._saved, place))
 
@@ -152,21 +120,26 @@ class Session:
 
     def question(self) -> Question | None:
         """Return what answers are computed of; None where there never was a sound study."""
-        live, state = self.state.live, self.state
+        state, live = self.state, self.state.live
         if live.study is None:
             return None
-        context = self._context
-        return Question(
-            live.study, state.place, state.rope, live.text, context.path, context.plugins
-        )
+        if self._asked is None or self._asked[0] is not state:
+            origin = self._context.path, self._context.plugins
+            question = Question(live.study, state.place, state.rope, live.text, *origin)
+            self._asked = state, question
+        return self._asked[1]
 
     def fields(self) -> tuple[Field, ...]:
         """Return every value that can vary; of a text that is faulty those of the last sound one.
 
         Sliders go from where to where they went for the file, as long as the value lies there.
         """
-        ends = self._saved.by_path
-        return tuple(with_ends_of(one, ends.get(one.path)) for one in self.state.live.fields)
+        live, saved = self.state.live, self._saved
+        if self._shown is None or self._shown[:2] != (live, saved):
+            ends = saved.by_path
+            found = tuple(with_ends_of(one, ends.get(one.path)) for one in live.fields)
+            self._shown = live, saved, found
+        return self._shown[2]
 
     @property
     def differing(self) -> frozenset[str]:
@@ -255,9 +228,7 @@ class Session:
         live, place = self.state.live, self.state.place
         if live.study is None:
             return self.faults
-        value = position = _list_text(place[:3])
-        if not live.study.robot.is_point_mass and place[3:].any():
-            value = f"{{position: {position}, rotation_vector: {_list_text(place[3:])}}}"
+        value = pose_text(place, is_point_mass=live.study.robot.is_point_mass)
         reading = self._context.read(edits.with_value(live.text, ("pose",), value))
         if reading.study is not None:
             self._take("Keep the pose", None, reading)
@@ -411,7 +382,3 @@ class Session:
 
 def _small(label: str) -> str:
     return label[:1].lower() + label[1:]
-
-
-def _list_text(values: FloatArray) -> str:
-    return "[" + ", ".join(f"{value + 0.0:.{_DIGITS}g}" for value in values.tolist()) + "]"

@@ -9,9 +9,7 @@ that nobody wants any more is given up. Work of minutes goes to processes, see
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from itertools import count
 from typing import Any, get_args
 
@@ -28,11 +26,12 @@ from designer.explore.requests import (
     Progress,
     Quick,
     Request,
+    Told,
     failure_text,
 )
 from designer.explore.residuals import residuals
 from designer.explore.ropes import quick_ropes
-from designer.progress import Advance, interrupted_by
+from designer.progress import interrupted_by
 
 Deliver = Callable[[Delivery], None]
 _URGENCY: tuple[Quick, ...] = get_args(Quick)
@@ -40,7 +39,6 @@ _URGENCY: tuple[Quick, ...] = get_args(Quick)
 _SHORT = ("here", "coarse")
 """Done before one could give them up; a newer one waits for its turn, or none would ever be done
 while a slider moves."""
-_TOLD_EVERY_S = 0.1
 
 
 class _GivenUp(BaseException):
@@ -173,35 +171,16 @@ class Worker:
 
     def _answer(self, request: Request) -> Any:
         question, options = request.question, request.options
+
+        def progress(task: str, done: int, total: int) -> None:
+            self._tell(Progress(request, task, done, total))
+
         answers: dict[Kind, Callable[[], Any]] = {
             "here": lambda: here(question, **options),
             "coarse": lambda: map_answer(question, fine=False, **options),
             "fine": lambda: map_answer(question, fine=True, **options),
             "ropes": lambda: quick_ropes(question),
             "residuals": lambda: residuals(question),
-            "worst": lambda: worst_answer(question, Told(request, self._tell)),
+            "worst": lambda: worst_answer(question, Told(progress)),
         }
         return answers[request.kind]()
-
-
-class Told:
-    """A reporter that delivers how far a request is, a few times a second at most."""
-
-    def __init__(self, request: Request, tell: Deliver) -> None:
-        self._request, self._tell, self._last_s = request, tell, 0.0
-
-    @contextmanager
-    def task(self, name: str, total: int) -> Iterator[Advance]:
-        """Open a task of ``total`` steps."""
-        done = 0
-
-        def advance(steps: int) -> None:
-            nonlocal done
-            done += steps
-            now_s = time.monotonic()
-            if now_s - self._last_s >= _TOLD_EVERY_S:
-                self._last_s = now_s
-                self._tell(Progress(self._request, name, done, total))
-
-        self._tell(Progress(self._request, name, 0, total))
-        yield advance
