@@ -127,10 +127,11 @@ class Menus:
         options = [(name, titles[name], "") for name in themes.CHOICES]
         self.themes = choices(window, look, options, window.put_on)
         panels = menu.addMenu("&Panels")
-        for name, dock in window.docks.items():
-            action = QAction(name, window, checkable=True, checked=True)
+        for name in window.docks:
+            shown = name not in window.settings.hidden_panels
+            action = QAction(name, window, checkable=True, checked=shown)
             action.setObjectName(f"panel {name}")
-            action.toggled.connect(dock.setVisible)
+            action.toggled.connect(window.panels_changed)
             panels.addAction(action)
             self.actions[f"panel {name}"] = action
 

@@ -226,7 +226,7 @@ class _Filter(QSortFilterProxyModel):
     def narrow(self, material: str, maker: str, only_holding: bool) -> None:
         """Show rows of this material and maker alone; of all where empty."""
         self._material, self._maker, self._only_holding = material, maker, only_holding
-        self.invalidateFilter()
+        self.invalidate()
 
     def filterAcceptsRow(self, row: int, _: Index) -> bool:
         """Whether a row is shown."""

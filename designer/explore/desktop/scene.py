@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QPoint, QPointF, Qt, QTimer, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QCloseEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
@@ -107,6 +107,12 @@ class Scene(QtInteractor):
         if self._pressed is None and not self.ren_win.GetMultiSamples():
             self.ren_win.SetMultiSamples(_SMOOTH)
             self.update()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Draw nothing any more."""
+        for timer in (self._rest, self._hover):
+            timer.stop()
+        super().closeEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep overlay, legend and camera at the size of the scene."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import cast
 
@@ -27,6 +28,16 @@ class Settings:
     @theme.setter
     def theme(self, choice: str) -> None:
         self._store.setValue("theme", choice)
+
+    @property
+    def hidden_panels(self) -> tuple[str, ...]:
+        """Names of the panels that are not to be seen."""
+        kept = self._store.value("hidden panels", [])
+        return (kept,) if isinstance(kept, str) else tuple(cast("list[str]", kept or []))
+
+    @hidden_panels.setter
+    def hidden_panels(self, names: Iterable[str]) -> None:
+        self._store.setValue("hidden panels", list(names))
 
     @property
     def recent(self) -> tuple[Path, ...]:

@@ -117,6 +117,7 @@ class Window(QMainWindow):
         """Put a panel into the window."""
         dock = QDockWidget(name, self)
         dock.setObjectName(f"dock {name}")
+        dock.setFeatures(dock.features() & ~QDockWidget.DockWidgetFeature.DockWidgetClosable)
         dock.setWidget(widget)
         self.addDockWidget(where, dock)
         self.docks[name] = dock
@@ -191,6 +192,12 @@ class Window(QMainWindow):
             self.resizeDocks(sides, [252, 392], Qt.Orientation.Horizontal)
             self.resizeDocks([self.docks["Ropes"]], [190], Qt.Orientation.Vertical)
         self.menus.refresh()
+
+    def panels_changed(self) -> None:
+        """Show the panels that are wanted, and remember which are not."""
+        wanted = self.menus.wants_dock
+        self.settings.hidden_panels = [n for n, dock in self.docks.items() if not wanted(dock)]
+        self._show_page(self.pages.currentWidget())
 
     @property
     def _has_data(self) -> bool:
