@@ -94,9 +94,16 @@ def _end(node: _Node) -> int:
 
 
 def _replaced(text: str, node: _Node, value: str) -> str:
-    start = node.start_mark.index
-    blank = "" if start == 0 or text[start - 1].isspace() or text[start - 1] in "[{" else " "
-    return text[:start] + blank + value + text[_end(node) :]
+    start, end = node.start_mark.index, _end(node)
+    if value == text[start:end]:
+        return text
+    head = text[:start]
+    if getattr(node, "flow_style", None) is False and node.value:  # begins in a line of its own
+        head = head.rstrip()
+        if "#" in head[head.rfind("\n") + 1 :]:
+            head += "\n" + " " * (node.start_mark.column + 1)
+    blank = "" if not head or head[-1].isspace() or head[-1] in "[{" else " "
+    return head + blank + value + text[end:]
 
 
 def _with_field(text: str, node: _Node, name: str, value: str) -> str:

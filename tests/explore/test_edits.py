@@ -70,9 +70,19 @@ def test_a_field_that_was_first_goes_too() -> None:
     assert without("- a: 1\n  b: 2\n", (0, "a")) == "- b: 2\n"
 
 
-def test_what_lies_in_the_next_line_is_replaced_whole() -> None:
-    text = "pose:\n  position: [1, 2, 3]\n  # a word\n  turn: 4\n# end\n"
-    assert with_value(text, ("pose",), "[5, 6, 7]") == "pose:\n  [5, 6, 7]\n# end\n"
+@pytest.mark.parametrize(
+    ("text", "becomes"),
+    [
+        ("pose:\n  a: [1, 2]\n  # word\n  b: 4\n# end\n", "pose: [5, 6]\n# end\n"),
+        ("pose:\n- 1\n- 2\nlast: 1\n", "pose: [5, 6]\nlast: 1\n"),
+        ("pose: # here\n- 1\n- 2\n", "pose: # here\n [5, 6]\n"),
+        ("pose: [1,\n  2] # here\n", "pose: [5, 6] # here\n"),
+    ],
+)
+def test_what_takes_several_lines_is_replaced_whole(text: str, becomes: str) -> None:
+    found = with_value(text, ("pose",), "[5, 6]")
+    assert found == becomes
+    assert yaml.safe_load(found)["pose"] == [5, 6]
 
 
 @given(st.text(st.characters(categories=("L", "N", "P", "S", "Z"))))
