@@ -24,6 +24,8 @@ from designer.plugins.find import find_plugins
 def main() -> None:
     """Do task after task, until nobody listens."""
     settle_in()
+    if hasattr(os, "nice"):
+        os.nice(5)  # the window comes first
     # What libraries and plugins print goes to standard error; answers alone go out.
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)

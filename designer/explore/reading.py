@@ -8,7 +8,7 @@ from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 
-from designer.documents.document import Document, document_of
+from designer.documents.document import Document, decode, document_of, read_bytes
 from designer.documents.node import Key
 from designer.effects.known import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, OutputError
@@ -102,16 +102,9 @@ def text_of(path: Path) -> str:
     Raises
     ------
     InputError
-        If it cannot be read, or is no text.
+        If it cannot be read, is too large, or is no text.
     """
-    expected = "a YAML text file"
-    try:
-        return path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        problem = f"the file cannot be read: {(error.strerror or 'unknown reason').lower()}"
-    except UnicodeDecodeError:
-        problem = "this is not text in UTF-8"
-    raise InputError([Fault(str(path), None, "", problem, expected)])
+    return decode(read_bytes(path, str(path)), str(path))
 
 
 def write_text(path: Path, text: str) -> None:

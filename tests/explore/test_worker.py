@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 import subprocess
 import sys
 import threading
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from designer import kernel
 from designer.explore import worker as worker_module
 from designer.explore.helper import Helper
 from designer.explore.here import Here
@@ -27,7 +30,7 @@ from designer.explore.requests import (
 from designer.explore.ropes import Ropes, full_ropes
 from designer.explore.session import Session
 from designer.model.robot import Poses
-from designer.plugins.find import Plugins
+from designer.plugins.find import Plugins, find_plugins
 from designer.progress import checkpoint, interrupted_by
 from designer.statics.inverse import solve_sagging
 
@@ -246,6 +249,32 @@ def test_solving_looks_up_between_batches(yard: Session) -> None:
     before = len(calls)
     solve_sagging(question.robot, Poses.at([[15.0, 9.0, 4.0]]), cable)
     assert len(calls) == before
+
+
+def test_every_kernel_releases_the_interpreter_lock() -> None:
+    found = []
+    for info in pkgutil.iter_modules(kernel.__path__):
+        module = importlib.import_module(f"{kernel.__name__}.{info.name}")
+        for one in vars(module).values():
+            options = getattr(one, "targetoptions", {})
+            if options and not options.get("forceinline"):
+                found.append(options.get("nogil", False))
+    assert len(found) > 5
+    assert all(found)
+
+
+def test_what_a_plugin_fails_at_is_told(asker: Any, site: Path, tmp_path: Path) -> None:
+    (site / "broken.py").write_text("raise RuntimeError('no licence')\n", encoding="utf-8")
+    dist = site / "broken-1.0.dist-info"
+    dist.mkdir()
+    (dist / "METADATA").write_text("Metadata-Version: 2.1\nName: broken\nVersion: 1.0\n", "utf-8")
+    (dist / "entry_points.txt").write_text("[designer.plugins]\nbroken = broken\n", "utf-8")
+    session = Session.example("yard", find_plugins())
+    assert any("broken" in line and "no licence" in line for line in session.problems)
+    session.edit("workspace.samples", "50")
+    end = asker.end_of(asker.ask("ropes", session.question()))
+    assert isinstance(end, Done)
+    assert any("no licence" in line for line in end.answer.problems)
 
 
 def test_the_full_selection_in_a_process(asker: Any, yard: Session) -> None:
