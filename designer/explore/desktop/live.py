@@ -6,6 +6,7 @@ the whole map and the candidates.
 
 from __future__ import annotations
 
+import sys
 from typing import Any, get_args
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
@@ -101,6 +102,8 @@ class Live(QObject):
     def close(self) -> None:
         """End all work; returns at once."""
         self._rest.stop()
+        self._delivered.disconnect(self._take)
+        self._since = sys.maxsize
         self._worker.close()
 
     def _ask_whole(self) -> None:

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from designer.arrays import FloatArray
+from designer.explore.desktop.entry import Entry
 from designer.explore.desktop.tables import Column, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
 from designer.explore.here import Here
@@ -139,7 +140,7 @@ class PanelHere(QWidget):
         grid = QGridLayout()
         grid.setHorizontalSpacing(4)
         for number, (name, unit, definition) in enumerate(_COORDINATES):
-            entry = QLineEdit()
+            entry = Entry()
             entry.setObjectName(f"place {name}")
             entry.setToolTip(f"<p>{definition} [{unit}]. Return takes the platform there.</p>")
             entry.setAccessibleName(f"{name} [{unit}]")

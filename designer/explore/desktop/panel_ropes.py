@@ -23,8 +23,8 @@ from designer.explore.desktop.theme import Theme
 from designer.report import format as fmt
 
 if TYPE_CHECKING:
-    from designer.explore.question import Rope
-    from designer.explore.ropes import RopeRow, Ropes
+    from designer.explore.question import Assignment, Rope
+    from designer.explore.ropes import Groups, RopeRow, Ropes
 
 _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
 
@@ -105,7 +105,7 @@ class PanelRopes(QWidget):
         super().__init__()
         self.setObjectName("ropes")
         self._ropes: Ropes | None = None
-        self._rope: Rope | None = None
+        self._rope: Rope | Assignment | None = None
         self.model = RowsModel(COLUMNS)
         self.model.bold = lambda row: self._ropes is not None and row.rope == self._ropes.best
         self.model.muted = lambda row: not row.holds
@@ -126,6 +126,7 @@ class PanelRopes(QWidget):
         rows.setSpacing(4)
         rows.addLayout(self._above())
         rows.addWidget(self.answer)
+        rows.addLayout(self._groups_row())
         rows.addWidget(self.table, 1)
 
     def _above(self) -> QHBoxLayout:
@@ -164,6 +165,23 @@ class PanelRopes(QWidget):
         above.addWidget(self.select)
         return above
 
+    def _groups_row(self) -> QHBoxLayout:
+        self.groups = QLabel()
+        self.groups.setObjectName("groups")
+        self.groups.setWordWrap(True)
+        self.look_at_groups = QPushButton("Look at the groups")
+        self.look_at_groups.setObjectName("look at groups")
+        self.look_at_groups.setToolTip("<p>Colours the map with each group's own rope.</p>")
+        self.look_at_groups.clicked.connect(self._choose_groups)
+        row = QHBoxLayout()
+        row.addWidget(self.groups, 1)
+        row.addWidget(self.look_at_groups)
+        return row
+
+    def _choose_groups(self) -> None:
+        if self._ropes is not None and self._ropes.groups is not None:
+            self.chosen.emit(self._ropes.groups.assignment)
+
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         from PySide6.QtGui import QColor
@@ -172,7 +190,7 @@ class PanelRopes(QWidget):
         self.model.muted_colour = QColor(theme.muted)
         self.table.viewport().update()
 
-    def show_ropes(self, ropes: Ropes | None, rope: Rope | None) -> None:
+    def show_ropes(self, ropes: Ropes | None, rope: Rope | Assignment | None) -> None:
         """Show the candidates, and which of them colours the map."""
         self._ropes, self._rope = ropes, rope
         self.model.show(() if ropes is None else ropes.rows)
@@ -181,6 +199,10 @@ class PanelRopes(QWidget):
             _refill(self.maker, [_ALL_MAKERS, *ropes.makers])
         self.answer.setText("" if ropes is None else _answer(ropes))
         self.answer.setToolTip(self.answer.text())
+        groups = None if ropes is None else ropes.groups
+        self.groups.setText("" if groups is None else _groups_text(groups))
+        self.groups.setVisible(groups is not None)
+        self.look_at_groups.setVisible(groups is not None and bool(groups.rows))
         self._mark_current()
 
     def _mark_current(self) -> None:
@@ -244,6 +266,18 @@ def _answer(ropes: Ropes) -> str:
         return fmt.capital(ropes.reason)
     sure = "between the samples as well" if ropes.is_final else "at the samples"
     return f"Best: {ropes.best.label} ({sure})"
+
+
+def _groups_text(groups: Groups) -> str:
+    """Which rope each group gets, and how sure that is."""
+    each = [
+        f"{row.name}: {row.rope.label} ({fmt.utilisation(row.utilisation)})" for row in groups.rows
+    ]
+    if not each:
+        return f"Groups: none was found. {groups.proof}"
+    masses = f"{fmt.kilograms(groups.total_mass_kg)}, one rope for all "
+    masses += fmt.kilograms(groups.single_mass_kg)
+    return f"Groups: {'; '.join(each)}. All cables {masses}. {groups.proof}"
 
 
 def _refill(box: QComboBox, texts: list[str]) -> None:

@@ -22,10 +22,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from designer.explore.desktop.entry import Entry
+
 if TYPE_CHECKING:
     from designer.errors import Fault
     from designer.explore.fields import Field
-    from designer.explore.session import Rejected
+    from designer.explore.state import Rejected
 
 _STEPS = 1000
 _OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}
@@ -180,7 +182,7 @@ class FieldRow(QWidget):
         self._fault.setObjectName(f"fault {field.path}")
         self._fault.setProperty("role", "fault")
         self._fault.setWordWrap(True)
-        self.entry = QLineEdit()
+        self.entry = Entry()
         self.choices = QComboBox()
         self.slider = _Slider()
         self._rest = QTimer(self, singleShot=True, interval=400)  # several steps of keys: one edit

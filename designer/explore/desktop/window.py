@@ -40,7 +40,7 @@ from designer.explore.session import Session
 from designer.plugins.find import Plugins
 
 if TYPE_CHECKING:
-    from designer.explore.question import Rope
+    from designer.explore.question import Assignment, Rope
     from designer.explore.requests import Kind
 
 _DISK_MS = 2000
@@ -197,7 +197,9 @@ class Window(QMainWindow):
         """Show the panels that are wanted, and remember which are not."""
         wanted = self.menus.wants_dock
         self.settings.hidden_panels = [n for n, dock in self.docks.items() if not wanted(dock)]
-        self._show_page(self.pages.currentWidget())
+        page = self.pages.currentWidget()
+        assert page is not None
+        self._show_page(page)
 
     @property
     def _has_data(self) -> bool:
@@ -372,7 +374,7 @@ class Window(QMainWindow):
 
     # Map and ropes
 
-    def _choose(self, rope: Rope | None) -> None:
+    def _choose(self, rope: Rope | Assignment | None) -> None:
         assert self.session is not None
         self.session.choose(rope)
         self.ropes.show_ropes(self.answers.get("ropes"), rope)
@@ -479,7 +481,7 @@ class Window(QMainWindow):
         is_first = "first ropes" not in self.answers
         self.answers["first ropes"] = True
         if is_first and session.state.rope is None and ropes.best is not None:
-            session.choose(ropes.best)
+            session.begin_with(ropes.best)
             self.changed()
         self.ropes.show_ropes(ropes, session.state.rope)
 

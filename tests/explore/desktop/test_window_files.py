@@ -78,8 +78,9 @@ def test_leaving_with_changes_is_asked_about(yard: Driver) -> None:
     yard.window.close()
     assert "not saved" in told[0]
     assert yard.window.isVisible()
-    yard.answer(BUTTON.Save)
+    told = yard.answer(BUTTON.Save)
     yard.keys("Ctrl+W")
+    assert told
     assert "mass: 190 kg" in (yard.settings.recent[0]).read_text(encoding="utf-8")
     assert yard.window.pages.currentWidget() is yard.window.start
 
@@ -87,8 +88,9 @@ def test_leaving_with_changes_is_asked_about(yard: Driver) -> None:
 def test_changes_can_be_dropped(yard: Driver) -> None:
     file = yard.session.file
     yard.type_into("entry robot.platform.mass", "190 kg")
-    yard.answer(BUTTON.Discard)
+    told = yard.answer(BUTTON.Discard)
     yard.keys("Ctrl+W")
+    assert told
     assert "mass: 180 kg" in file.read_text(encoding="utf-8")
 
 

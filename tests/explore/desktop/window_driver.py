@@ -126,6 +126,9 @@ class Driver:
 
     def keys(self, keys: str) -> None:
         """Press a shortcut or a key, such as ``Ctrl+Z``, where the focus is."""
+        if QApplication.activeWindow() is None:  # after a dialog
+            self.window.activateWindow()
+            self.bot.waitUntil(self.window.isActiveWindow, timeout=5000)
         widget = QApplication.focusWidget() or self.window
         QTest.keySequence(widget, keys)
 
@@ -148,11 +151,13 @@ class Driver:
     def answer(self, button: Any) -> list[str]:
         """Click a button of the next message box; returns where its text will stand."""
         told: list[str] = []
+        tries = iter(range(100))
 
         def look() -> None:
             box: Any = QApplication.activeModalWidget()
             if box is None:
-                QTimer.singleShot(50, look)
+                if next(tries, None) is not None:
+                    QTimer.singleShot(50, look)
                 return
             told.append(box.text())
             QTest.mouseClick(box.button(button), LEFT)
