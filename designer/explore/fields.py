@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from types import NoneType
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -20,7 +21,7 @@ from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import read_effects
 from designer.io.config.orientation import FORMS
 from designer.io.config.schema import StudySection
-from designer.units import NUMBER, Dimension, format_SI, read_quantity
+from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
 
 Kind = Literal["quantity", "count", "choice"]
 _MOST_ROWS = 64
@@ -137,9 +138,9 @@ def study_fields(
     hidden = _without_meaning(section)
     slots = (*_walk(section, root, ()), *_effect_slots(section, root, effects))
     return tuple(
-        _field(slot, sizes)
+        _field(slot, sizes if slot.depends_on_load else sizes.without_load)
         for slot in slots
-        if slot.plain not in _LEFT_OUT and not (slot.node is None and slot.plain in hidden)
+        if slot.plain not in _LEFT_OUT and not (slot.given is None and slot.plain in hidden)
     )
 
 
@@ -156,12 +157,25 @@ def _without_meaning(section: StudySection) -> frozenset[str]:
 
 
 @dataclass(frozen=True, slots=True)
+class _Kind:
+    """What a field of the schema holds: how its numbers are read, or between what one chooses.
+
+    ``reader`` is that of a number or of the numbers in its lists, ``alone`` that of a number only.
+    """
+
+    reader: QuantityField | WholeNumber | None
+    alone: QuantityField | WholeNumber | None
+    words: tuple[str, ...]
+    is_optional: bool
+
+
+@dataclass(frozen=True, slots=True)
 class _Slot:
-    """A value in the schema, and where the file has it."""
+    """A value in the schema, and as the file has it, None where it does not."""
 
     place: tuple[Key, ...]
     value: Any
-    node: Node | None
+    given: str | None
     reader: QuantityField | WholeNumber | None
     choices: tuple[str, ...] = ()
     is_optional: bool = False
@@ -171,62 +185,64 @@ class _Slot:
         """Path without places in lists."""
         return ".".join(key for key in self.place if isinstance(key, str))
 
+    @property
+    def depends_on_load(self) -> bool:
+        """Whether its slider goes as far as the platform is heavy."""
+        return isinstance(self.reader, QuantityField) and self.reader.dimension in (FORCE, MOMENT)
+
 
 def _walk(section: BaseModel, node: Node | None, place: tuple[Key, ...]) -> Iterator[_Slot]:
     """Yield all values below a section."""
     turned = [name for name in FORMS[1:] if getattr(section, name, None) is not None]
-    for name, info in type(section).model_fields.items():
+    for name, kind in _kinds(type(section)).items():
         if name == "quaternion" or (name == FORMS[0] and turned):
             continue  # its parts do not vary one by one; another form is given
-        below = below_of(node, name, section)
-        kind = info.rebuild_annotation()
+        below = _below(node, name, section)
         yield from _slots(getattr(section, name), below, (*place, name), kind)
 
 
-def below_of(node: Node | None, name: str, section: BaseModel) -> Node | None:
+@cache
+def _kinds(section: type[BaseModel]) -> Mapping[str, _Kind]:
+    """Return what the fields of a section hold."""
+    found = {}
+    for name, info in section.model_fields.items():
+        kind = info.rebuild_annotation()
+        plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+        words = get_args(plain) if get_origin(plain) is Literal and len(get_args(plain)) > 1 else ()
+        reader, alone = (_reader_in(kind, into_lists=into) for into in (True, False))
+        found[name] = _Kind(reader, alone, words, NoneType in get_args(plain))
+    return found
+
+
+def _below(node: Node | None, name: str, section: BaseModel) -> Node | None:
     """Return a field's node; a list in place of a section is the section's first field."""
     if node is None:
         return None
     is_shorthand = isinstance(node.content, tuple)
     is_first = name == next(iter(type(section).model_fields))
     found = node if is_shorthand and is_first else node.child(name)
-    return None if found is None or found.data() is None else found
+    is_empty = found is None or (isinstance(found.content, str) and found.data() is None)
+    return None if is_empty else found
 
 
-def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: Any) -> Iterator[_Slot]:
+def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -> Iterator[_Slot]:
+    in_list = isinstance(place[-1], int)
+    given = None if node is None or isinstance(value, tuple | BaseModel) else node.as_written()
     if isinstance(value, BaseModel):
         yield from _walk(value, node, place)
     elif isinstance(value, tuple):
         for index, item in enumerate(value if len(value) <= _MOST_ROWS else ()):
             child = None if node is None else node.child(index)
             yield from _slots(item, child, (*place, index), kind)
-    elif isinstance(value, bool) or _words(kind):
-        words = ("false", "true") if isinstance(value, bool) else _words(kind)
-        if isinstance(value, bool | str) and not _is_in_list(place):
-            yield _Slot(place, value, node, None, words)
-    else:
-        reader = _reader_in(kind, into_lists=value is not None)
-        if reader is not None and (value is None or isinstance(value, int | float)):
-            is_optional = _is_optional(kind) and not _is_in_list(place)
-            yield _Slot(place, value, node, reader, is_optional=is_optional)
-
-
-def _is_in_list(place: Sequence[Key]) -> bool:
-    return isinstance(place[-1], int)
-
-
-def _plain(kind: Any) -> Any:
-    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
-
-
-def _is_optional(kind: Any) -> bool:
-    return NoneType in get_args(_plain(kind))
-
-
-def _words(kind: Any) -> tuple[str, ...]:
-    """Return the words of a kind that is a choice between them; nothing for any other kind."""
-    plain = _plain(kind)
-    return get_args(plain) if get_origin(plain) is Literal and len(get_args(plain)) > 1 else ()
+    elif isinstance(value, bool):
+        yield _Slot(place, value, given, None, ("false", "true"))
+    elif kind.words and not in_list:
+        yield _Slot(place, value, given, None, kind.words)
+    elif value is None and kind.alone is not None:
+        yield _Slot(place, value, given, kind.alone, is_optional=kind.is_optional)
+    elif isinstance(value, int | float) and kind.reader is not None:
+        is_optional = kind.is_optional and not in_list
+        yield _Slot(place, value, given, kind.reader, is_optional=is_optional)
 
 
 def _reader_in(kind: Any, *, into_lists: bool) -> QuantityField | WholeNumber | None:
@@ -252,18 +268,20 @@ def _effect_slots(
             found = node
             for key in (*place[1:], one.name):
                 found = None if found is None else found.child(key)
-            yield _Slot((*place, one.name), declared.parameters[one.name], found, reader)
+            given = None if found is None else found.as_written()
+            yield _Slot((*place, one.name), declared.parameters[one.name], given, reader)
 
 
+@lru_cache(maxsize=4096)
 def _field(slot: _Slot, sizes: Sizes) -> Field:
     title, definition = MEANINGS.get(slot.plain, (_words_of(slot.plain), ""))
     group = GROUPS.get(str(slot.place[0]), _words_of(str(slot.place[0])))
-    given = slot.node.as_written() if slot.node is not None else ""
+    given = slot.given or ""
     common: dict[str, Any] = {
         "path": path_text(slot.place),
         "group": group,
         "label": _label(title, slot.place),
-        "is_given": slot.node is not None,
+        "is_given": slot.given is not None,
         "is_optional": slot.is_optional,
     }
     if slot.reader is None:

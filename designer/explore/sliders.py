@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray
 from designer.documents.fields import QuantityField
 from designer.documents.node import Key
 from designer.io.config.schema import StudySection
@@ -31,7 +30,7 @@ class Sizes:
 
     Parameters
     ----------
-    low_m, high_m : array (3,)
+    low_m, high_m : tuple of 3 floats
         Box around the exit points, downward by half its diagonal, where the platform is [m].
     extent_m : float
         That diagonal [m].
@@ -41,8 +40,8 @@ class Sizes:
         Of the platform [N].
     """
 
-    low_m: FloatArray
-    high_m: FloatArray
+    low_m: tuple[float, ...]
+    high_m: tuple[float, ...]
     extent_m: float
     reach_m: float
     weight_N: float
@@ -56,7 +55,13 @@ class Sizes:
         ends = np.array(platform.attachments or [(0.0, 0.0, 0.0)])
         reach = 2.0 * float(np.linalg.norm(ends, axis=1).max()) or 0.01 * extent
         low = low - [0.0, 0.0, 0.5 * extent]
-        return cls(low, high, extent, reach, platform.mass * STANDARD_GRAVITY_M_PER_S2)
+        weight = platform.mass * STANDARD_GRAVITY_M_PER_S2
+        return cls(tuple(low.tolist()), tuple(high.tolist()), extent, reach, weight)
+
+    @property
+    def without_load(self) -> Sizes:
+        """The same of an empty machine, for all that does not depend on the load."""
+        return replace(self, weight_N=0.0)
 
 
 def count_slider(value: float | None, low: int, high: int, plain: str) -> dict[str, Any]:
@@ -92,7 +97,7 @@ def _ends(
     ends: tuple[float, float] | None = None
     if plain in _IN_WORLD:
         axis = _axis(place)
-        ends = min(at, float(sizes.low_m[axis])), max(at, float(sizes.high_m[axis]))
+        ends = min(at, sizes.low_m[axis]), max(at, sizes.high_m[axis])
     elif kind is ANGLE:
         ends = at - _TURN_RAD, at + _TURN_RAD
     elif kind is TEMPERATURE:

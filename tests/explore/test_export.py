@@ -16,6 +16,7 @@ from designer.explore.export import COLUMNS, export, map_columns
 from designer.explore.here import here
 from designer.explore.map import map_answer
 from designer.explore.question import Question, Rope
+from designer.explore.requests import Cancelled, Progress
 from designer.explore.session import Session
 from designer.progress import SILENT
 
@@ -87,3 +88,15 @@ def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -
     for part in ("pose", "workspace", "selection", "answer"):
         assert result[part] == json.loads(json.dumps(own[part]))
     assert here(question).diameter_m == result["pose"]["sagging"]["diameter_m"]
+
+
+@pytest.mark.slow
+def test_a_report_that_is_given_up_leaves_nothing(
+    question: Question, tmp_path: Path, asker: Any
+) -> None:
+    number = asker.ask("export", question, what="report", target=tmp_path / "report")
+    while not isinstance(asker.next(), Progress):
+        pass
+    asker.worker.cancel("export")
+    assert isinstance(asker.end_of(number), Cancelled)
+    assert list(tmp_path.iterdir()) == []
