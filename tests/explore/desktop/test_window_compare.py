@@ -100,7 +100,7 @@ def built_yard(folder: Path, driver: Driver) -> Path:
     robot, region = driver.session.study.robot, driver.session.study.workspace.region
     position = region.inside_m(np.random.default_rng(5), 40)
     statics = solve_sagging(robot, Poses.at(position), Cable(0.006, 0.142, 1.6e6, 5e3))
-    length = statics.length_m + [0.05, 0.0, 0.0]
+    length = statics.length_m + np.array([0.05, 0.0, 0.0])
     names = "x_m,y_m,z_m,length_1_m,length_2_m,length_3_m"
     np.savetxt(
         folder / "log.csv", np.column_stack([position, length]), "%.6f", ",", header=names,
