@@ -231,7 +231,7 @@ class Session:
         value = pose_text(place, is_point_mass=live.study.robot.is_point_mass)
         reading = self._context.read(edits.with_value(live.text, ("pose",), value))
         if reading.study is not None:
-            self._take("Keep the pose", None, reading)
+            self._take("Keep the pose", None, reading, moves=True)
         return reading.faults
 
     def choose(self, rope: Rope | Assignment | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import analyse, analyse_pose
+from designer.cli.commands import main
 from designer.explore.here import here
 from designer.explore.map import map_answer, unserved, values_at, worst_answer
 from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
@@ -58,6 +60,27 @@ def test_the_pose_is_that_of_size(name: str, example: Any) -> None:
     assert found.utilisation == pytest.approx(1.0)
     assert pose.rest is not None
     assert (found.is_stable, found.stability) == (pose.rest.is_stable, pose.rest.sentence)
+
+
+@pytest.mark.parametrize("name", ["stadium", "ipanema"])
+def test_the_command_prints_what_the_window_shows(
+    name: str, example: Any, tmp_path: Path, monkeypatch: Any, capsys: Any
+) -> None:
+    session: Session = example(name)
+    session.edit("robot.platform.mass", "31 kg")
+    session.move(session.state.place + np.array([0.1, -0.05, 0.02, 0.0, 0.0, 0.0]))
+    session.keep_pose()
+    session.save_as(tmp_path / "mine.yaml")
+    command = ["designer", "size", "--json", "--no-plugins", str(tmp_path / "mine.yaml")]
+    monkeypatch.setattr("sys.argv", command)
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 0
+    printed = json.loads(capsys.readouterr().out)["pose"]["sagging"]
+    found = here(question_of(session))
+    assert printed["diameter_m"] == found.diameter_m
+    assert printed["lengths_m"] == [one.length_m for one in found.cables]
+    assert printed["tensions_N"] == [one.exit_tension_N for one in found.cables]
 
 
 def test_a_place_beside_the_pose_is_as_if_it_were_the_pose(yard: Session) -> None:
@@ -141,15 +164,26 @@ def test_what_falls_out_is_there_with_its_reason(yard: Session) -> None:
     assert all("sheave" in row.reason for row in gone)
 
 
-def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(yard: Session) -> None:
-    yard.choose(Rope(WIRE, "5/32 in"))
-    found = map_answer(question_of(yard), quantities=ALL)
+@pytest.mark.parametrize(
+    ("name", "grids"),
+    [
+        ("yard", {"top", "bottom", "wall", "slice"}),
+        ("stadium", {"top", "bottom", "wall", "slice"}),
+        ("ipanema", {"top", "bottom", "wall", "slice"}),
+    ],
+)
+def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(
+    name: str, grids: set[str], example: Any
+) -> None:
+    session: Session = example(name)
+    session.choose(Rope(WIRE, "5/32 in"))
+    found = map_answer(question_of(session), quantities=CHEAP | {"stiffness"})
     rng = np.random.default_rng(3)
-    assert {"top", "bottom", "wall", "slice"} == set(found.grids)
-    for name, grid in found.grids.items():
+    assert grids == set(found.grids)
+    for part, grid in found.grids.items():
         i, j = (int(rng.integers(n)) for n in grid.shape[:2])
-        yard.move(grid[i, j])
-        one, values = here(question_of(yard)), found.values[name]
+        session.move(grid[i, j])
+        one, values = here(question_of(session)), found.values[part]
         assert one.utilisation == pytest.approx(values["utilisation"][i, j], rel=1e-9)
         assert one.max_tension_N == pytest.approx(values["tension"][i, j], rel=1e-9)
         assert one.diameter_m == pytest.approx(values["diameter"][i, j], rel=1e-9)

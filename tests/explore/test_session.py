@@ -195,13 +195,15 @@ def test_rope_pin_and_place_are_undone_too(yard: Session) -> None:
 
 
 def test_the_place_is_kept_as_the_pose(example: Any) -> None:
-    for name, place in (("yard", [14.0, 8.5, 3.25, 0, 0, 0]), ("cogiro", [0.5, 0, 1, 0, 0, 0.1])):
+    yard = [14.0, 8.5 / 3.0, 3.25, 0, 0, 0]
+    for name, place in (("yard", yard), ("cogiro", [0.5, 0, 1, 0, 0, 0.1])):
         session: Session = example(name)
         session.move(place)
         assert session.keep_pose() == ()
         assert session.study is not None
         assert session.study.pose is not None
         assert np.allclose(session.study.pose.place, place)
+        assert np.array_equal(session.study.pose.place, session.state.place)
         assert any(path.startswith("pose") for path in session.differing)
 
 
