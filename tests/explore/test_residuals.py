@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from designer.errors import InputError
 from designer.explore.diagnosing import diagnosis_answer
 from designer.explore.question import Question
+from designer.explore.requests import Done, Progress
 from designer.explore.residuals import residuals
 from designer.explore.session import Session
 from designer.model.cable import Cable
@@ -105,3 +107,15 @@ def test_the_diagnosis_finds_what_is_wrong_and_writes_it_into_the_text(measured:
     assert np.abs(residuals(question_of(measured)).residual[:, :3]).max() < 6 * NOISE_M
     measured.undo()
     assert "length_offset" not in measured.text
+
+
+@pytest.mark.slow
+def test_the_diagnosis_in_a_process(measured: Session, asker: Any) -> None:
+    own = diagnosis_answer(question_of(measured), lambda _: None)
+    end = asker.end_of(asker.ask("diagnose", measured.question()))
+    assert isinstance(end, Done)
+    assert end.answer.effects == own.effects
+    assert end.answer.diagnosed_text == own.diagnosed_text
+    told = [one for one in asker.seen if isinstance(one, Progress)]
+    assert told
+    assert all(one.task and one.total == 0 for one in told)
