@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
+from contextvars import ContextVar
 from typing import Protocol
 
 Advance = Callable[[int], None]
@@ -27,3 +28,26 @@ class Silent:
 
 
 SILENT = Silent()
+
+
+_between: ContextVar[Callable[[], None] | None] = ContextVar("between", default=None)
+
+
+@contextmanager
+def interrupted_by(between: Callable[[], None]) -> Iterator[None]:
+    """Have something called between the batches of poses that this thread solves meanwhile.
+
+    It may do other work there, or raise to give up what was begun.
+    """
+    token = _between.set(between)
+    try:
+        yield
+    finally:
+        _between.reset(token)
+
+
+def checkpoint() -> None:
+    """Let go between two batches of poses; see `interrupted_by`."""
+    between = _between.get()
+    if between is not None:
+        between()

@@ -151,6 +151,7 @@ def _as_float(number: float) -> float:
         return math.inf
 
 
+@functools.lru_cache(maxsize=4096)
 def _read_text(text: str, dimension: Dimension) -> float:
     if len(text) > _LONGEST_TEXT:
         raise _MisreadError(f"is too long for a number ({len(text)} characters)")

@@ -128,8 +128,8 @@ def cable_curves_m(statics: Statics, count: int = 81) -> FloatArray:
             length,
             statics.force_x_N[:, None],
             statics.force_z_N[:, None],
-            statics.axial_stiffness_N,
-            statics.weight_N_per_m,
+            statics.axial_stiffness_N[:, None],
+            statics.weight_N_per_m[:, None],
         )
     plan = statics.geometry().outward[:, None, :] * x[..., None]
     shape = np.concatenate([plan, z[..., None]], axis=-1)

@@ -27,7 +27,7 @@ from designer.cli.options import (
     path_of,
 )
 from designer.cli.studies import catalogue_of, study_of
-from designer.errors import DesignerError, Fault, InputError
+from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
 
 if TYPE_CHECKING:
@@ -275,6 +275,49 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     print_check(found, folder, written)
     if not found.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
+
+
+@app.command()
+def explore(
+    config: Annotated[
+        Path | None,
+        typer.Argument(parser=path_of, metavar="[CONFIG]", help="The study, a YAML file."),
+    ] = None,
+    screenshot: Annotated[
+        Path | None,
+        typer.Option(
+            "--screenshot",
+            parser=path_of,
+            metavar="FILE",
+            help="Save a picture of the window once everything is answered, and close it.",
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Open the desktop window to find a design in.
+
+    Needs the extra `desktop`:  pip install 'cdpr-designer[desktop]'
+
+    Example:  designer explore my-crane.yaml
+
+    Exit status 0: the window was closed. 2: no window can be opened, or the file cannot be read.
+    """
+    from designer.explore.desktop.display import begin_probe, why_no_library, why_no_window
+    from designer.plugins.find import find_plugins
+
+    missing = why_no_library()
+    if missing:
+        raise MissingLibraryError(missing)
+    if config is not None and not config.is_file():
+        raise InputError([Fault(str(config), None, "", "there is no such file", "a study")])
+    probe = begin_probe()
+    plugins = find_plugins(with_plugins=not no_plugins)
+    missing = why_no_window(probe)
+    if missing:
+        raise MissingLibraryError(missing)
+    from designer.explore.desktop.app import run
+
+    raise typer.Exit(run(config, screenshot, plugins))
 
 
 @app.command()

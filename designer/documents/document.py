@@ -66,9 +66,19 @@ def read_document(path: Path, kind: FileKind = STUDY) -> Document:
         deeply, expands to too many values, or is no mapping.
     """
     name = str(path)
-    raw = _read_bytes(path, name)
+    return document_of(read_bytes(path, name), name, kind)
+
+
+def document_of(raw: bytes, name: str, kind: FileKind = STUDY) -> Document:
+    """Return the YAML mapping in what a file holds, or would hold, as `read_document` does.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     composer = _Composer(name)
-    root = composer.compose(_decode(raw, name))
+    root = composer.compose(decode(raw, name))
     if root is None:
         _refuse(name, None, "the file is empty", kind.content)
     if not isinstance(root.content, dict):
@@ -81,7 +91,8 @@ def _refuse(name: str, line: int | None, problem: str, expected: str = "") -> No
     raise InputError([Fault(name, line, "", problem, expected)])
 
 
-def _read_bytes(path: Path, name: str) -> bytes:
+def read_bytes(path: Path, name: str) -> bytes:
+    """Return what a file holds; `InputError` where it cannot be read, or is too large."""
     expected = f"a YAML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
     try:
         size = path.stat().st_size
@@ -101,7 +112,8 @@ def _read_bytes(path: Path, name: str) -> bytes:
     return raw
 
 
-def _decode(raw: bytes, name: str) -> str:
+def decode(raw: bytes, name: str) -> str:
+    """Return what a file holds as text; `InputError` where it is none."""
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -13,19 +13,20 @@ from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
 
 
-def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
+def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
     """Return the text of the config with the whole model in it.
 
     What was fitted and what was found go under ``effects``, noise that was estimated under
     ``measurements.noise``. Comments and order are kept. Paths in it, which are relative to the
-    config, are rewritten for a config that lies in ``folder``.
+    config, are rewritten for a config that lies in ``folder``. The ``text`` of the config is
+    what its file holds, if left out.
     """
     from ruamel.yaml import YAML
 
     source = diagnosis.study.source.path
     yaml = YAML()
     yaml.width = 100
-    document = yaml.load(source.read_text(encoding="utf-8-sig"))
+    document = yaml.load(source.read_text(encoding="utf-8-sig") if text is None else text)
     document["effects"] = effects_table(declared_by(diagnosis))
     document.yaml_set_comment_before_after_key("effects", before=_origin(diagnosis))
     if estimated := _estimated_noise(diagnosis):
@@ -40,9 +41,9 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path) -> str:
     assert diagnosis.study.measurements is not None
     # The data are not always those that the config names.
     document["measurements"]["file"] = moved(diagnosis.study.measurements.file)
-    text = io.StringIO()
-    yaml.dump(document, text)
-    return text.getvalue()
+    written = io.StringIO()
+    yaml.dump(document, written)
+    return written.getvalue()
 
 
 def _origin(diagnosis: Diagnosis) -> str:

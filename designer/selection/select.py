@@ -93,6 +93,26 @@ def best_product(
     return best_of(trial.sampled(allowed), selection.objectives, trial.searched)
 
 
+def at_samples(
+    workspace: Workspace,
+    selection: Selection,
+    grades: Sequence[Grade],
+    built: AsBuilt,
+    load_cases: Sequence[LoadCase] = (),
+) -> list[Entry]:
+    """Return every product that a study allows with what it meets at the samples alone.
+
+    Nothing is searched between them; stiffness, which takes long, is not known.
+    """
+    allowed = [g for g in grades if is_allowed(g, selection.grades)]
+    quick = tuple(o for o in selection.objectives if o != "stiffness")
+    selection = replace(selection, objectives=quick or ("mass",))
+    currency = common_currency(allowed)
+    cases = Cases(built.robot, workspace, tuple(load_cases) or (STATIC,))
+    trial = _Trial(cases, selection, built, Silent(), currency)
+    return trial.sampled(allowed)
+
+
 @dataclass(frozen=True, slots=True)
 class _Trial:
     """What all candidates have in common."""

@@ -10,6 +10,7 @@ from designer.arrays import IntArray, require_shape
 from designer.kernel.calling import Meets, plain, share_out
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
+from designer.progress import checkpoint
 from designer.statics.geometry import upright_exit_points_m, upright_situation
 from designer.statics.inverse import solve_sagging
 
@@ -53,6 +54,7 @@ def meet(
         raise ValueError(f"cells must be numbered from 0 to {n_cells - 1}")
     from designer.kernel.sizes import sweep_sizes
 
+    checkpoint()
     counts = np.zeros((3, len(cables)), dtype=np.int64)
     found = Meets(
         utilisation=np.full((len(cables), n_cells), -np.inf),

@@ -12,6 +12,7 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import pulley
+from designer.progress import checkpoint
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
@@ -134,6 +135,7 @@ def solve_task(
     Other branches are tried where nothing is found and, if it ``seeks_better``, where one may be
     better than what is.
     """
+    checkpoint()
     flat = flat_poses(poses)
     count = len(flat.position_m)
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)

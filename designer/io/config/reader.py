@@ -41,9 +41,18 @@ def read_study(
         If anything is wrong with it; carries every fault, a hundred at most, in the order of the
         lines.
     """
-    known = known_effects or SHIPPED
-    document = read_document(path)
-    section = _checked(document, known)
+    known, document = known_effects or SHIPPED, read_document(path)
+    return study_of(checked(document, known), document, path, known, plugins)
+
+
+def study_of(
+    section: StudySection,
+    document: Document,
+    path: Path,
+    known: KnownEffects,
+    plugins: Plugins | None = None,
+) -> Study:
+    """Return the study of a document, `checked`, that lies, or is to lie, at a path."""
     if section.name is None:
         section = section.model_copy(update={"name": path.stem})
     entries = all_entries(section, document.root)
@@ -56,7 +65,8 @@ def read_study(
     return build_study(section, source, document, known, plugins)
 
 
-def _checked(document: Document, known: KnownEffects) -> StudySection:
+def checked(document: Document, known: KnownEffects) -> StudySection:
+    """Return what the document holds by the schema; `InputError` with all faults otherwise."""
     faults = [*document.faults, *all_faults(document, known.by_id)]
     section = None
     try:

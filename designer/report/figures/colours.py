@@ -78,11 +78,12 @@ def tension_of(field: Field) -> MapQuantity:
 class Steps:
     """Round boundaries (n,) of the steps of a colour scale, ascending.
 
-    ``extend`` is ``max`` if there are values above the last boundary.
+    ``extend`` is ``max`` if there are values above the last boundary; ``table`` names the colours.
     """
 
     levels: FloatArray
     extend: Literal["max", "neither"]
+    table: str = palette.COLORMAP
 
     @property
     def edges(self) -> FloatArray:
@@ -97,7 +98,7 @@ class Steps:
         import matplotlib
 
         steps = len(self.levels) - (1 if self.extend == "neither" else 0)
-        return matplotlib.colormaps[palette.COLORMAP].resampled(max(steps, 2))
+        return matplotlib.colormaps[self.table].resampled(max(steps, 2))
 
     @property
     def norm(self) -> BoundaryNorm:

@@ -9,6 +9,8 @@ from typing import Any
 
 COLORMAP = "viridis"
 """Sequential, perceptually even, also in grey; for diameter, tension and their ratio."""
+DIFFERENCES = "PuOr_r"
+"""About zero, with even steps to either side; C. Brewer, ColorBrewer."""
 
 SAG, SAG_PALE = "#0072B2", "#8CC1E0"
 """With sag."""

@@ -64,7 +64,7 @@ def robot_scene(pose: PoseAnalysis) -> bytes:
     curves = cable_curves_m(statics) if statics.is_solved else chords_m(statics)
     points = np.concatenate([curves.reshape(-1, 3), robot.exit_points_m])
     bounds = np.array([points.min(axis=0), points.max(axis=0)])
-    base, tops = _base_outline_m(robot), np.concatenate([robot.exit_points_m, body])
+    base, tops = base_outline_m(robot), np.concatenate([robot.exit_points_m, body])
     if robot.is_planar:
         azimuth = facing_azimuth_rad(robot.upright[0, :2])
     else:
@@ -97,8 +97,8 @@ def _taken(stage: Stage, bounds: FloatArray, letters: float = 1.0) -> tuple[Figu
     return figure, axes
 
 
-def _base_outline_m(robot: Robot) -> FloatArray:
-    """Exit points on the hull in plan, in order, the first one again at the end (n, 3) [m].
+def base_outline_m(robot: Robot) -> FloatArray:
+    """Return the exit points on the hull in plan, the first one again at the end (n, 3) [m].
 
     In the plane of a planar robot; where the points lie on a line, all of them in their order.
     """

@@ -76,15 +76,21 @@ class View:
         return np.asarray(points_m + self.toward_camera * pixels / self.pixels_per_m)
 
 
-def fitting(points_m: FloatArray, azimuth_rad: float, elevation_rad: float, frame: Frame) -> View:
+def fitting(
+    points_m: FloatArray,
+    azimuth_rad: float,
+    elevation_rad: float,
+    frame: Frame,
+    aspect: float = WIDTH_PX / HEIGHT_PX,
+) -> View:
     """Return the view in which all points (n, 3) land within a frame, as large as can be.
 
-    ``azimuth_rad`` and ``elevation_rad`` tell where the camera stands.
+    ``azimuth_rad`` and ``elevation_rad`` tell where the camera stands, ``aspect`` the width of the
+    picture over its height.
     """
     left, right, low, high = frame
     plain = View(azimuth_rad, elevation_rad, np.zeros(3), 1.0)
     across, upward = points_m @ plain.right, points_m @ plain.up
-    aspect = WIDTH_PX / HEIGHT_PX
     half_height = max(
         0.5 * np.ptp(across) / (aspect * (right - left)), 0.5 * np.ptp(upward) / (high - low), 1e-6
     )

@@ -1,0 +1,150 @@
+"""Between session and worker: asks anew whatever has changed, and hands the answers on.
+
+It computes nothing. While something moves, the pose and a coarse map are asked for; when it rests,
+the whole map and the candidates.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, get_args
+
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
+
+from designer.explore.question import Question
+from designer.explore.requests import Delivery, Done, Failed, Kind, Long, Progress
+from designer.explore.worker import Worker
+
+_REST_MS = 250
+LONG: tuple[Long, ...] = get_args(Long)
+"""What takes long: with progress, and cancelled by hand."""
+
+
+class Live(QObject):
+    """Questions to the worker, answers from it."""
+
+    answered = Signal(str, object)
+    """The kind of a question, and its answer."""
+    failed = Signal(str, str)
+    """The kind of a question, and why there is no answer."""
+    progressed = Signal(str, str, int, int)
+    """Of long work: kind, task, steps done, and all steps (0 if not known)."""
+    busy_changed = Signal()
+    """Something was begun or has ended."""
+    _delivered = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._delivered.connect(self._take, Qt.ConnectionType.QueuedConnection)
+        self._worker = Worker(self._delivered.emit)
+        self.question: Question | None = None
+        self.slice_share = 0.5
+        self.quantity = "utilisation"
+        self.against: Question | None = None
+        self._pending: dict[Kind, int] = {}
+        self._newest: dict[Kind, int] = {}
+        self._last = self._since = 0
+        self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
+        self._rest.timeout.connect(self._ask_whole)
+
+    @property
+    def busy(self) -> frozenset[Kind]:
+        """Kinds of questions that have no answer yet."""
+        return frozenset(self._pending)
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether everything that was asked has been answered, and nothing will be asked."""
+        return not self._pending and not self._rest.isActive()
+
+    def ask_about(self, question: Question | None, *, moving: bool) -> None:
+        """Ask for all that may be different now."""
+        before, self.question = self.question, question
+        if question is None:
+            return
+        self._ask("here", question)
+        if before is None or _differ(before, question):
+            if moving:
+                self._ask("coarse", question)
+            self._rest.start(_REST_MS if moving else 0)
+        elif not moving:
+            self._ask("here", question, settled=True)
+
+    def ask_map(self) -> None:
+        """Ask for the whole map again, with what is wanted now."""
+        if self.question is not None:
+            self._ask("fine", self.question)
+
+    def ask_slice(self, share: float, *, moving: bool) -> None:
+        """Ask for the map with its slice at another height."""
+        self.slice_share = share
+        if self.question is not None:
+            self._ask("coarse" if moving else "fine", self.question)
+
+    def ask_long(self, kind: Kind, **options: Any) -> None:
+        """Begin long work on the present question."""
+        if self.question is not None:
+            self._ask(kind, self.question, **options)
+
+    def cancel(self, kind: Kind) -> None:
+        """End long work."""
+        self._worker.cancel(kind)
+
+    def forget(self) -> None:
+        """Drop all that was asked: another study is open."""
+        self.question = None
+        self._rest.stop()
+        for kind in tuple(self._pending):
+            self._worker.cancel(kind)
+        self._pending.clear()
+        self._since = self._last
+
+    def close(self) -> None:
+        """End all work; returns at once."""
+        self._rest.stop()
+        self._delivered.disconnect(self._take)
+        self._since = sys.maxsize
+        self._worker.close()
+
+    def _ask_whole(self) -> None:
+        if self.question is not None:
+            whole: tuple[Kind, ...] = ("fine", "ropes", "worst")
+            for kind in whole:
+                self._ask(kind, self.question)
+            self._ask("here", self.question, settled=True)
+            if self.question.study.measurements is not None:
+                self._ask("residuals", self.question)
+
+    def _ask(self, kind: Kind, question: Question, **options: Any) -> None:
+        if kind in ("coarse", "fine"):
+            whole = {"unserved", "sag", "diameter"} if kind == "fine" else set()
+            options["quantities"] = frozenset({self.quantity, *whole})
+            options["slice_share"] = self.slice_share
+            options["against"] = self.against
+        self._last = self._pending[kind] = self._worker.ask(kind, question, **options)
+        self.busy_changed.emit()
+
+    def _take(self, delivery: Delivery) -> None:
+        """In the window's thread: hand on what is newer than what was handed on of its kind.
+
+        While something moves, answers come to questions that are not the last ones any more.
+        """
+        kind, number = delivery.kind, delivery.number
+        if number <= max(self._since, self._newest.get(kind, 0)):
+            return
+        if isinstance(delivery, Progress):
+            self.progressed.emit(kind, delivery.task, delivery.done, delivery.total)
+            return
+        if self._pending.get(kind) == number:
+            del self._pending[kind]
+        if isinstance(delivery, Done):
+            self._newest[kind] = number
+            self.answered.emit(kind, delivery.answer)
+        elif isinstance(delivery, Failed):
+            self.failed.emit(kind, delivery.text)
+        self.busy_changed.emit()
+
+
+def _differ(one: Question, other: Question) -> bool:
+    """Whether maps of two questions may differ: anything but where the platform is."""
+    return one.text != other.text or one.rope != other.rope

@@ -1,0 +1,163 @@
+"""From an answer and a quantity to colours and their legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from designer.arrays import BoolArray, FloatArray
+from designer.explore.desktop.legend import Key
+from designer.explore.desktop.theme import Theme
+from designer.explore.quantities import category_labels
+from designer.model.verdict import Verdict
+from designer.report.figures.colours import Steps, steps_for
+from designer.report.figures.palette import DIFFERENCES
+
+if TYPE_CHECKING:
+    from designer.explore.map import MapAnswer
+    from designer.explore.quantities import Quantity
+
+CATEGORIES = (
+    "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F",
+)  # fmt: skip
+"""Told apart by every kind of colour vision; M. Okabe and K. Ito, Color Universal Design, 2008."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Values:
+    """Of points (n,): the quantity in the unit of the legend, and which points are set apart."""
+
+    shown: FloatArray
+    is_unserved: BoolArray
+    is_left_out: BoolArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Painting:
+    """A quantity or its difference to A, and its scale: steps, or colours of categories."""
+
+    quantity: Quantity
+    steps: Steps | None
+    is_difference: bool = False
+
+    @classmethod
+    def over(cls, answer: MapAnswer, quantity: Quantity, held: Steps | None = None) -> Painting:
+        """Return what paints an answer; with the steps of another one, where they are held."""
+        if answer.before is not None:
+            return cls._of_difference(answer, quantity)
+        plain = cls(quantity, None)
+        if quantity.is_category:
+            return plain
+        shown = plain.of(answer, tuple(answer.grids))
+        counts = ~(shown.is_unserved | shown.is_left_out)
+        return cls(quantity, held if held is not None else steps_for(shown.shown[counts]))
+
+    @classmethod
+    def _of_difference(cls, answer: MapAnswer, quantity: Quantity) -> Painting:
+        plain = cls(quantity, None, is_difference=True)
+        values = plain.of(answer, tuple(answer.grids)).shown
+        steps = steps_for(np.abs(values))
+        if steps is None or not np.nanmax(np.abs(values)) > 0.0:
+            return cls(quantity, Steps(np.array([-1.0, 0.0, 1.0]), "neither", DIFFERENCES), True)
+        largest = steps.levels[-1]
+        width = steps.levels[1] - steps.levels[0]
+        count = max(round(largest / width), 1)
+        levels = np.linspace(-count * width, count * width, 2 * count + 1)
+        return cls(quantity, Steps(levels, "neither", DIFFERENCES), is_difference=True)
+
+    @property
+    def is_category(self) -> bool:
+        """Whether the values are whole numbers that stand for something."""
+        return self.quantity.is_category and not self.is_difference
+
+    @property
+    def title(self) -> str:
+        """The quantity with its unit."""
+        unit = self.quantity.unit
+        title = f"{self.quantity.title} [{unit}]" if unit else self.quantity.title
+        return f"{title}, now less A" if self.is_difference else title
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Of the values that have a colour of their own."""
+        if self.is_category:
+            return -0.5, len(CATEGORIES) - 0.5
+        if self.steps is None:
+            return 0.0, 1.0
+        return float(self.steps.edges[0]), float(self.steps.edges[-1])
+
+    @property
+    def table(self) -> Any:
+        """A VTK table of the colours."""
+        import matplotlib
+        import pyvista
+        from matplotlib.colors import ListedColormap
+
+        if self.is_category:
+            colours: Any = ListedColormap(list(CATEGORIES))
+        elif self.steps is None:
+            colours = matplotlib.colormaps["viridis"].resampled(2)
+        else:
+            colours = self.steps.colormap
+        return pyvista.LookupTable(colours, n_values=colours.N)
+
+    def of(self, answer: MapAnswer, grids: Sequence[str]) -> Values:
+        """Return what an answer has at the points of some grids, one after the other."""
+
+        def column(key: str) -> FloatArray:
+            parts = [np.asarray(answer.values[grid][key], dtype=float).ravel() for grid in grids]
+            return np.concatenate(parts or [np.empty(0)])
+
+        if self.is_difference:
+            parts = [answer.difference(grid, self.quantity.key) for grid in grids]
+            flat = [part.ravel() for part in parts if part is not None]
+            shown = np.concatenate(flat or [np.empty(0)])
+        else:
+            shown = column(self.quantity.key)
+        if self.is_category:
+            shown = np.where(np.isfinite(shown), np.mod(shown, len(CATEGORIES)), np.nan)
+        else:
+            shown = shown * self.quantity.scale
+        left_out = column("left_out") > 0.5
+        unserved = (column("verdict") != Verdict.SOLVED) & ~left_out
+        if all("unserved" in answer.values[grid] for grid in grids):
+            unserved |= column("unserved") > 0.5
+        return Values(shown, unserved, left_out)
+
+    def colours(self, values: Values, theme: Theme) -> NDArray[np.uint8]:
+        """Return red, green and blue (n, 3) of single points."""
+        low, high = self.span
+        count = self.table.n_values
+        step = np.clip((np.nan_to_num(values.shown) - low) / (high - low) * count, 0, count - 1)
+        found = np.asarray(self.table.values)[step.astype(int), :3].copy()
+        found[~np.isfinite(values.shown)] = rgb(theme.muted)
+        found[values.is_left_out] = rgb(theme.left_out)
+        found[values.is_unserved] = rgb(theme.hatch[1])
+        return found
+
+    def keys(self, answer: MapAnswer, theme: Theme) -> list[Key]:
+        """Return what beside the scale has to be explained, where it occurs."""
+        values = self.of(answer, tuple(answer.grids))
+        found: list[Key] = []
+        if self.is_category:
+            labels = category_labels(self.quantity.key, len(CATEGORIES))
+            present = np.unique(values.shown[np.isfinite(values.shown)]).astype(int)
+            for code, meaning in labels.items():
+                if code % len(CATEGORIES) in present:
+                    found.append(Key(CATEGORIES[code % len(CATEGORIES)], meaning))
+        if values.is_unserved.any():
+            found.append(Key(theme.hatch[0], "no rope serves", theme.hatch[1]))
+        if values.is_left_out.any():
+            found.append(Key(theme.left_out, "left out: a cable hangs below"))
+        return found
+
+
+def rgb(colour: str) -> NDArray[np.uint8]:
+    """Return red, green and blue (3,) of a colour such as ``#0072B2``."""
+    from matplotlib.colors import to_rgb
+
+    return np.round(255.0 * np.array(to_rgb(colour))).astype(np.uint8)

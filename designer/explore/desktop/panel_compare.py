@@ -1,0 +1,122 @@
+"""The present state beside one that was pinned as A: figures, values, candidates."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from designer.explore.compare import Differences
+from designer.explore.desktop.tables import Column, RowsModel, table_view
+from designer.report import format as fmt
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A figure or a value in both states."""
+
+    title: str
+    before: str
+    after: str
+    difference: str
+
+
+_COLUMNS = (
+    Column("", lambda r: r.title, lambda r: r.title, "Figure, or value of the study.", False),
+    Column("A", lambda r: r.before, lambda r: r.before, "In the pinned state."),
+    Column("now", lambda r: r.after, lambda r: r.after, "In the present state."),
+    Column("difference", lambda r: r.difference, lambda r: r.difference, "Now less A."),
+)
+
+
+class PanelCompare(QWidget):
+    """What has become otherwise since A was pinned."""
+
+    asks_to_pin = Signal()
+    asks_to_release = Signal()
+    difference_wanted = Signal(bool)
+    """The map shall show the difference to A."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("compare")
+        self._pin = QPushButton("Pin this state as A")
+        self._pin.setObjectName("pin")
+        self._pin.clicked.connect(self.asks_to_pin)
+        self._release = QPushButton("Release A")
+        self._release.setObjectName("release")
+        self._release.clicked.connect(self.asks_to_release)
+        self.in_map = QCheckBox("The map shows the difference to A")
+        self.in_map.setObjectName("difference in the map")
+        self.in_map.toggled.connect(self.difference_wanted)
+        self._told = QLabel()
+        self._told.setWordWrap(True)
+        self._told.setObjectName("ropes gained and lost")
+        self.model = RowsModel(_COLUMNS)
+        self.model.hint = lambda row: f"{row.title}: {row.before} → {row.after}"
+        self.table = table_view("differences")
+        self.table.setModel(self.model)
+        for column, width in enumerate((190, 190, 190)):
+            self.table.setColumnWidth(column, width)
+        self.table.horizontalHeader().setStretchLastSection(True)
+        above = QHBoxLayout()
+        for widget in (self._pin, self._release, self.in_map):
+            above.addWidget(widget)
+        above.addStretch(1)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(8, 4, 8, 4)
+        rows.setSpacing(4)
+        rows.addLayout(above)
+        rows.addWidget(self._told)
+        rows.addWidget(self.table, 1)
+        self.show_differences(None)
+
+    def show_differences(self, found: Differences | None) -> None:
+        """Show what is otherwise; None where nothing is pinned."""
+        is_pinned = found is not None
+        self._release.setEnabled(is_pinned)
+        self.in_map.setEnabled(is_pinned)
+        if found is None:
+            self.in_map.setChecked(False)
+            self._told.setText("Nothing is pinned: pin a state, go on, and see what changes.")
+            self.model.show(())
+            return
+        self._told.setText(_told(found))
+        rows = [_Row(c.title, c.before or "–", c.after or "–", "") for c in found.changes]
+        for line in found.lines:
+            before, after = (_text(v, line.scale, line.unit) for v in (line.before, line.after))
+            change = _signed(line.difference, line.scale, line.unit)
+            rows.append(_Row(line.title, before, after, change))
+        self.model.show(rows)
+
+
+def _told(found: Differences) -> str:
+    parts = []
+    for word, ropes in (("now hold", found.gained), ("do not hold any more", found.lost)):
+        if ropes:
+            some = "; ".join(rope.label for rope in ropes[:3])
+            more = f" and {len(ropes) - 3} more" if len(ropes) > 3 else ""
+            parts.append(f"{fmt.plural(len(ropes), 'rope')} {word}: {some}{more}.")
+    if not found.is_like_with_like:
+        parts.append("The candidates of one state are at the samples, those of the other in full.")
+    return " ".join(parts) or "The same ropes hold as in A."
+
+
+def _text(value: float, scale: float, unit: str) -> str:
+    return fmt.MISSING if math.isnan(value) else f"{fmt.number(scale * value, 4)} {unit}"
+
+
+def _signed(value: float, scale: float, unit: str) -> str:
+    if math.isnan(value):
+        return fmt.MISSING
+    text = fmt.number(scale * value, 3)
+    return f"{'' if text.startswith('−') or value == 0.0 else '+'}{text} {unit}"

@@ -1,0 +1,260 @@
+"""The pose that the platform is in: where it is, every cable, and what follows."""
+
+from __future__ import annotations
+
+import math
+from operator import attrgetter
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QFormLayout,
+    QGridLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from designer.arrays import FloatArray
+from designer.explore.desktop.entry import Entry
+from designer.explore.desktop.tables import Column, RowsModel, ShareBar, table_view
+from designer.explore.desktop.theme import Theme
+from designer.explore.here import Here
+from designer.report import format as fmt
+
+
+def _columns(unit: str, per_N: float) -> tuple[Column, ...]:
+    """The columns, with tensions in a unit."""
+
+    def scaled(title: str, name: str, scale: float, digits: int, definition: str) -> Column:
+        read = attrgetter(name)
+        return Column(title, lambda c: fmt.number(scale * read(c), digits), read, definition)
+
+    return (
+        Column(
+            "#", lambda c: str(c.number), lambda c: c.number, "The cable, in the order of anchors."
+        ),
+        Column(
+            "length\nm",
+            lambda c: fmt.fixed(c.length_m, 3),
+            lambda c: c.length_m,
+            "Unstrained length from the exit point to the platform, as the winch pays it out.",
+        ),
+        scaled(
+            f"T exit\n{unit}",
+            "exit_tension_N",
+            per_N,
+            4,
+            "Tension at the exit point, where the winch pulls.",
+        ),
+        scaled(f"T load\n{unit}", "platform_tension_N", per_N, 4, "Tension at the platform end."),
+        Column(
+            "angle\n°",
+            lambda c: fmt.fixed(math.degrees(c.angle_rad), 1),
+            lambda c: c.angle_rad,
+            "How far below the horizontal the cable leaves its exit point.",
+        ),
+        scaled(
+            "sag\nmm",
+            "sag_m",
+            1e3,
+            3,
+            "Largest distance of the cable from the straight line between its ends.",
+        ),
+        scaled(
+            "stretch\nmm",
+            "stretch_m",
+            1e3,
+            3,
+            "How much longer the cable is under its load than unstrained.",
+        ),
+        Column(
+            "used\n%",
+            lambda c: fmt.fixed(100.0 * c.utilisation, 1),
+            lambda c: c.utilisation,
+            "Utilisation: largest tension anywhere in the cable over the allowable tension.",
+            share=lambda c: float(c.utilisation),
+        ),
+    )
+
+
+_COORDINATES = (
+    ("x", "m", "Position of the platform along x of the frame"),
+    ("y", "m", "Position of the platform along y of the frame"),
+    ("z", "m", "Height of the platform in the frame"),
+    ("rx", "°", "Rotation vector of the platform, x component"),
+    ("ry", "°", "Rotation vector of the platform, y component"),
+    ("rz", "°", "Rotation vector of the platform, z component"),
+)
+
+
+class PanelHere(QWidget):
+    """Where the platform is and what it asks of the cables."""
+
+    asks_for_place = Signal(object)
+    """Another place (6,) [m, rad] was entered."""
+    asks_to_keep = Signal()
+    """This place shall be the pose of the study."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("here")
+        self.setMinimumWidth(364)
+        self._place = np.zeros(6)
+        self._entries: list[QLineEdit] = []
+        self._turn_labels: list[QLabel] = []
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(8, 6, 8, 6)
+        rows.addLayout(self._coordinates())
+        self.verdict = _text("verdict")
+        self.cautions = _text("cautions", "fault")
+        rows.addWidget(self.verdict)
+        rows.addWidget(self.cautions)
+        self.model = RowsModel(_columns("kN", 1e-3))
+        self.table = table_view("cables")
+        self.table.setModel(self.model)
+        small = self.table.font()
+        small.setPointSizeF(0.9 * small.pointSizeF())
+        self.table.setFont(small)
+        self._bar = ShareBar(self.table)
+        self.table.setItemDelegateForColumn(len(self.model.columns) - 1, self._bar)
+        head = self.table.horizontalHeader()
+        head.setMinimumSectionSize(18)
+        head.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        head.setSectionResizeMode(len(self.model.columns) - 1, QHeaderView.ResizeMode.Stretch)
+        rows.addLayout(self._facts())
+        self.stability = _text("here stability")
+        self.stability.setToolTip("<p>Whether the platform stays here with the winches held.</p>")
+        rows.addWidget(self.stability)
+        rows.addWidget(self.table, 1)
+        keep = QPushButton("Keep as the study's pose")
+        keep.setObjectName("keep pose")
+        keep.setToolTip("<p>Writes this place under <b>pose:</b> of the study.</p>")
+        keep.clicked.connect(self.asks_to_keep)
+        rows.addWidget(keep)
+
+    def _coordinates(self) -> QGridLayout:
+        grid = QGridLayout()
+        grid.setHorizontalSpacing(4)
+        for number, (name, unit, definition) in enumerate(_COORDINATES):
+            entry = Entry()
+            entry.setObjectName(f"place {name}")
+            entry.setToolTip(f"<p>{definition} [{unit}]. Return takes the platform there.</p>")
+            entry.setAccessibleName(f"{name} [{unit}]")
+            entry.returnPressed.connect(self._entered)
+            label = QLabel(f"{name} [{unit}]")
+            label.setProperty("role", "muted")
+            row, column = divmod(number, 3)
+            grid.addWidget(label, row, 2 * column)
+            grid.addWidget(entry, row, 2 * column + 1)
+            self._entries.append(entry)
+            self._turn_labels += [label] if row else []
+        return grid
+
+    def _facts(self) -> QFormLayout:
+        form = QFormLayout()
+        form.setVerticalSpacing(2)
+        self.facts: dict[str, QLabel] = {}
+        for name, title, definition in (
+            ("diameter", "Diameter needed here", "The thinnest cable of the configured family that "
+             "holds this pose with its own weight and stretch."),
+            ("tension", "Largest tension", "Anywhere in any cable of this pose."),
+            ("stiffness", "Stiffness", "Smallest force over displacement of the platform in any "
+             "direction, winches held."),
+        ):  # fmt: skip
+            value, label = _text(f"here {name}"), QLabel(title)
+            label.setProperty("role", "muted")
+            for one in (value, label):
+                one.setToolTip(f"<p>{definition}</p>")
+            form.addRow(label, value)
+            self.facts[name] = value
+        return form
+
+    def put_on(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._bar.theme = theme
+        self.table.viewport().update()
+
+    def show_place(self, place: FloatArray, *, can_turn: bool) -> None:
+        """Show where the platform is; an entry that is being written in is left alone."""
+        self._place = np.array(place, dtype=np.float64)
+        shown = [*place[:3], *np.degrees(place[3:])]
+        for number, (entry, value) in enumerate(zip(self._entries, shown, strict=True)):
+            if not (entry.hasFocus() and entry.isModified()):
+                entry.setText(f"{round(float(value), 4) + 0.0:g}")
+                _mark(entry, "")
+            entry.setVisible(can_turn or number < 3)
+        for label in self._turn_labels:
+            label.setVisible(can_turn)
+
+    def show_here(self, here: Here | None) -> None:
+        """Show what was answered for this place."""
+        if here is None:
+            self.model.show(())
+            return
+        self.verdict.setText(here.sentence)
+        good = here.is_solved and not (here.with_rope and here.utilisation > 1.0)
+        _restyle(self.verdict, "good" if good else "fault")
+        told = " ".join(filter(None, [here.outside, here.caution]))
+        self.cautions.setText(told)
+        self.cautions.setVisible(bool(told))
+        unit, newtons = fmt.force_unit(here.max_tension_N)
+        self.model.rename(_columns(unit, 1.0 / newtons))
+        self.model.show(here.cables)
+        self.facts["diameter"].setText(fmt.millimetres(here.diameter_m))
+        self.facts["tension"].setText(fmt.newtons(here.max_tension_N))
+        self.facts["stiffness"].setText(_stiffness(here.stiffness_N_per_m))
+        self.stability.setText(here.stability)
+        _restyle(self.stability, "fault" if here.is_stable is False else "")
+
+    def _entered(self) -> None:
+        place = self._place.copy()
+        for number, entry in enumerate(self._entries):
+            try:
+                value = float(entry.text().replace(",", ".").replace("−", "-"))
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                _mark(entry, "a number is expected")
+                return
+            _mark(entry, "")
+            if entry.isModified():  # what was not touched keeps all its digits
+                place[number] = value if number < 3 else math.radians(value)
+        for entry in self._entries:
+            entry.setModified(False)
+        self.asks_for_place.emit(place)
+
+
+def _stiffness(value: float) -> str:
+    if not math.isfinite(value):
+        return fmt.MISSING
+    unit, scale = ("kN/m", 1e-3) if value >= 1e3 else ("N/m", 1.0)
+    return f"{fmt.number(scale * value, 3)} {unit}"
+
+
+def _text(name: str, role: str = "") -> QLabel:
+    label = QLabel()
+    label.setObjectName(name)
+    label.setWordWrap(True)
+    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+    if role:
+        label.setProperty("role", role)
+    return label
+
+
+def _mark(entry: QLineEdit, fault: str) -> None:
+    """Show an entry as faulty, and why; or not."""
+    if bool(entry.property("faulty")) != bool(fault):
+        entry.setProperty("faulty", bool(fault))
+        entry.style().polish(entry)
+    if fault:
+        entry.setToolTip(fault)
+
+
+def _restyle(label: QLabel, role: str) -> None:
+    if label.property("role") != role:
+        label.setProperty("role", role)
+        label.style().polish(label)

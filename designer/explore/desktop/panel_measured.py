@@ -1,0 +1,246 @@
+"""Measured data beside the model: what is left of each reading, and the search for why."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from designer.arrays import FloatArray
+from designer.explore.desktop.theme import LIGHT, Theme
+from designer.report import format as fmt
+from designer.report.figures.overlay import ticks_between
+
+if TYPE_CHECKING:
+    from designer.explore.diagnosing import DiagnosisAnswer
+    from designer.explore.residuals import Residuals
+
+_ALL = "all, in units of noise"
+
+
+class PanelMeasured(QWidget):
+    """Residuals over any covariate; the diagnosis, and taking over what it found."""
+
+    asks_to_diagnose = Signal()
+    asks_to_take_over = Signal(str)
+    """The study's text with the effects that were found."""
+    rows_wanted = Signal(bool)
+    """The measured rows shall be seen in the scene."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("measured")
+        self._residuals: Residuals | None = None
+        self._found: DiagnosisAnswer | None = None
+        self.channel, self.over = QComboBox(), QComboBox()
+        self.channel.setObjectName("channel")
+        self.over.setObjectName("covariate")
+        self.without = QCheckBox("also without effects")
+        self.without.setObjectName("without effects")
+        self.without.setToolTip(
+            "<p>Draws beside them, paler, what a model without the declared effects leaves.</p>"
+        )
+        self.in_scene = QCheckBox("in the scene")
+        self.in_scene.setObjectName("rows in the scene")
+        self.in_scene.toggled.connect(self.rows_wanted)
+        self.plot = ScatterPlot()
+        for box in (self.channel, self.over):
+            box.currentIndexChanged.connect(self._draw)
+        self.without.toggled.connect(self._draw)
+        self._diagnose = QPushButton("Diagnose")
+        self._diagnose.setObjectName("diagnose")
+        self._diagnose.setToolTip(
+            "<p>Searches for the physical effects that the model lacks; some minutes.</p>"
+        )
+        self._diagnose.clicked.connect(self.asks_to_diagnose)
+        self._take = QPushButton("Take over what was found")
+        self._take.setObjectName("take over")
+        self._take.setToolTip(
+            "<p>Writes the effects into the study as one step, with this state pinned as A: the "
+            "comparison shows map and answer with and without them.</p>"
+        )
+        self._take.clicked.connect(self._take_over)
+        self.told = QLabel()
+        self.told.setObjectName("diagnosis")
+        self.told.setWordWrap(True)
+        self.told.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        above = QHBoxLayout()
+        above.addWidget(QLabel("Residual of"))
+        above.addWidget(self.channel)
+        above.addWidget(QLabel("over"))
+        above.addWidget(self.over)
+        for widget in (self.without, self.in_scene):
+            above.addWidget(widget)
+        above.addStretch(1)
+        below = QHBoxLayout()
+        below.addWidget(self.told, 1)
+        for button in (self._diagnose, self._take):
+            below.addWidget(button)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(8, 4, 8, 4)
+        rows.setSpacing(4)
+        rows.addLayout(above)
+        rows.addWidget(self.plot, 1)
+        rows.addLayout(below)
+        self.show_diagnosis(None)
+
+    def put_on(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.theme = theme
+        self.plot.update()
+
+    def show_residuals(self, residuals: Residuals | None) -> None:
+        """Show what is left of the readings."""
+        self._residuals = residuals
+        if residuals is None:
+            self.plot.show_points("", "", np.empty((0, 2)), np.empty((0, 2)), np.nan)
+            return
+        measured = [
+            name
+            for name, column in zip(residuals.channels, residuals.residual.T, strict=True)
+            if np.isfinite(column).any()
+        ]
+        _refill(self.channel, [_ALL, *measured])
+        _refill(self.over, list(residuals.covariates))
+        self._draw()
+
+    def show_diagnosis(self, found: DiagnosisAnswer | None) -> None:
+        """Show what the search came to."""
+        self._found = found
+        self._take.setEnabled(found is not None and bool(found.effects))
+        if found is None:
+            self.told.setText("No search has been made.")
+            return
+        lines = [f"<b>{found.title}</b> {found.text}"]
+        lines += [f"{one.key}: {one.values}" for one in found.effects]
+        for one in found.errors:
+            texts = (f"{fmt.number(v, 3)} {one.unit}" for v in (one.before, one.after, one.noise))
+            before, after, noise = texts
+            lines.append(f"error of {one.reading}: {before} before, {after} after, noise {noise}")
+        self.told.setText("<br>".join(lines))
+
+    def _take_over(self) -> None:
+        if self._found is not None:
+            self.asks_to_take_over.emit(self._found.diagnosed_text)
+
+    def _draw(self) -> None:
+        found = self._residuals
+        if found is None or self.over.currentText() not in found.covariates:
+            return
+        over = found.covariates[self.over.currentText()]
+        name = self.channel.currentText()
+        if name == _ALL:
+            values, before, label = found.size(), np.full(len(over), np.nan), "residual / noise"
+            noise = 1.0
+        else:
+            column = found.channels.index(name)
+            values, before = found.residual[:, column], found.without[:, column]
+            label = f"{name} [{found.units[column]}]"
+            noise = float(found.noise[column])
+        shown = before if self.without.isChecked() else np.full(len(over), np.nan)
+        now, pale = (np.column_stack([over, column]) for column in (values, shown))
+        self.plot.show_points(self.over.currentText(), label, now, pale, noise)
+
+
+class ScatterPlot(QWidget):
+    """Points over an axis, paler ones behind them, and a band of twice the noise."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("residual plot")
+        self.setMinimumHeight(90)
+        self.theme: Theme = LIGHT
+        self.points = np.empty((0, 2))
+        self._pale = np.empty((0, 2))
+        self._labels = ("", "")
+        self._noise = np.nan
+
+    def show_points(
+        self, across: str, upward: str, points: FloatArray, pale: FloatArray, noise: float
+    ) -> None:
+        """Show points (n, 2) and paler ones (n, 2); rows with NaN are left out."""
+        self.points = points[np.isfinite(points).all(axis=1)]
+        self._pale = pale[np.isfinite(pale).all(axis=1)]
+        self._labels, self._noise = (across, upward), noise
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw axes, band and points."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        everything = np.concatenate([self.points, self._pale])
+        if len(everything) == 0:
+            painter.setPen(QColor(self.theme.muted))
+            painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, "no residuals")
+            return
+        low, high = everything.min(axis=0), everything.max(axis=0)
+        reach = 2.0 * self._noise if np.isfinite(self._noise) else 0.0
+        low[1], high[1] = min(low[1], -reach), max(high[1], reach)
+        room = np.where(high > low, 0.04 * (high - low), 0.5)
+        low, high = low - room, high + room
+        area = QRectF(66, 6, self.width() - 76, self.height() - 42)
+
+        def at(point: FloatArray) -> QPointF:
+            share = (point - low) / (high - low)
+            return QPointF(
+                area.left() + share[0] * area.width(), area.bottom() - share[1] * area.height()
+            )
+
+        self._draw_axes(painter, area, low, high)
+        painter.setClipRect(area)
+        painter.setPen(Qt.PenStyle.NoPen)
+        band = QColor(self.theme.good)
+        band.setAlpha(40)
+        bottom, top = at(np.array([low[0], -reach])), at(np.array([high[0], reach]))
+        painter.fillRect(QRectF(bottom, top).normalized(), band)
+        for points, colour in ((self._pale, self.theme.muted), (self.points, self.theme.accent)):
+            ink = QColor(colour)
+            ink.setAlpha(110 if points is self._pale else 200)
+            painter.setBrush(ink)
+            for point in points:
+                painter.drawEllipse(at(point), 2.4, 2.4)
+
+    def _draw_axes(
+        self, painter: QPainter, area: QRectF, low: FloatArray, high: FloatArray
+    ) -> None:
+        painter.setPen(QPen(QColor(self.theme.border)))
+        painter.drawRect(area)
+        line = self.fontMetrics().height()
+        for axis in (0, 1):
+            for tick in ticks_between(float(low[axis]), float(high[axis])):
+                share = (tick - low[axis]) / (high[axis] - low[axis])
+                painter.setPen(QColor(self.theme.muted))
+                text = fmt.trimmed(float(tick), 4)
+                if axis == 0:
+                    x = area.left() + share * area.width()
+                    box = QRectF(x - 40, area.bottom() + 2, 80, line)
+                    painter.drawText(box, Qt.AlignmentFlag.AlignHCenter, text)
+                else:
+                    y = area.bottom() - share * area.height()
+                    box = QRectF(0, y - 0.5 * line, area.left() - 5, line)
+                    painter.drawText(box, Qt.AlignmentFlag.AlignRight, text)
+                    painter.setPen(QPen(QColor(self.theme.border), 0.5))
+                    painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
+        painter.setPen(QColor(self.theme.ink))
+        below = QRectF(area.left(), area.bottom() + line, area.width(), line + 4)
+        painter.drawText(below, Qt.AlignmentFlag.AlignHCenter, self._labels[0])
+        painter.drawText(QPointF(area.left() + 6, area.top() + line), self._labels[1])
+
+
+def _refill(box: QComboBox, texts: list[str]) -> None:
+    if [box.itemText(k) for k in range(box.count())] != texts:
+        box.blockSignals(True)
+        box.clear()
+        box.addItems(texts)
+        box.blockSignals(False)

@@ -1,0 +1,326 @@
+"""Every number of the study that can vary: as an entry with its unit, and as a slider."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QScrollArea,
+    QSlider,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from designer.explore.desktop.entry import Entry
+
+if TYPE_CHECKING:
+    from designer.errors import Fault
+    from designer.explore.fields import Field
+    from designer.explore.state import Rejected
+
+_STEPS = 1000
+_OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}
+"""Lists that are sections of their own here, folded: they rarely vary."""
+_FOLDED = frozenset(_OF_MANY.values())
+
+
+class PanelStudy(QWidget):
+    """The fields of the study by their sections."""
+
+    edited = Signal(str, str, bool)
+    """Path, text, and whether it is still on its way."""
+    settled = Signal()
+    """A slider was let go."""
+    asks_to_put_back = Signal(str)
+    """A field shall be as in the file."""
+    gave_up = Signal(str)
+    """What was refused at this path shall be forgotten."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("study")
+        self.setMinimumWidth(240)
+        self.rows: dict[str, FieldRow] = {}
+        self._headings: dict[str, _Heading] = {}
+        self._find = QLineEdit()
+        self._find.setObjectName("find field")
+        self._find.setPlaceholderText("Find a number …")
+        self._find.setClearButtonEnabled(True)
+        self._find.textChanged.connect(self._filter)
+        self._changed_only = QCheckBox("changed")
+        self._changed_only.setObjectName("changed only")
+        self._changed_only.setToolTip("<p>Only what differs from the file.</p>")
+        self._changed_only.toggled.connect(self._filter)
+        above = QHBoxLayout()
+        above.addWidget(self._find, 1)
+        above.addWidget(self._changed_only)
+        self._inside = QWidget()
+        self._list = QVBoxLayout(self._inside)
+        self._list.setContentsMargins(8, 4, 8, 8)
+        self._list.setSpacing(3)
+        self._list.setAlignment(Qt.AlignmentFlag.AlignTop)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(self._inside)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 6, 0, 0)
+        above.setContentsMargins(8, 0, 8, 0)
+        rows.addLayout(above)
+        rows.addWidget(area, 1)
+
+    def show_fields(
+        self,
+        fields: Sequence[Field],
+        rejected: Mapping[str, Rejected],
+        differing: frozenset[str],
+    ) -> None:
+        """Show the fields as they stand; rows are made anew only where other fields are there."""
+        if {field.path for field in fields} != self.rows.keys():
+            self._rebuild(fields)
+        for field in fields:
+            row, refused = self.rows[field.path], rejected.get(field.path)
+            row.show_field(field, field.path in differing)
+            row.show_refused(refused)
+        self._filter()
+
+    def _rebuild(self, fields: Sequence[Field]) -> None:
+        while (item := self._list.takeAt(0)) is not None:
+            widget = item.widget()
+            if widget is not None:
+                widget.deleteLater()
+        self.rows, self._headings = {}, {}
+        groups: dict[str, list[Field]] = {}
+        for field in fields:
+            groups.setdefault(_group(field), []).append(field)
+        for group, members in sorted(groups.items(), key=lambda one: one[0] in _FOLDED):
+            heading = _Heading(group, is_open=group not in _FOLDED)
+            heading.toggled.connect(self._filter)
+            self._headings[group] = heading
+            self._list.addWidget(heading)
+            for field in members:
+                self._add_row(field)
+
+    def _add_row(self, field: Field) -> None:
+        row = FieldRow(field)
+        row.edited.connect(self.edited)
+        row.settled.connect(self.settled)
+        row.asks_to_put_back.connect(self.asks_to_put_back)
+        row.gave_up.connect(self.gave_up)
+        self.rows[field.path] = row
+        self._list.addWidget(row)
+
+    def _filter(self) -> None:
+        sought = self._find.text().strip().lower()
+        is_sought = bool(sought) or self._changed_only.isChecked()
+        some: set[str] = set()
+        for row in self.rows.values():
+            field, group = row.field, _group(row.field)
+            found = sought in f"{group} {field.label} {field.path}".lower()
+            wanted = found and (row.is_changed or not self._changed_only.isChecked())
+            some |= {group} if wanted else set()
+            row.setVisible(wanted and (is_sought or self._headings[group].isChecked()))
+        for group, heading in self._headings.items():
+            heading.setVisible(group in some)
+
+
+class _Heading(QToolButton):
+    """The title of a section, which folds it."""
+
+    def __init__(self, title: str, *, is_open: bool) -> None:
+        super().__init__()
+        self.setObjectName(f"section {title}")
+        self.setProperty("role", "section")
+        self.setText(title)
+        self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.setCheckable(True)
+        self.toggled.connect(self._point)
+        self.setChecked(is_open)
+        self._point(is_open)
+
+    def _point(self, is_open: bool) -> None:
+        self.setArrowType(Qt.ArrowType.DownArrow if is_open else Qt.ArrowType.RightArrow)
+
+
+class FieldRow(QWidget):
+    """One field: its name, its entry or its choices, a slider, and what is wrong with it."""
+
+    edited = Signal(str, str, bool)
+    settled = Signal()
+    asks_to_put_back = Signal(str)
+    gave_up = Signal(str)
+
+    def __init__(self, field: Field) -> None:
+        super().__init__()
+        self.field = field
+        self.is_changed = False
+        self._label = QLabel(field.label)
+        self._label.setToolTip(f"<p>{field.definition}</p><p><code>{field.path}</code></p>")
+        self._label.setWordWrap(True)
+        self._back = QToolButton()
+        self._back.setText("↺")
+        self._back.setProperty("role", "put-back")
+        self._back.setObjectName(f"put back {field.path}")
+        self._back.setToolTip("<p>Put this field alone back to what the file says.</p>")
+        self._back.setAccessibleName(f"Put back {field.label}")
+        self._back.clicked.connect(lambda: self.asks_to_put_back.emit(self.field.path))
+        kept = self._back.sizePolicy()
+        kept.setRetainSizeWhenHidden(True)
+        self._back.setSizePolicy(kept)
+        self._fault = QLabel()
+        self._fault.setObjectName(f"fault {field.path}")
+        self._fault.setProperty("role", "fault")
+        self._fault.setWordWrap(True)
+        self.entry = Entry()
+        self.choices = QComboBox()
+        self.slider = _Slider()
+        self._rest = QTimer(self, singleShot=True, interval=400)  # several steps of keys: one edit
+        self._rest.timeout.connect(self.settled)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(4)
+        grid.setVerticalSpacing(0)
+        grid.setColumnStretch(0, 1)
+        grid.addWidget(self._label, 0, 0, 1, 1 if field.low is None else 3)
+        has_slider = field.low is not None and field.high is not None
+        row = 1 if has_slider else 0  # a name beside a slider would be cut off
+        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), row, 1)
+        grid.addWidget(self._back, row, 2)
+        if has_slider:
+            grid.addWidget(self._slider(), 1, 0)
+        grid.addWidget(self._fault, 2, 0, 1, 3)
+        self._fault.hide()
+
+    def _entry(self) -> QLineEdit:
+        self.entry.setObjectName(f"entry {self.field.path}")
+        self.entry.setAccessibleName(self.field.label)
+        self.entry.setFixedWidth(104)
+        self.entry.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.entry.editingFinished.connect(self._entered)
+        self.entry.installEventFilter(self)
+        return self.entry
+
+    def _choices(self) -> QComboBox:
+        self.choices.setObjectName(f"choice {self.field.path}")
+        self.choices.setAccessibleName(self.field.label)
+        self.choices.setFixedWidth(124)
+        self.choices.addItems(list(self.field.choices))
+        self.choices.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.choices.textActivated.connect(
+            lambda text: self.edited.emit(self.field.path, text, False)
+        )
+        return self.choices
+
+    def _slider(self) -> _Slider:
+        self.slider.setObjectName(f"slider {self.field.path}")
+        self.slider.setAccessibleName(self.field.label)
+        self.slider.valueChanged.connect(self._slid)
+        self.slider.sliderReleased.connect(self.settled)
+        return self.slider
+
+    def show_field(self, field: Field, is_changed: bool) -> None:
+        """Show the field as it stands."""
+        self.field, self.is_changed = field, is_changed
+        font = self._label.font()
+        font.setBold(is_changed)
+        self._label.setFont(font)
+        self._back.setVisible(is_changed)
+        if field.kind == "choice":
+            self.choices.setCurrentText(field.text)
+        elif not (self.entry.hasFocus() and self.entry.isModified()):
+            self.entry.setText(field.text)
+            self.entry.setCursorPosition(0)
+        self.entry.setPlaceholderText("none" if field.is_optional else "")
+        has_slider = field.low is not None and field.high is not None
+        if field.value_SI is not None and has_slider and not self.slider.isSliderDown():
+            self.slider.put(self._share(field.value_SI))
+
+    def show_refused(self, refused: Rejected | None) -> None:
+        """Show beside the entry what is wrong with what was entered; nothing where nothing is."""
+        told = "" if refused is None else " ".join(map(_words, refused.faults))
+        self._fault.setText(told)
+        self._fault.setVisible(bool(told))
+        if bool(self.entry.property("faulty")) != bool(told):
+            self.entry.setProperty("faulty", bool(told))
+            self.entry.style().polish(self.entry)
+        if refused is not None and not self.entry.hasFocus():
+            self.entry.setText(refused.text)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Escape in the entry gives up what was entered."""
+        if event.type() == QEvent.Type.KeyPress and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
+            self.entry.setModified(False)
+            self.entry.setText(self.field.text)
+            self.gave_up.emit(self.field.path)
+            return True
+        return super().eventFilter(watched, event)
+
+    def _entered(self) -> None:
+        if self.entry.isModified():
+            self.entry.setModified(False)
+            self.edited.emit(self.field.path, self.entry.text().strip(), False)
+
+    def _slid(self) -> None:
+        if not self.slider.is_put:
+            self.edited.emit(self.field.path, self.field.text_of(self._value()), True)
+            if not self.slider.isSliderDown():
+                self._rest.start()
+
+    def _share(self, value_SI: float) -> float:
+        low, high = self._ends()
+        value = math.log(max(value_SI, 1e-300)) if self.field.is_log else value_SI
+        return (value - low) / (high - low) if high > low else 0.0
+
+    def _value(self) -> float:
+        low, high = self._ends()
+        value = low + self.slider.value() / _STEPS * (high - low)
+        return math.exp(value) if self.field.is_log else value
+
+    def _ends(self) -> tuple[float, float]:
+        low, high = self.field.low, self.field.high
+        assert low is not None
+        assert high is not None
+        return (math.log(low), math.log(high)) if self.field.is_log else (low, high)
+
+
+def _group(field: Field) -> str:
+    """The section that a field is shown in."""
+    return _OF_MANY.get(field.path.split("[")[0], field.group)
+
+
+def _words(fault: Fault) -> str:
+    expected = f" (expected {fault.expected})" if fault.expected else ""
+    return f"{fault.problem[:1].upper()}{fault.problem[1:]}{expected}."
+
+
+class _Slider(QSlider):
+    """A slider that the wheel does not move by chance, and that jumps to where it is clicked."""
+
+    def __init__(self) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self.setRange(0, _STEPS)
+        self.setPageStep(_STEPS // 20)
+        self.setSingleStep(_STEPS // 200)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.is_put = False
+
+    def put(self, share: float) -> None:
+        """Show a share of the range; this is no edit."""
+        self.is_put = True
+        self.setValue(round(min(max(share, 0.0), 1.0) * _STEPS))
+        self.is_put = False
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Leave the wheel to the list."""
+        event.ignore()

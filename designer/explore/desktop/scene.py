@@ -1,0 +1,282 @@
+"""The scene of the window: robot, cables, map and worst pose, to be turned and pulled.
+
+It draws when something has changed, once a change: first without smoothing of edges, and with it
+when nothing moves any more, since that is eight times the work where there is no graphics card.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import QPoint, QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QCloseEvent, QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QWidget
+from pyvistaqt import QtInteractor
+
+from designer.arrays import FloatArray
+from designer.explore.desktop.camera import Camera
+from designer.explore.desktop.legend import Legend
+from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Overlay
+from designer.explore.desktop.stage import Stage
+from designer.explore.desktop.theme import Theme
+from designer.report.figures.view import View
+
+_REST_MS = 300
+_SMOOTH = 8
+"""Samples a pixel once nothing moves."""
+_QUICK_S = 0.05
+"""A frame that takes no longer may be smoothed while something moves as well."""
+_CLICK_PX = 4
+_STEPS = {
+    Qt.Key.Key_Left: (-1, 0, 0),
+    Qt.Key.Key_Right: (1, 0, 0),
+    Qt.Key.Key_Up: (0, 1, 0),
+    Qt.Key.Key_Down: (0, -1, 0),
+    Qt.Key.Key_PageUp: (0, 0, 1),
+    Qt.Key.Key_PageDown: (0, 0, -1),
+}
+"""To the right and away from the viewer, along the nearest axis of the frame, and upward."""
+
+
+class Scene(QtInteractor):
+    """The stage with its camera, overlay and legend, and what mouse and keys do in it."""
+
+    asks_for_position = Signal(object, bool)
+    """A position (3,) [m] that the platform is to take, and whether it is still on its way."""
+    asks_for_step = Signal(object, float)
+    """A direction (3,) along the axes of the frame, and how many steps."""
+    asks_for_turn = Signal(object, float)
+    """The same for the axes that the platform is to be turned about."""
+    resized = Signal()
+    pointed_at = Signal(object)
+    """What the mouse is over: a `Hit`, or None."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, auto_update=False, lighting="none")
+        self.setObjectName("scene")
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName("Robot and workspace")
+        self._Iren.EnableRenderOff()  # a frame is drawn where Qt asks for a picture, not before
+        self.frames = 0
+        self.frame_s = 0.0
+        self.camera_ = Camera(View(-1.0, 0.5, np.zeros(3), 1.0), 1.0, 1.0)
+        self.stage = Stage(self)
+        self.overlay = Overlay(self, self.camera_)
+        self.colour_legend = Legend(self)
+        self.can_turn = False
+        self.is_turned = False  # Whether the user has chosen where to look from
+        self._pressed: QPoint | None = None
+        self._last = QPoint()
+        self._grip = ""
+        self._grip_offset = np.zeros(3)
+        self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
+        self._rest.timeout.connect(self._draw_smooth)
+        self._hover = QTimer(self, singleShot=True, interval=30)
+        self._hover.timeout.connect(self._point)
+
+    def put_on(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.set_background(theme.base)
+        self.stage.put_on(theme)
+        self.overlay.theme = theme
+        self.redraw()
+
+    # Drawing
+
+    def redraw(self) -> None:
+        """Have the next frame drawn, soon, and a smooth one when nothing follows it."""
+        if self.ren_win.GetMultiSamples() and self.frame_s > _QUICK_S:
+            self.ren_win.SetMultiSamples(0)
+        self._rest.start()
+        self.update()
+        self.overlay.update()
+
+    def paintGL(self) -> None:
+        """Draw one frame."""
+        start = time.perf_counter()
+        self.camera_.aim(self)
+        self._Iren.EnableRenderOn()
+        super().paintGL()  # type: ignore[no-untyped-call]
+        self._Iren.EnableRenderOff()
+        self.frames += 1
+        self.frame_s = time.perf_counter() - start
+
+    def _draw_smooth(self) -> None:
+        if self._pressed is None and not self.ren_win.GetMultiSamples():
+            self.ren_win.SetMultiSamples(_SMOOTH)
+            self.update()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Draw nothing any more."""
+        for timer in (self._rest, self._hover):
+            timer.stop()
+        super().closeEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep overlay, legend and camera at the size of the scene."""
+        super().resizeEvent(event)
+        self.camera_.width_px = max(self.width(), 1)
+        self.camera_.height_px = max(self.height(), 1)
+        self.overlay.setGeometry(self.rect())
+        self.place_legend()
+        self.resized.emit()
+
+    def place_legend(self) -> None:
+        """Put the legend into its corner."""
+        self.colour_legend.move(self.width() - self.colour_legend.width() - 12, 12)
+
+    # What is asked for by mouse and keys
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Begin a drag of the platform or of the picture, or a click."""
+        self.setFocus()
+        self._pressed = self._last = event.position().toPoint()
+        self._grip = self._grip_at(event.position())
+        self.overlay.pointed = None
+        if self._grip and self.overlay.platform_m is not None:
+            under = self._dragged_to(event.position())
+            self._grip_offset = np.zeros(3) if under is None else self.overlay.platform_m - under
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Drag, or tell what the mouse is over."""
+        here = event.position().toPoint()
+        if self._pressed is None:
+            self._last = here
+            over = self._grip_at(event.position())
+            self.setCursor(Qt.CursorShape.OpenHandCursor if over else Qt.CursorShape.CrossCursor)
+            self._hover.start()
+            return
+        step, self._last = here - self._last, here
+        buttons, modifiers = event.buttons(), event.modifiers()
+        if self._grip:
+            self._drag_platform(event.position(), True)
+        elif (
+            buttons & Qt.MouseButton.LeftButton
+            and not modifiers & Qt.KeyboardModifier.ShiftModifier
+        ):
+            self.is_turned = True
+            self.camera_.turn(step.x(), step.y())
+            self.redraw()
+        else:
+            self.is_turned = True
+            self.camera_.shift(step.x(), step.y())
+            self.redraw()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """End a drag; where the mouse has hardly moved, take the platform to what is under it."""
+        pressed, self._pressed = self._pressed, None
+        grip, self._grip = self._grip, ""
+        if pressed is None:
+            return
+        moved = (event.position().toPoint() - pressed).manhattanLength()
+        if grip and moved > _CLICK_PX:
+            self._grip = grip
+            self._drag_platform(event.position(), False)
+            self._grip = ""
+        elif moved <= _CLICK_PX and event.button() == Qt.MouseButton.LeftButton and not grip:
+            hit = self._hit(event.position())
+            if hit is not None:
+                self.asks_for_position.emit(hit.position_m, False)
+        self._rest.start()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom at the mouse."""
+        self.is_turned = True
+        factor = 1.0015 ** event.angleDelta().y()
+        self.camera_.zoom(factor, event.position().x(), event.position().y())
+        self.redraw()
+
+    def leaveEvent(self, event: Any) -> None:
+        """Forget what the mouse was over."""
+        self._hover.stop()
+        self._tell(None)
+
+    def enterEvent(self, event: Any) -> None:
+        """Nothing; the scene of the base class would take the keys here."""
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Move or turn the platform by a step; ten with Shift, turned with Ctrl."""
+        step = _STEPS.get(Qt.Key(event.key()))
+        if step is None:
+            QWidget.keyPressEvent(self, event)
+            return
+        times = 10.0 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
+        if not event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            self.asks_for_step.emit(self._along_axes(np.array(step)), times)
+        elif self.can_turn:
+            right, away, up = step
+            self.asks_for_turn.emit(np.array([-away, up, -right], dtype=np.float64), times)
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """Nothing; the base class has keys of its own."""
+        QWidget.keyReleaseEvent(self, event)
+
+    def _along_axes(self, step: FloatArray) -> FloatArray:
+        """A step to the right, away and up, along the nearest axes of the frame."""
+        right, away, up = step
+        view = self.camera_.view
+        wanted = right * view.right[:2] - away * view.toward_camera[:2] / max(
+            float(np.linalg.norm(view.toward_camera[:2])), 1e-9
+        )
+        level = np.zeros(3)
+        if right or away:
+            main = int(np.argmax(np.abs(wanted)))
+            level[main] = np.sign(wanted[main])
+        level[2] = up
+        return level
+
+    def _grip_at(self, place: QPointF) -> str:
+        """Which part of the platform's handle is there: ``level``, ``upright`` or none."""
+        handle = self.overlay.handle_px()
+        if handle is None:
+            return ""
+        here = np.array([place.x(), place.y()])
+        if np.linalg.norm(here - handle[0]) <= HANDLE_PX:
+            return "level"
+        across, down = here - handle[1]
+        return "upright" if abs(across) <= 8 and -6 <= down <= ARROW_PX - HANDLE_PX else ""
+
+    def _dragged_to(self, place: QPointF) -> FloatArray | None:
+        """Where in the platform's level, or on the vertical through it, the mouse is."""
+        platform, view = self.overlay.platform_m, self.camera_.view
+        assert platform is not None
+        if self._grip == "level" and not self.stage.is_planar:
+            return self.camera_.on_plane(place.x(), place.y(), platform, np.array([0.0, 0.0, 1.0]))
+        if self._grip == "level":
+            return self.camera_.on_plane(place.x(), place.y(), platform, self.stage.plane_normal)
+        facing = np.append(view.toward_camera[:2], 0.0)
+        facing = facing / max(float(np.linalg.norm(facing)), 1e-9)
+        under = self.camera_.on_plane(place.x(), place.y(), platform, facing)
+        return None if under is None else np.array([*platform[:2], under[2]])
+
+    def _drag_platform(self, place: QPointF, moving: bool) -> None:
+        under = self._dragged_to(place)
+        if under is not None:
+            self.asks_for_position.emit(under + self._grip_offset, moving)
+
+    # What the mouse is over
+
+    def _hit(self, place: QPointF) -> Any:
+        near = self.camera_.point(place.x(), place.y())
+        far = (self.camera_.reach_m + 20.0 * self.camera_.view.half_height_m) * (
+            self.camera_.view.toward_camera
+        )
+        pixel = np.array([place.x(), place.y()])
+        return self.stage.hit(near + far, near - far, pixel, self.camera_)
+
+    def _point(self) -> None:
+        if self._pressed is None:
+            self._tell(self._hit(QPointF(self._last)))
+
+    def _tell(self, hit: Any) -> None:
+        if hit is None:
+            self.overlay.pointed = None
+            self.overlay.update()
+        self.pointed_at.emit(hit)
+
+    def write_pointed(self, text: str) -> None:
+        """Write beside the mouse what it is over."""
+        self.overlay.pointed = (QPointF(self._last), text) if text else None
+        self.overlay.update()

@@ -1,0 +1,191 @@
+"""All pieces that the scene shows, each made once and filled from what was answered."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.explore.desktop.camera import Camera
+from designer.explore.desktop.hit import Hit
+from designer.explore.desktop.map_surface import MapSurface
+from designer.explore.desktop.painting import Painting
+from designer.explore.desktop.pieces import Body, Dots, Faces, Lines
+from designer.explore.desktop.theme import LIGHT, Theme
+from designer.model.robot import Poses
+from designer.report.figures.overlay import ticks_between
+from designer.report.figures.scenes import base_outline_m
+from designer.report.figures.stage import hull_faces
+
+if TYPE_CHECKING:
+    from designer.explore.here import Here
+    from designer.explore.map import MapAnswer
+    from designer.study import Study
+
+_NEAR_PX = 10.0
+
+
+class Stage:
+    """Robot, floor, map, cables and marks of one plotter."""
+
+    def __init__(self, plotter: Any) -> None:
+        self._plotter = plotter
+        self.shell = MapSurface(plotter, "surface", inside=True)
+        self.slice = MapSurface(plotter, "slice")
+        self.dots = Dots(plotter, "points", 9.0)
+        self.floor = Lines(plotter, "floor", 1.0, before=0.0, opacity=0.5)
+        self.region = Lines(plotter, "region", 1.2)
+        self.rim = Lines(plotter, "slice rim", 1.4, before=2.0)
+        self.base = Lines(plotter, "base", 2.0)
+        self.posts = Lines(plotter, "posts", 1.2, before=0.0)
+        self.chords = Lines(plotter, "chords", 1.0, opacity=0.6)
+        self.cables = Lines(plotter, "cables", 2.5, before=3.0)
+        self.exits = Dots(plotter, "exit points", 8.0)
+        self.body = Body(plotter, "platform", before=3.0)
+        self.edges = Lines(plotter, "platform edges", 1.6, before=4.0)
+        self.mass = Dots(plotter, "load", 12.0, before=5.0)
+        self.rows = Dots(plotter, "measured rows", 7.0, before=6.0)
+        self.theme = LIGHT
+        self.names: tuple[str, ...] = ()
+        self.is_planar = False
+        self.plane_normal = np.array([0.0, 1.0, 0.0])
+        self.bounds_m = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
+        self._faces = np.empty((0, 3), dtype=np.int64)
+        self._points_m = np.empty((0, 3))
+
+    @property
+    def map_surfaces(self) -> tuple[MapSurface, MapSurface]:
+        """The surface of the region, and the slice."""
+        return self.shell, self.slice
+
+    def put_on(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.theme = theme
+        for surface in self.map_surfaces:
+            surface.put_on(theme)
+        colours: Mapping[str, list[Any]] = {
+            theme.border: [self.floor],
+            theme.muted: [self.region, self.base, self.posts, self.chords],
+            theme.cable: [self.cables, self.exits, self.mass, self.edges, self.rim],
+            theme.accent: [self.body],
+        }
+        for colour, pieces in colours.items():
+            for piece in pieces:
+                piece.colour(colour)
+
+    def put_study(self, study: Study) -> None:
+        """Show the robot's base and the region."""
+        robot, points = study.robot, study.robot.exit_points_m
+        edges = np.empty((0, 2, 3))
+        self.is_planar = robot.is_planar
+        if robot.is_planar:
+            self.plane_normal = np.asarray(robot.upright[1])
+        everything = [points]
+        if study.workspace is not None:
+            region = study.workspace.region
+            edges = region.border().edges_m
+            everything.append(region.bounds_m)
+        elif study.pose is not None:
+            everything.append(study.pose.position_m[None])
+        around = np.concatenate(everything)
+        self.bounds_m = np.array([around.min(axis=0), around.max(axis=0)])
+        floor = self.bounds_m[0, 2]
+        self.floor.put(_floor_m(self.bounds_m))
+        self.region.put(edges)
+        self.base.put([base_outline_m(robot)])
+        self.posts.put(np.stack([points, points * [1, 1, 0] + [0, 0, floor]], axis=1))
+        self.exits.put(points)
+        self._faces = hull_faces(robot.attachments_m)
+
+    def put_place(self, study: Study, place: FloatArray, here: Here | None, factor: float) -> None:
+        """Show platform and cables; without an answer yet, the cables straight."""
+        pose = Poses.at(place)
+        ends = pose.attachment_points_m(study.robot)
+        chords = np.stack([study.robot.exit_points_m, ends], axis=1)
+        self.chords.put(chords)
+        curves = None if here is None else here.curves_exaggerated_m(factor)
+        self.cables.put(chords if curves is None else curves)
+        if study.robot.is_point_mass or len(self._faces) == 0:
+            self.body.put(np.empty((0, 3)), self._faces)
+            self.edges.put([] if study.robot.is_point_mass else [ends])
+        else:
+            self.body.put(ends, self._faces)
+            self.edges.put(_rims(ends, self._faces))
+        self.mass.put(pose.position_m[None])
+
+    def put_map(self, answer: MapAnswer | None, painting: Painting | None) -> None:
+        """Colour the map; None takes it away."""
+        grids = {} if answer is None else answer.grids
+        self.names = tuple(grids)
+        shell = [name for name in grids if name not in ("slice", "points")]
+        for surface, names in ((self.shell, shell), (self.slice, _those(grids, "slice"))):
+            surface.put_grids({name: grids[name] for name in names})
+            if answer is not None and painting is not None:
+                surface.paint(painting, painting.of(answer, names))
+        self.rim.put([grids["slice"][-1]] if "slice" in grids else [])
+        self._points_m = grids["points"].reshape(-1, 3) if "points" in grids else np.empty((0, 3))
+        self.dots.put(self._points_m)
+        if len(self._points_m) and answer is not None and painting is not None:
+            self.dots.paint(painting.colours(painting.of(answer, ["points"]), self.theme))
+
+    def put_rows(self, position_m: FloatArray, sizes: FloatArray, most: float) -> None:
+        """Show measured rows (n,), coloured by how much is left of them, up to ``most``."""
+        import matplotlib
+
+        self.rows.put(position_m)
+        if len(position_m):
+            share = np.clip(np.nan_to_num(sizes) / most, 0.0, 1.0)
+            table = matplotlib.colormaps["magma"]
+            self.rows.paint(np.round(255.0 * table(share)[:, :3]).astype(np.uint8))
+
+    def hit(
+        self, start_m: FloatArray, end_m: FloatArray, pixel: FloatArray, camera: Camera
+    ) -> Hit | None:
+        """Return what of the map a line of sight meets first."""
+        if len(self._points_m):
+            away = np.linalg.norm(camera.pixels(self._points_m) - pixel, axis=1)
+            number = int(np.argmin(away))
+            near = away[number] <= _NEAR_PX
+            return Hit(self._points_m[number], "points", number) if near else None
+        hits = [
+            found
+            for surface in self.map_surfaces
+            if (found := surface.first_hit(start_m, end_m)) is not None
+        ]
+        if not hits:
+            return None
+        return min(hits, key=lambda hit: float(np.linalg.norm(hit.position_m - start_m)))
+
+    def everything_m(self) -> FloatArray:
+        """Return the corners of the box that the camera shall see (8, 3) [m]."""
+        low, high = self.bounds_m
+        return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+
+
+def _those(grids: Mapping[str, FloatArray], name: str) -> list[str]:
+    return [name] if name in grids else []
+
+
+def _floor_m(bounds_m: FloatArray) -> list[FloatArray]:
+    """A grid of round numbers on the floor, and its rim."""
+    low, high = bounds_m
+    lines = []
+    for axis, across in ((0, 1), (1, 0)):
+        for at in [low[axis], *ticks_between(low[axis], high[axis]), high[axis]]:
+            line = np.full((2, 3), low[2])
+            line[:, axis] = at
+            line[:, across] = low[across], high[across]
+            lines.append(line)
+    return lines
+
+
+def _rims(points_m: FloatArray, faces: Faces) -> list[FloatArray]:
+    """Edges between faces (n, 3) that do not lie in one plane, each (2, 3) [m]."""
+    import pyvista
+
+    hull = pyvista.PolyData.from_regular_faces(points_m, faces)
+    edges = hull.extract_feature_edges(feature_angle=20.0)
+    ends = edges.lines.reshape(-1, 3)[:, 1:] if edges.n_cells else np.empty((0, 2), dtype=int)
+    return [np.asarray(edges.points[pair], dtype=np.float64) for pair in ends]

@@ -1,0 +1,142 @@
+"""The page before a study is open: recent studies, and the shipped ones with their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QPixmap
+from PySide6.QtWidgets import (
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from designer.resources import example_file, example_names, example_summary
+
+_PICTURE_PX = (200, 125)
+_COLUMNS = 4
+
+
+def picture_file(example: str) -> Path:
+    """Return the path of the picture of a shipped study."""
+    return example_file(example).parent / "pictures" / f"{example}.png"
+
+
+class StartPage(QScrollArea):
+    """Where a study is chosen."""
+
+    chosen = Signal(Path)
+    """A study's file was chosen."""
+    asks_for_file = Signal()
+    """The user wants to look for a file."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("start page")
+        self.setWidgetResizable(True)
+        inside = QWidget()
+        columns = QHBoxLayout(inside)
+        columns.setContentsMargins(28, 24, 28, 24)
+        columns.setSpacing(28)
+        self._recent = QVBoxLayout()
+        columns.addLayout(self._recent, 1)
+        columns.addLayout(self._shipped(), 4)
+        self.setWidget(inside)
+
+    def show_recent(self, studies: Iterable[Path]) -> None:
+        """Show the studies that were open before."""
+        _empty(self._recent)
+        self._recent.addWidget(_label("cdpr-designer", "title"))
+        self._recent.addWidget(_label("Which cable, how thick, and how sure is that?", "muted"))
+        self._recent.addSpacing(12)
+        button = QPushButton("Open a study …")
+        button.setObjectName("open")
+        button.setShortcut("Ctrl+O")
+        button.clicked.connect(self.asks_for_file)
+        self._recent.addWidget(button)
+        self._recent.addSpacing(12)
+        self._recent.addWidget(_label("Recent", "heading"))
+        some = False
+        for path in studies:
+            some = True
+            entry = _Choice(path.stem, str(path.parent))
+            entry.setObjectName(f"recent {path.stem}")
+            entry.setToolTip(str(path))
+            entry.clicked.connect(lambda _=False, path=path: self.chosen.emit(path))
+            self._recent.addWidget(entry)
+        if not some:
+            self._recent.addWidget(_label("Studies that you open stand here.", "muted"))
+        self._recent.addStretch(1)
+
+    def _shipped(self) -> QVBoxLayout:
+        column = QVBoxLayout()
+        column.addWidget(_label("Studies to start from", "heading"))
+        grid = QGridLayout()
+        grid.setSpacing(12)
+        for number, name in enumerate(example_names()):
+            entry = _Choice(name, example_summary(name), picture_file(name))
+            entry.setObjectName(f"example {name}")
+            entry.clicked.connect(lambda _=False, name=name: self.chosen.emit(example_file(name)))
+            grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
+        column.addLayout(grid)
+        column.addStretch(1)
+        return column
+
+
+class _Choice(QPushButton):
+    """A study to choose: its picture, if any, its name, and what it is."""
+
+    def __init__(self, name: str, summary: str, picture: Path | None = None) -> None:
+        super().__init__()
+        self.setProperty("role", "study")
+        self.setAccessibleName(name)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Expanding)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(10, 10, 10, 10)
+        if picture is not None:
+            rows.addWidget(_picture(picture))
+        rows.addWidget(_label(name, "heading"))
+        text = _label(summary, "muted")
+        text.setWordWrap(True)
+        text.setAlignment(Qt.AlignmentFlag.AlignTop)
+        rows.addWidget(text, 1)
+        self.setMinimumHeight(rows.sizeHint().height() + (24 if picture else 0))
+
+
+def _picture(file: Path) -> QLabel:
+    shown = QLabel()
+    shown.setFixedHeight(_PICTURE_PX[1])
+    shown.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    whole = QPixmap(str(file))
+    if not whole.isNull():
+        ratio = shown.devicePixelRatioF()
+        fitted = whole.scaled(
+            round(_PICTURE_PX[0] * ratio),
+            round(_PICTURE_PX[1] * ratio),
+            Qt.AspectRatioMode.KeepAspectRatio,
+            Qt.TransformationMode.SmoothTransformation,
+        )
+        fitted.setDevicePixelRatio(ratio)
+        shown.setPixmap(fitted)
+    return shown
+
+
+def _label(text: str, role: str) -> QLabel:
+    label = QLabel(text)
+    label.setProperty("role", role)
+    return label
+
+
+def _empty(column: QVBoxLayout) -> None:
+    while (item := column.takeAt(0)) is not None:
+        widget = item.widget()
+        if widget is not None:
+            widget.deleteLater()

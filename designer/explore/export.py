@@ -1,0 +1,162 @@
+"""What goes out of the window into files: the report, tables, the map for ParaView."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from designer.errors import OutputError
+from designer.explore.here import CableHere, here
+from designer.explore.map import MapAnswer, map_answer
+from designer.explore.quantities import CHEAP
+from designer.explore.question import Question
+from designer.explore.ropes import RopeRow, Ropes, quick_ropes
+from designer.io.output import output_folder
+from designer.progress import Reporter
+
+What = Literal["report", "tables", "vtk"]
+COLUMNS = {
+    "utilisation": "utilisation",
+    "diameter": "diameter_m",
+    "tension": "max_tension_N",
+    "governing": "governing_cable",
+    "sag": "sag_over_chord",
+    "stiffness": "stiffness_N_per_m",
+    "verdict": "verdict",
+    "left_out": "left_out",
+    "unserved": "unserved",
+}
+"""Names of the quantities in files."""
+_ALL = CHEAP | {"stiffness", "unserved"}
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What was written; the first is the one to open."""
+
+    files: tuple[Path, ...]
+
+
+def export(
+    question: Question,
+    reporter: Reporter,
+    *,
+    what: What,
+    target: Path,
+    ropes: Ropes | None = None,
+) -> Exported:
+    """Write files, whole or not at all.
+
+    Parameters
+    ----------
+    what : str
+        ``report``: what `designer report` writes, into the folder ``target``. ``tables``:
+        ``cables.csv``, ``map.csv`` and ``ropes.csv`` into that folder. ``vtk``: the map into the
+        file ``target``, which ends in ``.vtu``.
+    ropes : Ropes, optional
+        For ``tables``: the ropes as they are shown.
+
+    Raises
+    ------
+    OutputError
+        If they cannot be written.
+    """
+    target = Path(target)
+    if what == "report":
+        return _report(question, reporter, target)
+    if what == "tables":
+        return _tables(question, target, ropes)
+    return _vtk(question, target)
+
+
+def _report(question: Question, reporter: Reporter, folder: Path) -> Exported:
+    """Write the report, by the pipeline of the command."""
+    from designer.analysis.analyse import analyse
+    from designer.io.results import write_results
+    from designer.report.figures.opengl import begin_probe
+    from designer.report.render import REPORT_FILES, write_report_pages
+
+    begin_probe()
+    with output_folder(folder, REPORT_FILES) as building:
+        analysis = analyse(question.study, question.catalogue, building, reporter)
+        with reporter.task("report", 1) as advance:
+            write_report_pages(analysis, building)
+            advance(1)
+        write_results(analysis, building)
+        written = [name for name in REPORT_FILES if (building / name).exists()]
+    return Exported(tuple(folder / name for name in written))
+
+
+def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Exported:
+    found = here(question)
+    tables = {
+        "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, found.cables)),
+    }
+    chart = map_answer(question, fine=True, quantities=_ALL)
+    if chart.grids:
+        columns = map_columns(chart)
+        rows = np.column_stack([*columns.values()])
+        tables["map.csv"] = _csv([*columns], (dict(zip(columns, row, strict=True)) for row in rows))
+    ropes = ropes or quick_ropes(question)
+    if ropes is not None:
+        names = [f.name for f in fields(RopeRow) if f.name not in ("rope", "place")]
+        names = ["grade", "size_id", *names, "x_m", "y_m", "z_m"]
+        tables["ropes.csv"] = _csv(names, map(_rope, ropes.rows))
+    with output_folder(folder) as building:
+        for name, text in tables.items():
+            (building / name).write_bytes(text.encode())
+    return Exported(tuple(folder / name for name in tables))
+
+
+def map_columns(chart: MapAnswer) -> dict[str, Any]:
+    """Return the columns of all points of a map (n_points,), by their names with SI units."""
+    positions = np.concatenate([grid.reshape(-1, 3) for grid in chart.grids.values()])
+    columns: dict[str, Any] = dict(zip(("x_m", "y_m", "z_m"), positions.T, strict=True))
+    return columns | {
+        name: chart.all_of(key) for key, name in COLUMNS.items() if len(chart.all_of(key))
+    }
+
+
+def _rope(row: RopeRow) -> dict[str, Any]:
+    names = {"grade": row.rope.grade_id, "size_id": row.rope.size_id}
+    place = [None] * 3 if row.place is None else row.place[:3].tolist()
+    figures = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("rope", "place")}
+    return {**names, **figures, **dict(zip(("x_m", "y_m", "z_m"), place, strict=True))}
+
+
+def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
+    """Return a table as text; what is not a number is an empty cell."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, fieldnames=names, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({k: "" if v is None or v != v else v for k, v in row.items()})  # noqa: PLR0124
+    return stream.getvalue()
+
+
+def _vtk(question: Question, target: Path) -> Exported:
+    """Write the map as one unstructured grid, with what the columns of the table hold."""
+    import pyvista as pv
+
+    if target.suffix != ".vtu":
+        raise OutputError(f"{target}: the map for ParaView is a file that ends in .vtu")
+    chart = map_answer(question, fine=True, quantities=_ALL)
+    if not chart.grids:
+        raise OutputError(f"{target}: the study has no workspace, and so no map")
+    pieces = pv.MultiBlock()
+    for name, grid in chart.grids.items():
+        is_list = grid.shape[1] == 1
+        axes = (grid[..., axis][..., None] for axis in range(3))
+        piece = pv.PolyData(grid[:, 0]) if is_list else pv.StructuredGrid(*axes)
+        for key, values in chart.values[name].items():
+            piece.point_data[COLUMNS[key]] = values.T.ravel()  # VTK counts the first axis first
+        pieces.append(piece, name)
+    with output_folder(target.parent) as building:
+        pieces.combine().save(building / target.name)
+    return Exported((target,))

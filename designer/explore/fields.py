@@ -1,0 +1,355 @@
+"""Every number of a study that can vary: found in the schema and the file, not listed here."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from types import NoneType
+from typing import Annotated, Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel
+
+from designer.documents.bounds import parameter_bound
+from designer.documents.fields import QuantityField, WholeNumber
+from designer.documents.node import Key, Node, path_text
+from designer.effects.effect import Effect
+from designer.explore.meanings import GROUPS, MEANINGS
+from designer.explore.sliders import Sizes, count_slider, slider
+from designer.io.config.effects import read_effects
+from designer.io.config.orientation import FORMS
+from designer.io.config.schema import StudySection
+from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
+
+Kind = Literal["quantity", "count", "choice"]
+_MOST_ROWS = 64
+"""A longer list is edited in the file."""
+_AXES = "xyz"
+_ENDS = ("from", "to")
+_NUMBER = re.compile(r"\s*[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_LEFT_OUT = ("format", "robot.planar", "measurements.settled")
+"""What is no matter of degree: another robot, other data."""
+_OF_A_BODY = (
+    "robot.platform.centre_of_mass",
+    "robot.platform.wrench.moment",
+    "pose.rotation_vector",
+)
+_ROUND = 3
+"""Digits, beside the first, that a slider sets."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One value of the study.
+
+    Parameters
+    ----------
+    path : str
+        Into the study, such as ``robot.anchors[0][2]``; a shorthand of the file is written out, as
+        in ``pose.position[0]``.
+    group, label, unit : str
+        Title of its section, its own, and the SI unit (empty for a number).
+    kind : str
+        ``quantity``, ``count`` (a whole number), or ``choice`` (one of ``choices``).
+    value_SI : float or None
+        None of a choice, and of what is not given.
+    text : str
+        As the file has it; where the file does not have it, its default, empty for none.
+    is_given : bool
+        Whether the text has it.
+    low, high, step : float or None
+        Sensible ends of a slider [SI]; None for no slider.
+    is_log : bool
+        Whether the slider goes by factors.
+    choices : tuple of str
+        Of a choice.
+    is_optional : bool
+        Whether it may be left empty, which means that there is none.
+    definition : str
+        What it is, and between which limits it may lie.
+    dimension : Dimension
+        What kind of quantity it is.
+    """
+
+    path: str
+    group: str
+    label: str
+    unit: str
+    kind: Kind
+    value_SI: float | None
+    text: str
+    is_given: bool
+    low: float | None = None
+    high: float | None = None
+    step: float | None = None
+    is_log: bool = False
+    choices: tuple[str, ...] = ()
+    is_optional: bool = False
+    definition: str = ""
+    dimension: Dimension = NUMBER
+
+    @property
+    def meaning(self) -> float | str | None:
+        """What it stands for, however it is written."""
+        return self.text if self.kind == "choice" else self.value_SI
+
+    def text_of(self, value_SI: float) -> str:
+        """Return a value as text, in the unit that the present text has, of a few digits."""
+        if self.kind == "count":
+            return str(round(value_SI))
+        unit = _unit_of(self.text)
+        least, per_unit = 0.0, 1.0
+        if unit:
+            least = read_quantity(f"0 {unit}", self.dimension)
+            per_unit = read_quantity(f"1 {unit}", self.dimension) - least
+        shown = (value_SI - least) / per_unit
+        span = abs(self.high - self.low) if self.high is not None and self.low is not None else 0.0
+        size = abs(span / per_unit) if not self.is_log and span else abs(shown)
+        places = _ROUND - math.floor(math.log10(size)) if size > 0.0 else 0
+        number = f"{round(shown, places) + 0.0:.12g}"
+        return f"{number} {unit}" if unit else number
+
+
+def keys_of(path: str) -> tuple[Key, ...]:
+    """Return the steps of a path."""
+    return tuple(
+        int(part[1:-1]) if part.startswith("[") else part
+        for part in re.findall(r"\[\d+\]|[^.\[\]]+", path)
+    )
+
+
+def study_fields(
+    section: StudySection, root: Node, effects: Mapping[str, Effect]
+) -> tuple[Field, ...]:
+    """Return the fields of a study that is well-formed, in the order of the schema.
+
+    Parameters
+    ----------
+    section : StudySection
+        The study by its schema.
+    root : Node
+        The same as the file has it.
+    effects : mapping of str to Effect
+        All effects that are known, by id.
+    """
+    sizes = Sizes.of(section)
+    hidden = _without_meaning(section)
+    slots = (*_walk(section, root, ()), *_effect_slots(section, root, effects))
+    return tuple(
+        _field(slot, sizes if slot.depends_on_load else sizes.without_load)
+        for slot in slots
+        if slot.plain not in _LEFT_OUT and not (slot.given is None and slot.plain in hidden)
+    )
+
+
+def _without_meaning(section: StudySection) -> frozenset[str]:
+    """Return what means nothing to this robot, and would be refused."""
+    robot, is_point = section.robot, section.robot.platform.attachments is None
+    freedom = (2 if is_point else 3) if robot.planar else (3 if is_point else 6)
+    hidden = {*(_OF_A_BODY if is_point else ())}
+    if len(robot.anchors) <= freedom:
+        hidden.add("robot.tension_min")
+    if section.selection is None or not section.selection.groups:
+        hidden.add("selection.max_distinct_products")
+    return frozenset(hidden)
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """What a field of the schema holds: how its numbers are read, or between what one chooses.
+
+    ``reader`` is that of a number or of the numbers in its lists, ``alone`` that of a number only.
+    """
+
+    reader: QuantityField | WholeNumber | None
+    alone: QuantityField | WholeNumber | None
+    words: tuple[str, ...]
+    is_optional: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Slot:
+    """A value in the schema, and as the file has it, None where it does not."""
+
+    place: tuple[Key, ...]
+    value: Any
+    given: str | None
+    reader: QuantityField | WholeNumber | None
+    choices: tuple[str, ...] = ()
+    is_optional: bool = False
+
+    @property
+    def plain(self) -> str:
+        """Path without places in lists."""
+        return ".".join(key for key in self.place if isinstance(key, str))
+
+    @property
+    def depends_on_load(self) -> bool:
+        """Whether its slider goes as far as the platform is heavy."""
+        return isinstance(self.reader, QuantityField) and self.reader.dimension in (FORCE, MOMENT)
+
+
+def _walk(section: BaseModel, node: Node | None, place: tuple[Key, ...]) -> Iterator[_Slot]:
+    """Yield all values below a section."""
+    turned = [name for name in FORMS[1:] if getattr(section, name, None) is not None]
+    for name, kind in _kinds(type(section)).items():
+        if name == "quaternion" or (name == FORMS[0] and turned):
+            continue  # its parts do not vary one by one; another form is given
+        below = _below(node, name, section)
+        yield from _slots(getattr(section, name), below, (*place, name), kind)
+
+
+@cache
+def _kinds(section: type[BaseModel]) -> Mapping[str, _Kind]:
+    """Return what the fields of a section hold."""
+    found = {}
+    for name, info in section.model_fields.items():
+        kind = info.rebuild_annotation()
+        plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+        words = get_args(plain) if get_origin(plain) is Literal and len(get_args(plain)) > 1 else ()
+        reader, alone = (_reader_in(kind, into_lists=into) for into in (True, False))
+        found[name] = _Kind(reader, alone, words, NoneType in get_args(plain))
+    return found
+
+
+def _below(node: Node | None, name: str, section: BaseModel) -> Node | None:
+    """Return a field's node; a list in place of a section is the section's first field."""
+    if node is None:
+        return None
+    is_shorthand = isinstance(node.content, tuple)
+    is_first = name == next(iter(type(section).model_fields))
+    found = node if is_shorthand and is_first else node.child(name)
+    is_empty = found is None or (isinstance(found.content, str) and found.data() is None)
+    return None if is_empty else found
+
+
+def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -> Iterator[_Slot]:
+    in_list = isinstance(place[-1], int)
+    given = None if node is None or isinstance(value, tuple | BaseModel) else node.as_written()
+    if isinstance(value, BaseModel):
+        yield from _walk(value, node, place)
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value if len(value) <= _MOST_ROWS else ()):
+            child = None if node is None else node.child(index)
+            yield from _slots(item, child, (*place, index), kind)
+    elif isinstance(value, bool):
+        yield _Slot(place, value, given, None, ("false", "true"))
+    elif kind.words and not in_list:
+        yield _Slot(place, value, given, None, kind.words)
+    elif value is None and kind.alone is not None:
+        yield _Slot(place, value, given, kind.alone, is_optional=kind.is_optional)
+    elif isinstance(value, int | float) and kind.reader is not None:
+        is_optional = kind.is_optional and not in_list
+        yield _Slot(place, value, given, kind.reader, is_optional=is_optional)
+
+
+def _reader_in(kind: Any, *, into_lists: bool) -> QuantityField | WholeNumber | None:
+    """Return what reads the numbers of a kind, wherever in it they stand."""
+    if isinstance(kind, QuantityField | WholeNumber):
+        return kind
+    if get_origin(kind) is tuple and not into_lists:
+        return None
+    each = (_reader_in(part, into_lists=into_lists) for part in get_args(kind))
+    return next((one for one in each if one is not None), None)
+
+
+def _effect_slots(
+    section: StudySection, root: Node, effects: Mapping[str, Effect]
+) -> Iterator[_Slot]:
+    n_cables = len(section.robot.anchors)
+    node = root.child("effects")
+    for place, declared in read_effects(section.effects, n_cables, effects).effects:
+        for one in effects[declared.id].parameters_for(n_cables):
+            bound = parameter_bound(one.dimension)
+            least = bound.least if one.at_least is None else one.at_least
+            reader = QuantityField(one.dimension, one.above, least, bound.most, bound.reason)
+            found = node
+            for key in (*place[1:], one.name):
+                found = None if found is None else found.child(key)
+            given = None if found is None else found.as_written()
+            yield _Slot((*place, one.name), declared.parameters[one.name], given, reader)
+
+
+@lru_cache(maxsize=4096)
+def _field(slot: _Slot, sizes: Sizes) -> Field:
+    title, definition = MEANINGS.get(slot.plain, (_words_of(slot.plain), ""))
+    group = GROUPS.get(str(slot.place[0]), _words_of(str(slot.place[0])))
+    given = slot.given or ""
+    common: dict[str, Any] = {
+        "path": path_text(slot.place),
+        "group": group,
+        "label": _label(title, slot.place),
+        "is_given": slot.given is not None,
+        "is_optional": slot.is_optional,
+    }
+    if slot.reader is None:
+        word = str(slot.value).lower() if isinstance(slot.value, bool) else slot.value
+        text = given or word
+        return Field(
+            **common, unit="", kind="choice", value_SI=None, text=text, choices=slot.choices,
+            definition=definition,
+        )  # fmt: skip
+    value = None if slot.value is None else float(slot.value)
+    if isinstance(slot.reader, WholeNumber):
+        low, high = slot.reader.least, slot.reader.most
+        text = given or ("" if value is None else str(slot.value))
+        return Field(
+            **common, unit="", kind="count", value_SI=value, text=text,
+            definition=f"{definition} A whole number from {low} to {high}.".strip(),
+            **count_slider(value, low, high, slot.plain),
+        )  # fmt: skip
+    dimension = slot.reader.dimension
+    text = given or ("" if value is None else format_SI(value, dimension))
+    return Field(
+        **common, unit=dimension.unit, kind="quantity", value_SI=value, text=text,
+        definition=f"{definition} {_limits(slot.reader)}".strip(), dimension=dimension,
+        **slider(slot.plain, slot.place, value, slot.reader, sizes),
+    )  # fmt: skip
+
+
+def _label(title: str, place: Sequence[Key]) -> str:
+    """Return the title with what tells the values of a list from each other."""
+    *names, last = place
+    if isinstance(last, str):
+        row = next((key for key in names if isinstance(key, int)), None)
+        return title if row is None else f"{title} {row + 1}"
+    plain = ".".join(key for key in place if isinstance(key, str))
+    if plain.endswith(("box", "hull")):
+        return f"{title}, {_AXES[int(names[-1])]} {_ENDS[last]}"
+    if plain.endswith((".z", ".rx", ".ry", ".rz")):
+        return f"{title}, {_ENDS[last]}"
+    rows = [key + 1 for key in names if isinstance(key, int)]
+    number = f" {rows[0]}" if rows else ""
+    part = str(last + 1) if plain.endswith("angles") else _AXES[last] if last < 3 else str(last)
+    return f"{title}{number}, {part}"
+
+
+def _words_of(plain: str) -> str:
+    name = plain.rpartition(".")[2].replace("_", " ")
+    return name[:1].upper() + name[1:]
+
+
+def _limits(reader: QuantityField) -> str:
+    """Return between which limits a quantity may lie."""
+    low, high = reader.at_least, reader.at_most
+    if low is None or high is None:
+        return ""
+    ends = (format_SI(end, reader.dimension) for end in (low, high))
+    return "From {} to {}.".format(*ends)
+
+
+def _unit_of(text: str) -> str:
+    """Return the unit of a quantity as it is written; nothing of a bare number."""
+    number = _NUMBER.match(text)
+    return "" if number is None else text[number.end() :].strip()
+
+
+def with_ends_of(one: Field, file: Field | None) -> Field:
+    """Return a field with the slider that it has in the file, if its value lies on it."""
+    if file is None or file.low is None or file.high is None or one.value_SI is None:
+        return one
+    if not file.low <= one.value_SI <= file.high:
+        return one
+    return replace(one, low=file.low, high=file.high, step=file.step, is_log=file.is_log)

@@ -1,0 +1,180 @@
+"""Work of minutes in a process of its own: the window never waits, and to cancel takes no time.
+
+A process, and not a thread: much of that work is Python, which would hold the interpreter lock;
+drawing a report would share OpenGL with the window; and what a library computes cannot be told to
+stop. It stays for the next such work, since starting takes a second or two.
+"""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from designer.explore.requests import (
+    Cancelled,
+    Delivery,
+    Done,
+    Failed,
+    Kind,
+    Progress,
+    Request,
+    failure_text,
+)
+
+_GRACE_S = 3.0
+"""How long a process may take to clear away what it has half-written."""
+_PATIENCE_S = 1.0
+"""How long whoever closes waits for that; it goes on by itself."""
+
+
+class Helper:
+    """One process for one kind of work, and the thread that waits for it; both start when needed.
+
+    Parameters
+    ----------
+    kind : str
+        The kind of work.
+    deliver : callable
+        Called with each `Delivery`, in the thread.
+    """
+
+    def __init__(self, kind: Kind, deliver: Callable[[Delivery], None]) -> None:
+        self._kind, self._deliver = kind, deliver
+        self._changed = threading.Condition()
+        self._waiting: list[Request] = []
+        self._running: Request | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._thread: threading.Thread | None = None
+        self._closing = False
+
+    def ask(self, request: Request) -> None:
+        """Do this instead of what waits or runs."""
+        with self._changed:
+            self._end_running()
+            self._waiting.append(request)
+            if self._thread is None:
+                name = f"designer-{self._kind}"
+                self._thread = threading.Thread(target=self._work, name=name, daemon=True)
+                self._thread.start()
+            self._changed.notify()
+
+    def cancel(self) -> None:
+        """Give up what waits or runs, if anything does."""
+        with self._changed:
+            self._end_running()
+            self._waiting.append(_NOTHING)
+            self._changed.notify()
+
+    def close(self) -> None:
+        """Give up everything and end the process."""
+        with self._changed:
+            self._closing = True
+            process, thread = self._process, self._thread
+            if process is not None:
+                process.terminate()
+            self._waiting.append(_NOTHING)
+            self._changed.notify()
+        if thread is not None:
+            thread.join(_PATIENCE_S)
+
+    def _end_running(self) -> None:
+        if self._running is not None and self._process is not None:
+            self._process.terminate()
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                while not self._waiting:
+                    self._changed.wait()
+                *dropped, request = self._waiting
+                self._waiting.clear()
+                ends = self._closing
+                dropped += [request] if ends else []
+                self._running = None if ends or request is _NOTHING else request
+            for one in dropped:
+                if one is not _NOTHING:
+                    self._deliver(Cancelled(one))
+            if ends:
+                self._end()
+                return
+            if request is not _NOTHING:
+                self._deliver(self._done(request))
+
+    def _done(self, request: Request) -> Delivery:
+        """Have the process do it; where that ends without a word, it was cancelled or it broke."""
+        try:
+            end = self._exchange(request)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            end = None
+        except Exception as error:
+            end = Failed(request, failure_text(error))
+        with self._changed:
+            self._running = None
+            replaced = bool(self._waiting) or self._closing
+        status = self._end() if replaced or end is None else None
+        if end is not None:
+            return end
+        if replaced:
+            return Cancelled(request)
+        return Failed(request, f"the process that did this ended unexpectedly, status {status}")
+
+    def _exchange(self, request: Request) -> Delivery:
+        process = self._started()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        question = request.question
+        task = {
+            "kind": request.kind,
+            "text": question.text,
+            "path": str(question.path),
+            "place": question.place.tolist(),
+            "rope": question.rope,
+            "with_plugins": question.plugins.with_others,
+            "options": dict(request.options),
+        }
+        pickle.dump(task, process.stdin)
+        process.stdin.flush()
+        while True:
+            message, *values = pickle.load(process.stdout)
+            if message == "progress":
+                self._deliver(Progress(request, *values))
+            else:
+                return Done(request, *values) if message == "done" else Failed(request, *values)
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        with self._changed:
+            if self._closing or self._waiting:
+                raise EOFError  # given up before it began
+            if self._process is None or self._process.poll() is not None:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-P", "-m", "designer.explore.process"],
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+                )
+            return self._process
+
+    def _end(self) -> int | None:
+        """End the process, by force where it does not; return its status."""
+        process, self._process = self._process, None
+        if process is None:
+            return None
+        with suppress(OSError):
+            process.terminate()
+        for stream in (process.stdin, process.stdout):
+            with suppress(OSError):
+                stream.close()  # type: ignore[union-attr]
+        try:
+            return process.wait(_GRACE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return process.wait()
+
+
+_NOTHING: Any = object()
+"""In place of a request: nothing is wanted."""

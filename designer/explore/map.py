@@ -1,0 +1,321 @@
+"""The map: every quantity at every point of the grids, and the worst pose of the region."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.explore.grids import map_grids
+from designer.explore.quantities import BY_KEY, CHEAP
+from designer.explore.question import Question
+from designer.explore.shape import sag_m
+from designer.model.cable import Cable, Cables
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
+from designer.progress import SILENT, Reporter
+from designer.selection.groups.trials import verify_groups
+from designer.selection.products import Product, is_allowed, products_of, undominated
+from designer.selection.verify import Verification, refined, verify_sizes
+from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.study import Workspace
+from designer.workspace.demand import demand_of, is_left_out, size_worst
+from designer.workspace.result import WorkspaceMap
+from designer.workspace.section import section_of_workspace
+from designer.workspace.sweep import map_workspace
+
+_PIECE = 2**12
+"""Places in one call of the solver: what a pose that is waited for has to wait at most."""
+Values = Mapping[str, FloatArray]
+"""By the key of the quantity, SI; NaN where a place has none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapAnswer:
+    """The map of a state.
+
+    Parameters
+    ----------
+    grids : mapping of str to array (n, m, 3)
+        Positions [m], see `designer.explore.grids.map_grids`; empty without a workspace.
+    values : mapping of str to mapping of str to array (n, m)
+        Of each grid the values by the keys of `designer.explore.quantities`, SI, each position in
+        the orientation that asks for the most there; NaN where there is none. Beside them, as 0
+        and 1, ``left_out`` (what the study leaves out) and, where it was asked for, ``unserved``
+        (what no rope serves that no other one beats).
+    is_fine : bool
+        Whether all rows and columns of the grids are there.
+    with_rope : bool
+        Whether tensions are those of the chosen rope.
+    before : mapping of str to mapping of str to array (n, m), or None
+        The same of the state that is compared with, at the same positions.
+    """
+
+    grids: Mapping[str, FloatArray]
+    values: Mapping[str, Values]
+    is_fine: bool
+    with_rope: bool
+    before: Mapping[str, Values] | None = None
+
+    @property
+    def geometry_key(self) -> tuple[object, ...]:
+        """Equal where the grids have the same names and shapes."""
+        return tuple((name, grid.shape) for name, grid in self.grids.items())
+
+    def difference(self, grid: str, key: str) -> FloatArray | None:
+        """Return what a quantity has become less what it was, SI; None without a comparison.
+
+        NaN where there is none in either state. Categories have no difference but whether they are
+        another one, 1, or not, 0.
+        """
+        if self.before is None or key not in self.before.get(grid, {}):
+            return None
+        now, was = self.values[grid][key], self.before[grid][key]
+        if key in BY_KEY and BY_KEY[key].is_category:
+            both_nan = np.isnan(now) & np.isnan(was)
+            return np.asarray((now != was) & ~both_nan, dtype=np.float64)
+        return np.asarray(now - was)
+
+    def all_of(self, key: str) -> FloatArray:
+        """Return the values of one quantity on all grids (n_points,), for a common scale."""
+        each = [values[key].ravel() for values in self.values.values() if key in values]
+        return np.concatenate(each) if each else np.empty(0)
+
+
+def map_answer(
+    question: Question,
+    *,
+    fine: bool = False,
+    slice_share: float = 0.5,
+    parts: frozenset[str] | None = None,
+    quantities: frozenset[str] = CHEAP,
+    against: Question | None = None,
+) -> MapAnswer:
+    """Compute the map.
+
+    Parameters
+    ----------
+    fine, slice_share
+        Of the grids, see `designer.explore.grids.map_grids`.
+    parts : frozenset of str, optional
+        Names of the grids to compute; all if left out.
+    quantities : frozenset of str
+        Keys of what is asked for, with ``unserved`` among them; what costs nothing more is there
+        as well. The less, the quicker.
+    against : Question, optional
+        A state to compare with, at the same positions.
+    """
+    workspace, with_rope = question.workspace, question.cable is not None
+    if workspace is None:
+        return MapAnswer({}, {}, fine, with_rope)
+    grids = map_grids(workspace.region, slice_share, fine=fine)
+    grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
+    values = _on_grids(question, workspace, grids, quantities)
+    before = None
+    if against is not None and against.workspace is not None:
+        before = _on_grids(against, against.workspace, grids, quantities)
+    return MapAnswer(grids, values, fine, with_rope, before)
+
+
+def _on_grids(
+    question: Question, workspace: Workspace, grids: Mapping[str, FloatArray], keys: frozenset[str]
+) -> Mapping[str, Values]:
+    if not grids:
+        return {}
+    flat = np.concatenate([grid.reshape(-1, 3) for grid in grids.values()])
+    ends = np.cumsum([grid[..., 0].size for grid in grids.values()])[:-1]
+    split = {
+        key: np.split(values, ends)
+        for key, values in values_at(question, workspace, flat, keys).items()
+    }
+    return {
+        name: {key: each[k].reshape(grid.shape[:2]) for key, each in split.items()}
+        for k, (name, grid) in enumerate(grids.items())
+    }
+
+
+def values_at(
+    question: Question, workspace: Workspace, positions_m: FloatArray, keys: frozenset[str]
+) -> Values:
+    """Return the quantities ``keys`` at positions (n, 3), each (n,); see `MapAnswer`."""
+    step = max(_PIECE // workspace.orientations.count, 1)
+    pieces = [
+        _values(question, workspace, positions_m[at : at + step], keys)
+        for at in range(0, len(positions_m), step)
+    ]
+    found = {key: np.concatenate([piece[key] for piece in pieces]) for key in pieces[0]}
+    if "unserved" in keys:
+        proved = found["verdict"] == Verdict.OUTSIDE_HULL
+        left = unserved(question, workspace, positions_m[~proved])
+        found["unserved"] = np.ones(len(positions_m))
+        found["unserved"][~proved] = left
+    return found
+
+
+def _values(
+    question: Question, workspace: Workspace, positions_m: FloatArray, keys: frozenset[str]
+) -> Values:
+    cable, found = question.cable, {}
+    if cable is None or "diameter" in keys:
+        _, sizing = size_worst(question.robot, workspace, positions_m, question.material)
+        statics, found["diameter"] = sizing.statics, sizing.diameter_m
+    if cable is not None:
+        statics = _worst_with(question, workspace, positions_m, cable)
+    used = _used(statics, cable)
+    found |= {
+        "utilisation": used.max(axis=-1),
+        "tension": statics.largest_tension_N,
+        "governing": _governing(statics, used),
+        "verdict": statics.verdict.astype(np.float64),
+        "left_out": is_left_out(statics, workspace.hangs_below).astype(np.float64),
+    }
+    if "sag" in keys:
+        with np.errstate(invalid="ignore"):
+            found["sag"] = (sag_m(statics) / statics.geometry().chord_m).max(axis=-1)
+    if "stiffness" in keys:
+        softness = largest_displacement_m_per_N(statics)
+        stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
+        found["stiffness"] = np.where(statics.is_solved, stays, np.nan)
+    return found
+
+
+def _worst_with(
+    question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable | Cables
+) -> Statics:
+    """Solve positions (n, 3) with a rope, each in the orientation in which it is used most."""
+    robot, count = question.robot, workspace.orientations.count
+    places = workspace.space.places(positions_m)
+    statics = solve_sagging(robot, Poses.at(places), cable)
+    if count == 1:
+        return statics
+    asked = demand_of(_used(statics, cable).max(axis=-1), statics, workspace.hangs_below)
+    worst = asked.reshape(-1, count).argmax(axis=1)
+    return solve_sagging(robot, Poses.at(places[np.arange(len(worst)) * count + worst]), cable)
+
+
+def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
+    """Return largest over allowable tension of each cable (..., n_cables).
+
+    The thinnest cable is used up to its limit, by definition.
+    """
+    tension = statics.cable_tension_N
+    if cable is None:
+        return np.asarray(tension / tension.max(axis=-1, keepdims=True))
+    return np.asarray(tension / cable.allowable_tension_N)
+
+
+def _governing(statics: Statics, used: FloatArray) -> FloatArray:
+    """Return the number of the cable that is used most."""
+    most = np.nan_to_num(used, nan=-np.inf).argmax(axis=-1)
+    return np.where(statics.is_solved, most + 1.0, np.nan)
+
+
+def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) -> BoolArray:
+    """Tell which positions (n, 3) no rope serves, in one of the orientations asked for at least.
+
+    Tried are the ropes that no other one beats, see `designer.selection.products.undominated`.
+    What the study leaves out with some rope is not asked for.
+    """
+    left = np.ones(len(positions_m), dtype=np.bool_)
+    count = workspace.orientations.count
+    for product in _strongest_first(question):
+        at = np.flatnonzero(left)
+        if not len(at):
+            break
+        for start in range(0, len(at), max(_PIECE // count, 1)):
+            some = at[start : start + max(_PIECE // count, 1)]
+            poses = Poses.at(workspace.space.places(positions_m[some]))
+            statics = solve_sagging(question.robot, poses, product.cable)
+            allowable = product.cable.allowable_tension_N
+            used = demand_of(statics.largest_tension_N, statics, workspace.hangs_below)
+            left[some] = (used.reshape(-1, count) > allowable).any(axis=1)
+    return left
+
+
+def _strongest_first(question: Question) -> list[Product]:
+    grades = [g for g in question.catalogue.grades if is_allowed(g, question.selection.grades)]
+    products = undominated(products_of(question.selection, grades, question.built))
+    return sorted(products, key=lambda one: -one.cable.allowable_tension_N)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WorstAnswer:
+    """The worst poses of the region, searched for between the samples, as in the report.
+
+    Parameters
+    ----------
+    workspace : WorkspaceMap
+        With the thinnest cable of the family for every pose.
+    rope : Verification or None
+        What the chosen rope meets; None where none is chosen.
+    place : array (6,) or None
+        What to mark: where the rope is used most, or is not held; without a rope, the pose that
+        needs the thickest cable, or one that none holds [m, rad]. None where every pose is left
+        out.
+    sentence : str
+        What that is.
+    """
+
+    workspace: WorkspaceMap
+    rope: Verification | None
+    place: FloatArray | None
+    sentence: str
+
+
+def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer | None:
+    """Search for the worst poses; None without a workspace."""
+    workspace = question.workspace
+    if workspace is None:
+        return None
+    built = question.built
+    section_m = section_of_workspace(built, workspace, question.study.material)
+    built = replace(built, section_m=section_m)
+    with reporter.task("workspace", workspace.sample_count) as advance:
+        material = built.material(question.study.material)
+        found = map_workspace(built.robot, workspace, material, progress=advance)
+    if question.cable is None:
+        return WorstAnswer(found, None, *_worst_of_family(found))
+    met = _met(question, workspace, question.cable)
+    return WorstAnswer(found, met, *_worst_of_rope(met))
+
+
+def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
+    """Return what a rope, or ropes, meet over the whole workspace."""
+    robot = question.robot
+    if isinstance(cable, Cables):
+        one_each = [np.array([k]) for k in range(robot.n_cables)]
+        met = verify_groups(robot, workspace, cable, one_each)
+        worst = int(np.argmax(met.utilisation))
+        used = float(met.utilisation[worst])
+        tension = used * float(cable.allowable_tension_N[worst])
+        unknown = np.full(robot.n_cables, np.nan)
+        place = met.worst_place[worst]
+        return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
+    (sampled,) = verify_sizes(robot, workspace, [cable])
+    if sampled.not_held or not np.isfinite(sampled.utilisation):
+        return sampled.verification(cable)
+    return refined(robot, workspace, cable, sampled)
+
+
+def _worst_of_family(found: WorkspaceMap) -> tuple[FloatArray | None, str]:
+    if found.sagging is not None:
+        needed = f"{1e3 * found.sagging.diameter_m:.4g} mm"
+        return found.sagging.place, f"The pose that needs the thickest cable, {needed}."
+    pose = found.infeasible_pose
+    if pose is None:
+        return None, "Every pose is left out."
+    return pose.place, "No cable of the configured family holds the platform here, for example."
+
+
+def _worst_of_rope(met: Verification) -> tuple[FloatArray | None, str]:
+    place = met.worst_position_m
+    if not np.isfinite(place).all():
+        return None, "The rope serves no pose."
+    place = np.pad(place, (0, 6 - len(place)))
+    if np.isinf(met.utilisation):
+        return place, "No equilibrium was found here with this rope, for example."
+    percent = f"{100.0 * met.utilisation:.4g} %"
+    return place, f"The pose in which the rope is used most, {percent} of its allowable tension."

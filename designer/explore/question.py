@@ -1,0 +1,194 @@
+"""What is asked for: a study as it stands, where the platform is, and which rope is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from designer.arrays import FloatArray, frozen_array
+from designer.effects.design import AsBuilt
+from designer.errors import DesignerError
+from designer.grades.registry import Catalogue, load_catalogue
+from designer.model.cable import Cable, Cables, Material
+from designer.model.robot import Poses, Robot
+from designer.plugins.find import Plugins
+from designer.selection.efficiency import Allowance
+from designer.study import Selection, Study, Workspace, as_built_by, require_enough_cables
+from designer.workspace.section import section_of_pose
+
+
+@dataclass(frozen=True, slots=True)
+class Rope:
+    """A product by its names: one size of one grade."""
+
+    grade_id: str
+    size_id: str
+
+    @property
+    def label(self) -> str:
+        """Size and grade in one line."""
+        return f"{self.size_id} of {self.grade_id}"
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A rope for each cable, in the order of the anchors."""
+
+    ropes: tuple[Rope, ...]
+
+    @property
+    def label(self) -> str:
+        """The ropes, each once, in one line."""
+        return ", ".join(dict.fromkeys(rope.label for rope in self.ropes))
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """A state of the window, as far as answers depend on it; what follows from it is kept.
+
+    Parameters
+    ----------
+    study : Study
+        The problem.
+    place : array (6,)
+        Where the platform is, and its rotation vector [m, rad].
+    rope : Rope, Assignment or None
+        The rope, or the ropes of groups, that are looked at; None for the thinnest cable of the
+        configured family.
+    text, path : str, Path
+        The config, and where it lies or its relative paths start from.
+    plugins : Plugins
+        Whose grades are in the catalogue.
+    """
+
+    study: Study = field(repr=False)
+    place: FloatArray
+    rope: Rope | Assignment | None
+    text: str = field(repr=False)
+    path: Path
+    plugins: Plugins = field(repr=False)
+
+    @property
+    def pose(self) -> Poses:
+        """Where the platform is; the study's own pose, to the last digit, where it is there."""
+        own = self.study.pose
+        if own is not None and np.array_equal(own.place, self.place):
+            return own
+        is_point = self.study.robot.is_point_mass
+        return Poses.at(self.place[:3]) if is_point else Poses.at(self.place)
+
+    @property
+    def outside(self) -> str:
+        """In what this pose is none of the workspace, in a sentence; or empty."""
+        told = replace(self.study, pose=self.pose).pose_outside
+        return f"This pose {told}." if told else ""
+
+    @property
+    def workspace(self) -> Workspace | None:
+        """Which poses the cable must serve."""
+        return self.study.workspace
+
+    @property
+    def selection(self) -> Selection:
+        """How a product is chosen; as usual where the study does not say."""
+        return self.study.selection or Selection()
+
+    @cached_property
+    def built(self) -> AsBuilt:
+        """Robot and cables as the declared effects have them."""
+        require_enough_cables(self.study)
+        return as_built_by(self.study)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot as built."""
+        return self.built.robot
+
+    @cached_property
+    def material(self) -> Material:
+        """The configured family as built; where effects leave none, as at this pose."""
+        section_m = section_of_pose(self.built, self.pose, self.study.material)
+        return self.built.material(self.study.material, section_m)
+
+    @cached_property
+    def catalogue(self) -> Catalogue:
+        """All grades that the study may name."""
+        return catalogue_of(self.study, self.plugins)
+
+    @cached_property
+    def cable(self) -> Cable | Cables | None:
+        """What is looked at, with its figures as the solver takes them; None for the thinnest.
+
+        Raises
+        ------
+        InputError
+            If the catalogue has no such grade.
+        DesignerError
+            If a grade has no such size, the sheave leaves nothing of its strength, or there are
+            more or fewer ropes than cables.
+        """
+        if self.rope is None or isinstance(self.rope, Rope):
+            return None if self.rope is None else self._cable_of(self.rope)
+        each = {rope: self._cable_of(rope) for rope in self.rope.ropes}
+        if len(self.rope.ropes) != self.robot.n_cables:
+            raise DesignerError("the ropes of the groups are of a robot with other cables")
+        return Cables(tuple(each[rope] for rope in self.rope.ropes))
+
+    def _cable_of(self, rope: Rope) -> Cable:
+        grade = self.catalogue.grade(rope.grade_id)
+        size = next((one for one in grade.sizes if one.id == rope.size_id), None)
+        if size is None:
+            raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
+        allowance = Allowance.of(self.selection)
+        if not allowance.efficiency(grade, size.diameter_m) > 0.0:
+            raise DesignerError(
+                f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "
+                "bent over"
+            )
+        return self.built.cable(allowance.cable(grade, size))
+
+
+_shelf: list[tuple[object, Catalogue]] = []
+"""The catalogue that was read last, and of what."""
+
+
+def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
+    """Return the catalogue of a study, read anew only where its files have changed.
+
+    Raises
+    ------
+    InputError
+        If a file that the study names is faulty, or there is no grade that it names.
+    """
+    key = (id(plugins), tuple((path, _changed_at(path)) for path in study.catalogues))
+    if not _shelf or _shelf[0][0] != key:
+        _shelf[:] = [(key, load_catalogue(study.catalogues, plugins=plugins))]
+    catalogue = _shelf[0][1]
+    catalogue.require_grades_of(study)
+    return catalogue
+
+
+def _changed_at(path: Path) -> tuple[float, ...]:
+    """Return when a file, or those of a folder, were changed; nothing where there is none."""
+    try:
+        files = sorted(path.rglob("*")) if path.is_dir() else [path]
+        return tuple(one.stat().st_mtime for one in files)
+    except OSError:
+        return ()
+
+
+def first_place(study: Study | None) -> FloatArray:
+    """Return where the platform is at first: in the study's pose, else in the middle."""
+    if study is None:
+        return frozen_array(np.zeros(6))
+    if study.pose is not None:
+        return frozen_array(study.pose.place)
+    turn, middle = np.zeros(3), study.robot.exit_points_m.mean(axis=0)
+    if study.workspace is not None:
+        region = study.workspace.region
+        middle = region.nearest(region.bounds_m.mean(axis=0)[None])[0]
+        turn = study.workspace.orientations.turns_rad[0]
+    return frozen_array(np.concatenate([middle, turn]))

@@ -1,0 +1,121 @@
+"""What a text is: a study, or what is wrong with it; and the files that texts are in."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from pathlib import Path
+
+from designer.documents.document import Document, decode, document_of, read_bytes
+from designer.documents.node import Key
+from designer.effects.known import KnownEffects
+from designer.errors import DesignerError, Fault, InputError, OutputError
+from designer.explore import edits
+from designer.explore.fields import Field, study_fields
+from designer.io.config.reader import checked, study_of
+from designer.io.config.schema import StudySection
+from designer.io.output import write_whole
+from designer.plugins.find import Plugins
+from designer.study import Study
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Context:
+    """What a text is read with: where its relative paths start, effects, and plugins' grades."""
+
+    path: Path
+    known: KnownEffects
+    plugins: Plugins
+
+    def read(self, text: str) -> Reading:
+        """Return what a text is."""
+        try:
+            document = document_of(text.encode(), str(self.path))
+            section = checked(document, self.known)
+            study = study_of(section, document, self.path, self.known, self.plugins)
+        except InputError as error:
+            return Reading(self, text, None, error.faults)
+        except DesignerError as error:
+            return Reading(self, text, None, (Fault(str(self.path), None, "", str(error)),))
+        return Reading(self, text, study, (), document, section)
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A text, and the study that it is; None, and faults, where it is none."""
+
+    context: Context
+    text: str
+    study: Study | None
+    faults: tuple[Fault, ...]
+    document: Document | None = None
+    section: StudySection | None = None
+
+    @cached_property
+    def fields(self) -> tuple[Field, ...]:
+        """Every value that can vary; empty where the text is no study."""
+        if self.section is None or self.document is None:
+            return ()
+        return study_fields(self.section, self.document.root, self.context.known.by_id)
+
+    @cached_property
+    def by_path(self) -> dict[str, Field]:
+        """The same by their paths."""
+        return {one.path: one for one in self.fields}
+
+    def moved_to(self, folder: Path) -> str:
+        """Return the text with the relative paths in it as they are from a folder."""
+        start = self.context.path.parent
+        if self.document is None or folder.resolve() == start.resolve():
+            return self.text
+        root, text = self.document.root, self.text
+        files = root.child("catalogues")
+        count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
+        places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
+        for keys in [*places, ("measurements", "file")]:
+            node = root
+            for key in keys:
+                node = node.child(key) or node
+            if isinstance(node.content, str) and not Path(node.content).is_absolute():
+                to = _relative(start / node.content, folder)
+                text = edits.with_value(text, keys, edits.scalar(to))
+        return text
+
+
+def _relative(path: Path, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # on another drive
+        return path.resolve().as_posix()
+
+
+def digest_of(text: str) -> str:
+    """Return what tells a text from others."""
+    return sha256(text.encode()).hexdigest()
+
+
+def text_of(path: Path) -> str:
+    """Return what a file holds, its line ends kept.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is too large, or is no text.
+    """
+    return decode(read_bytes(path, str(path)), str(path))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    try:
+        write_whole(path, text.encode())
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written ({error.strerror})") from error

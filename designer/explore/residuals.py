@@ -1,0 +1,115 @@
+"""Measured data beside the model: what is left of every reading, and what it may go with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.diagnosis.case import case_of
+from designer.diagnosis.noise import first_noise
+from designer.diagnosis.problem import Problem, channel_names
+from designer.explore.question import Question
+from designer.measured.read import read_measured
+from designer.model.measured_data import Measured
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Residuals:
+    """What the model, with the declared effects, leaves of each reading.
+
+    Parameters
+    ----------
+    row_numbers : array (n_rows,)
+        Of each row in the file, the first below the head being 1.
+    position_m : array (n_rows, 3)
+        Where the platform was [m].
+    channels, units : tuple of str
+        Names of the readings, such as ``length 1``, and their SI units.
+    residual : array (n_rows, n_channels)
+        Measured less predicted; NaN where nothing was measured or nothing holds the pose.
+    without : array (n_rows, n_channels)
+        The same without the declared effects.
+    noise : array (n_channels,)
+        Standard deviation of one reading.
+    noise_source : str
+        ``declared``, or how the noise was estimated.
+    covariates : mapping of str to array (n_rows,)
+        What a residual may go with, by its title with unit.
+    notes : tuple of str
+        What is to be known of the data.
+    """
+
+    row_numbers: IntArray
+    position_m: FloatArray
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    residual: FloatArray
+    without: FloatArray
+    noise: FloatArray
+    noise_source: str
+    covariates: Mapping[str, FloatArray]
+    notes: tuple[str, ...]
+
+    def size(self) -> FloatArray:
+        """Return the root mean square of each row in units of noise (n_rows,), NaN for none."""
+        squares = (self.residual / self.noise) ** 2
+        count = np.isfinite(squares).sum(axis=1)
+        total = np.nansum(squares, axis=1)
+        return np.where(count > 0, np.sqrt(total / np.maximum(count, 1)), np.nan)
+
+
+def residuals(question: Question) -> Residuals:
+    """Compare the data of a study with its model.
+
+    Raises
+    ------
+    InputError
+        If the study has no measurements, or the data are not as they should be.
+    """
+    study = question.study
+    measured = read_measured(study)
+    assert study.measurements is not None  # else reading has refused
+    declared = replace(study.measurements, unknown=())
+    case = case_of(study, declared, measured)
+    bare = case_of(replace(study, effects=()), declared, measured)
+    predict = case.predictor()
+    everywhere = np.ones(measured.n_rows, dtype=np.bool_)
+    noise = first_noise(declared, measured, predict, everywhere)
+    problem = Problem(measured, predict, noise)
+    n_cables = measured.length_m.shape[1]
+    return Residuals(
+        row_numbers=measured.row_numbers,
+        position_m=measured.poses.position_m,
+        channels=tuple(channel_names(n_cables)),
+        units=("m",) * n_cables + ("N",) * n_cables,
+        residual=problem.readings - problem.predicted(()).stacked,
+        without=problem.readings - bare.predictor()((), noise).stacked,
+        noise=problem.sigma,
+        noise_source=noise.source,
+        covariates=_covariates(measured),
+        notes=measured.notes,
+    )
+
+
+def _covariates(measured: Measured) -> dict[str, FloatArray]:
+    """Return everything of a row that a residual may be drawn over."""
+    found = {"row": measured.row_numbers.astype(np.float64)}
+    if measured.time_s is not None:
+        found["time [s]"] = measured.time_s
+    for axis, values in zip("xyz", measured.poses.position_m.T, strict=True):
+        found[f"{axis} [m]"] = values
+    if measured.temperature_C is not None:
+        found["temperature [°C]"] = measured.temperature_C
+    if measured.wind_m_per_s is not None:
+        found["wind speed [m/s]"] = np.linalg.norm(measured.wind_m_per_s, axis=1)
+    for kind, unit, readings in (
+        ("length", "m", measured.length_m),
+        ("tension", "N", measured.tension_N),
+    ):
+        for k, values in enumerate(readings.T, start=1):
+            if np.isfinite(values).any():
+                found[f"{kind} {k} [{unit}]"] = values
+    return {**found, **measured.covariates}

@@ -1,0 +1,323 @@
+"""All ropes that the study allows, and what becomes of each: at once at samples, or in full."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from designer.analysis.selection_json import candidates_csv
+from designer.arrays import FloatArray
+from designer.explore.question import Assignment, Question, Rope
+from designer.grades.grade import Grade, Size
+from designer.progress import SILENT, Reporter
+from designer.selection.compare import Entry, burdens, is_undominated
+from designer.selection.groups.choose import choose_groups_of
+from designer.selection.groups.result import GroupChoice
+from designer.selection.result import Candidate, NotTried, SelectionResult
+from designer.selection.select import at_samples, select
+from designer.selection.verify import Verification
+from designer.study import Objective
+from designer.workspace.section import section_of_workspace
+
+_QUICK_SAMPLES = 1500
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RopeRow:
+    """One size of one grade; NaN where a figure is not known.
+
+    Parameters
+    ----------
+    rope : Rope
+        Its names, by which it is chosen.
+    maker, product, construction, material : str
+        As the catalogue has them; ``material`` empty where it does not say.
+    trust, doubt : str
+        How far to trust the figures, see `designer.grades.grade.TRUST_MEANING`; and why this size
+        may be wrong, empty for nothing.
+    diameter_m, linear_mass_kg_per_m, breaking_load_N : float
+        As sold.
+    allowable_tension_N : float
+        With end fittings, bending and safety factor.
+    utilisation, max_tension_N : float
+        Largest over the workspace; inf where a pose is not held.
+    total_mass_kg, cost, drum_diameter_m, stiffness_N_per_m : float
+        What ropes are compared by.
+    standing : str
+        As `designer.selection.result.Standing`, or ``not_tried``.
+    reason : str
+        Why it is the best, or falls out.
+    place : array (6,) or None
+        Where it is used most [m, rad].
+    is_searched : bool
+        Whether the worst pose was searched for between the samples as well.
+    """
+
+    rope: Rope
+    maker: str
+    product: str
+    construction: str
+    material: str
+    trust: str
+    doubt: str
+    diameter_m: float
+    linear_mass_kg_per_m: float
+    breaking_load_N: float
+    allowable_tension_N: float = math.nan
+    utilisation: float = math.nan
+    max_tension_N: float = math.nan
+    total_mass_kg: float = math.nan
+    cost: float = math.nan
+    drum_diameter_m: float = math.nan
+    stiffness_N_per_m: float = math.nan
+    standing: str = "not_tried"
+    reason: str = ""
+    place: FloatArray | None = None
+    is_searched: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stays within its allowable tension, as far as it was looked at."""
+        return self.utilisation <= 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class GroupRow:
+    """What a group of cables gets: its name, cable numbers, rope, and the largest utilisation."""
+
+    name: str
+    cables: tuple[int, ...]
+    rope: Rope
+    utilisation: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Groups:
+    """Ropes for groups of cables; no rows where no assignment was found."""
+
+    rows: tuple[GroupRow, ...]
+    total_mass_kg: float
+    single_mass_kg: float  # Of the lightest one rope for all; NaN where there is none
+    proof: str
+
+    @property
+    def assignment(self) -> Assignment | None:
+        """The rope of each cable, to be looked at; None where none was found."""
+        of = {cable: row.rope for row in self.rows for cable in row.cables}
+        return Assignment(tuple(of[cable] for cable in sorted(of))) if of else None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ropes:
+    """All ropes.
+
+    Parameters
+    ----------
+    rows : tuple of RopeRow
+        In the order of the catalogue.
+    best : Rope or None
+        The best by the study's objectives.
+    reason : str
+        Why none is.
+    objectives : tuple of str
+        What they are compared by, the one that decides first.
+    currency : str
+        Of the costs; empty where there are no prices.
+    is_final : bool
+        Whether this is the full selection, as in the report; else what a part of the samples tells,
+        which is no proof.
+    groups : Groups or None
+        Where the study has groups, and the selection is full.
+    csv : str
+        ``candidates.csv`` as the report has it; empty unless final.
+    problems : tuple of str
+        What plugins and grade files gave that could not be used, one line each.
+    """
+
+    rows: tuple[RopeRow, ...]
+    best: Rope | None
+    reason: str
+    objectives: tuple[Objective, ...]
+    currency: str
+    is_final: bool
+    groups: Groups | None = None
+    csv: str = ""
+    problems: tuple[str, ...] = ()
+
+    def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
+        """Return the row of a rope; None where there is none."""
+        return next((row for row in self.rows if row.rope == rope), None)
+
+    @property
+    def makers(self) -> tuple[str, ...]:
+        """All makers, sorted."""
+        return tuple(sorted({row.maker for row in self.rows}))
+
+    @property
+    def materials(self) -> tuple[str, ...]:
+        """All materials, sorted."""
+        return tuple(sorted({row.material for row in self.rows if row.material}))
+
+
+def quick_ropes(question: Question) -> Ropes | None:
+    """Return what a part of the samples tells of all ropes; None without a workspace."""
+    workspace, selection = question.workspace, question.selection
+    if workspace is None:
+        return None
+    few = replace(workspace, samples=min(workspace.samples, _QUICK_SAMPLES))
+    grades, load_cases = question.catalogue.grades, question.study.load_cases
+    entries = at_samples(few, selection, grades, question.built, load_cases)
+    known = [o for o in selection.objectives if o != "stiffness"]
+    best = None
+    holding = [e for e in entries if e.verification.holds]
+    if known and selection.objectives[0] != "stiffness":
+        comparable = [e for e in holding if np.isfinite(e.figures.burden(known[0]))]
+        best = min(comparable, key=lambda e: e.key(known), default=None)
+        front = {id(e) for e, is_in in zip(holding, _front(holding, known), strict=True) if is_in}
+    else:
+        front = {id(e) for e in holding}
+    rows = tuple(_quick_row(entry, entry is best, id(entry) in front) for entry in entries)
+    reason = "" if best else "none holds at the samples" if not holding else "needs the full search"
+    chosen = None if best is None else Rope(best.grade.id, best.size.id)
+    return Ropes(
+        rows,
+        chosen,
+        reason,
+        selection.objectives,
+        currency="",
+        is_final=False,
+        problems=question.catalogue.problems,
+    )
+
+
+def _front(entries: Sequence[Entry], objectives: Sequence[Objective]) -> Sequence[bool]:
+    return [bool(one) for one in is_undominated(burdens(entries, objectives))]
+
+
+def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
+    met = entry.verification
+    if is_best:
+        standing, reason = "chosen", "best at the samples"
+    elif np.isinf(met.utilisation):
+        standing, reason = "not_held", "no equilibrium was found at some sample"
+    elif not met.holds:
+        standing, reason = "too_thin", "beyond its allowable tension at some sample"
+    elif is_in_front:
+        standing, reason = "undominated", "holds at the samples, and no other beats it there"
+    else:
+        standing, reason = "dominated", "holds at the samples, and another one beats it there"
+    return replace(
+        _sold(entry.grade, entry.size),
+        allowable_tension_N=entry.cable.allowable_tension_N,
+        **_figures(entry),
+        standing=standing,
+        reason=reason,
+        place=_place(met),
+        is_searched=False,
+    )
+
+
+def _figures(one: Entry | Candidate) -> dict[str, Any]:
+    met, figures = one.verification, one.figures
+    return {
+        "utilisation": met.utilisation,
+        "max_tension_N": met.max_tension_N,
+        "total_mass_kg": figures.mass_kg,
+        "cost": figures.cost,
+        "drum_diameter_m": figures.drum_diameter_m,
+        "stiffness_N_per_m": figures.stiffness_N_per_m,
+    }
+
+
+def _place(met: Verification) -> FloatArray | None:
+    place = met.worst_position_m
+    return np.pad(place, (0, 6 - len(place))) if np.isfinite(place).all() else None
+
+
+def _sold(grade: Grade, size: Size) -> RopeRow:
+    return RopeRow(
+        rope=Rope(grade.id, size.id),
+        maker=grade.manufacturer,
+        product=grade.product,
+        construction=grade.construction,
+        material=grade.material or "",
+        trust=grade.trust,
+        doubt=size.doubt or "",
+        diameter_m=size.diameter_m,
+        linear_mass_kg_per_m=size.linear_density_kg_per_m,
+        breaking_load_N=size.minimum_breaking_load_N,
+    )
+
+
+def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes | None:
+    """Choose among all ropes, and for groups, as the report does; None without a workspace."""
+    workspace, selection = question.workspace, question.selection
+    if workspace is None:
+        return None
+    section_m = section_of_workspace(question.built, workspace, question.study.material)
+    built, grades = replace(question.built, section_m=section_m), question.catalogue.grades
+    found = select(
+        built.robot,
+        workspace,
+        selection,
+        grades,
+        built=built,
+        load_cases=question.study.load_cases,
+        reporter=reporter,
+    )
+    groups = None
+    if selection.groups:
+        groups = choose_groups_of(workspace, selection, grades, built, found.chosen, reporter)
+    return replace(ropes_of(found, groups), problems=question.catalogue.problems)
+
+
+def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
+    """Return the rows of a selection that was made in full."""
+    chosen = found.chosen
+    rows = [_full_row(candidate) for candidate in found.candidates]
+    rows += [row for one in found.not_tried for row in _not_tried(one)]
+    return Ropes(
+        rows=tuple(rows),
+        best=None if chosen is None else Rope(chosen.grade.id, chosen.size.id),
+        reason=found.reason or "",
+        objectives=found.objectives,
+        currency=found.currency or "",
+        is_final=True,
+        groups=None if groups is None else _groups(groups),
+        csv=candidates_csv(found),
+    )
+
+
+def _full_row(candidate: Candidate) -> RopeRow:
+    return replace(
+        _sold(candidate.grade, candidate.size),
+        allowable_tension_N=candidate.cable.allowable_tension_N,
+        **_figures(candidate),
+        standing=candidate.standing,
+        reason=candidate.reason,
+        place=_place(candidate.verification),
+        is_searched=candidate.verification.is_refined,
+    )
+
+
+def _not_tried(one: NotTried) -> list[RopeRow]:
+    sizes = one.grade.sizes if one.size is None else (one.size,)
+    return [replace(_sold(one.grade, size), reason=one.reason) for size in sizes]
+
+
+def _groups(choice: GroupChoice) -> Groups:
+    single = math.nan if choice.single is None else choice.single.total_mass_kg
+    if choice.chosen is None:
+        return Groups((), math.nan, single, choice.proof_sentence)
+    met = choice.chosen.verification
+    rows = tuple(
+        GroupRow(group.name, group.cables, Rope(product.grade.id, product.size.id), float(used))
+        for group, product, used in zip(
+            choice.groups, choice.chosen.products, met.utilisation, strict=True
+        )
+    )
+    return Groups(rows, choice.chosen.total_mass_kg, single, choice.proof_sentence)

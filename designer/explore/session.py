@@ -1,0 +1,384 @@
+"""A study that is edited: its text with comments kept, every step undone and done again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from designer.arrays import frozen_array
+from designer.effects.known import KnownEffects
+from designer.effects.load import load_effects
+from designer.errors import Fault, InputError, OutputError
+from designer.explore import edits
+from designer.explore.entries import pose_text, put_back, with_entry
+from designer.explore.fields import Field, with_ends_of
+from designer.explore.history import History
+from designer.explore.question import Assignment, Question, Rope, first_place
+from designer.explore.reading import Context, Reading, digest_of, text_of, write_text
+from designer.explore.state import Rejected, State
+from designer.plugins.find import Plugins
+from designer.resources import example_file
+from designer.study import Study
+
+OnDisk = Literal["same", "changed", "gone", "never saved"]
+
+
+class Session:
+    """A study on its way; used by one thread.
+
+    Parameters
+    ----------
+    text : str
+        Of the study, faulty or not.
+    context : Context
+        Where it came from, and what it is read with.
+    file : Path or None
+        Where it is saved; None for a shipped study, which is not written to.
+    """
+
+    def __init__(self, text: str, context: Context, file: Path | None) -> None:
+        self._context = context
+        self.file = file
+        """Where it is saved; None before that is known."""
+        self.rejected: dict[str, Rejected] = {}
+        """Entries that were refused, by the path of their field."""
+        self._saved = context.read(text)
+        self._digest = digest_of(text)
+        self._asked: tuple[State, Question] | None = None
+        self._shown: tuple[Reading, Reading, tuple[Field, ...]] | None = None
+        place = first_place(self._saved.study)
+        self._history = History(State(self._saved, self._saved, place))
+
+    @classmethod
+    def open(cls, path: Path, plugins: Plugins, known: KnownEffects | None = None) -> Self:
+        """Open a study file, faulty or not.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or is no text.
+        """
+        text = text_of(path)
+        return cls(text, Context(path, known or load_effects(plugins), plugins), path)
+
+    @classmethod
+    def example(cls, name: str, plugins: Plugins, known: KnownEffects | None = None) -> Self:
+        """Open a shipped study, which is saved elsewhere."""
+        path = example_file(name)
+        return cls(text_of(path), Context(path, known or load_effects(plugins), plugins), None)
+
+    # What there is
+
+    @property
+    def state(self) -> State:
+        """The present state."""
+        return self._history.state
+
+    @property
+    def path(self) -> Path:
+        """Where the study came from; relative paths in it start there."""
+        return self._context.path
+
+    @property
+    def text(self) -> str:
+        """The study as it would be saved."""
+        return self.state.reading.text
+
+    @property
+    def saved_text(self) -> str:
+        """The study as it was read or saved last."""
+        return self._saved.text
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """What is wrong with the text, by line; empty for a study that is sound."""
+        return self.state.reading.faults
+
+    @property
+    def study(self) -> Study | None:
+        """The study; where the text is faulty the last one that was sound."""
+        return self.state.live.study
+
+    @property
+    def name(self) -> str:
+        """Title of the study; of one that never was sound the file's name."""
+        return self.path.stem if self.study is None else self.study.name
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What plugins brought that could not be used, one line each."""
+        return self._context.known.problems
+
+    @property
+    def is_modified(self) -> bool:
+        """Whether the text is another than the file's."""
+        return self.text != self.saved_text
+
+    def question(self) -> Question | None:
+        """Return what answers are computed of; None where there never was a sound study."""
+        state, live = self.state, self.state.live
+        if live.study is None:
+            return None
+        if self._asked is None or self._asked[0] is not state:
+            origin = self._context.path, self._context.plugins
+            question = Question(live.study, state.place, state.rope, live.text, *origin)
+            self._asked = state, question
+        return self._asked[1]
+
+    def fields(self) -> tuple[Field, ...]:
+        """Return every value that can vary; of a text that is faulty those of the last sound one.
+
+        Sliders go from where to where they went for the file, as long as the value lies there.
+        """
+        live, saved = self.state.live, self._saved
+        if self._shown is None or self._shown[:2] != (live, saved):
+            ends = saved.by_path
+            found = tuple(with_ends_of(one, ends.get(one.path)) for one in live.fields)
+            self._shown = live, saved, found
+        return self._shown[2]
+
+    @property
+    def differing(self) -> frozenset[str]:
+        """Paths of the fields whose values are not those of the file."""
+        saved = {one.path: one.meaning for one in self._saved.fields}
+        return frozenset(
+            one.path for one in self.state.live.fields if saved.get(one.path) != one.meaning
+        )
+
+    # Changes
+
+    def edit(self, path: str, typed: str, *, continuous: bool = False) -> tuple[Fault, ...]:
+        """Give a field another value, as typed; return what is wrong with it, nothing if taken.
+
+        What is refused is kept in `rejected`, changes nothing else, and is tried again together
+        with the next edit: of two values that hang together, one must come first.
+
+        Parameters
+        ----------
+        path : str
+            Of a `Field`.
+        typed : str
+            A text of the field; an empty one takes an optional value out.
+        continuous : bool
+            Whether this goes on with the last such edit of the same field, as one step; see
+            `settle`.
+        """
+        one = self.state.live.by_path.get(path)
+        if one is None:
+            expected = "a value of this study"
+            return (Fault(str(self.path), None, path, "there is no such value", expected),)
+        self.rejected.pop(path, None)
+        if " ".join(typed.split()) == one.text:
+            return ()
+        together = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
+        reading = self._with_entries(together)
+        if reading.study is not None:
+            self.rejected.clear()
+        elif len(together) > 1:
+            reading = self._with_entries({path: typed})
+        if reading.study is None:
+            self.rejected[path] = Rejected(typed, reading.faults)
+            return reading.faults
+        label = f"Change {_small(one.label)}"
+        self._take(label, path if continuous else None, reading, moves=path.startswith("pose."))
+        return ()
+
+    def drop_rejected(self, path: str) -> None:
+        """Forget an entry that was refused."""
+        self.rejected.pop(path, None)
+
+    def put_back(self, path: str) -> tuple[Fault, ...]:
+        """Make one field as it is in the file; return what stands against it, nothing if done."""
+        self.rejected.pop(path, None)
+        one = self.state.live.by_path.get(path)
+        if one is None:
+            return ()
+        reading = self._context.read(put_back(self.state.live, self._saved, path))
+        if reading.study is None:
+            self.rejected[path] = Rejected(one.text, reading.faults)
+            return reading.faults
+        self._take(f"Put back {_small(one.label)}", None, reading, moves=path.startswith("pose."))
+        return ()
+
+    def set_text(self, text: str, *, continuous: bool = False) -> tuple[Fault, ...]:
+        """Replace the whole text, which is taken as it is; return what is wrong with it."""
+        reading = self._context.read(text)
+        self.rejected.clear()
+        starts = self.state.live.study is None
+        self._take("Edit the text", "text" if continuous else None, reading, moves=starts)
+        return reading.faults
+
+    def move(self, place: ArrayLike, *, continuous: bool = False) -> None:
+        """Take the platform to a position (3,) or a place (6,) [m, rad]; not part of the study."""
+        given = np.asarray(place, dtype=np.float64)
+        if len(given) == 3:
+            given = np.concatenate([given, self.state.place[3:]])
+        if not np.isfinite(given).all():
+            raise ValueError("a place has finite coordinates")
+        if not np.array_equal(given, self.state.place):
+            key = "place" if continuous else None
+            self._take("Move the platform", key, place=frozen_array(given))
+
+    def keep_pose(self) -> tuple[Fault, ...]:
+        """Write the place of the platform into the study as its pose; return what is wrong."""
+        live, place = self.state.live, self.state.place
+        if live.study is None:
+            return self.faults
+        value = pose_text(place, is_point_mass=live.study.robot.is_point_mass)
+        reading = self._context.read(edits.with_value(live.text, ("pose",), value))
+        if reading.study is not None:
+            self._take("Keep the pose", None, reading, moves=True)
+        return reading.faults
+
+    def choose(self, rope: Rope | Assignment | None) -> None:
+        """Look at a rope, or ropes; at the thinnest cable of the configured family for None."""
+        if rope != self.state.rope:
+            self._take("Choose a rope", None, rope=rope)
+
+    def begin_with(self, rope: Rope | Assignment | None) -> None:
+        """Look at a rope that nobody chose; nothing that could be undone."""
+        self._history.state = replace(self.state, rope=rope)
+
+    def set_pin(self, pin: object) -> None:
+        """Compare with a state from now on; with nothing for None."""
+        if pin is not self.state.pin:
+            self._take("Pin" if pin is not None else "Unpin", None, pin=pin)
+
+    def settle(self) -> None:
+        """End what was going on: the next continuous change is a step of its own."""
+        self._history.settle()
+
+    def _take(
+        self,
+        label: str,
+        key: object,
+        reading: Reading | None = None,
+        *,
+        moves: bool = False,
+        **changes: Any,
+    ) -> None:
+        """Go on to another state; one that ``moves`` the platform takes it to the study's pose."""
+        if reading is not None:
+            live = self.state.live if reading.study is None else reading
+            changes |= {"reading": reading, "live": live}
+            if moves and reading.study is not None:
+                changes["place"] = first_place(reading.study)
+        self._history.take(label, replace(self.state, **changes), key)
+
+    def _with_entries(self, entries: dict[str, str]) -> Reading:
+        """Return what the last sound text is with entries in it, by path."""
+        live = self.state.live
+        text = live.text
+        for path, typed in entries.items():
+            if path in live.by_path:
+                text = with_entry(live, text, live.by_path[path], typed)
+        return self._context.read(text)
+
+    # Undo
+
+    @property
+    def undo_label(self) -> str:
+        """What would be undone; empty for nothing."""
+        return self._history.done[-1].label if self._history.done else ""
+
+    @property
+    def redo_label(self) -> str:
+        """What would be done again; empty for nothing."""
+        return self._history.undone[-1].label if self._history.undone else ""
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is something to undo."""
+        return bool(self._history.done)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is something to do again."""
+        return bool(self._history.undone)
+
+    def undo(self) -> None:
+        """Take back the last step, if there is one."""
+        self.rejected.clear()
+        self._history.undo()
+        self._stay_here()
+
+    def redo(self) -> None:
+        """Do the step again that was undone last, if there is one."""
+        self.rejected.clear()
+        self._history.redo()
+        self._stay_here()
+
+    def _stay_here(self) -> None:
+        """Have the present text, which may be of before it was saved elsewhere, lie where it is."""
+        state = self.state
+        if state.reading.context is not self._context:
+            reading = self._context.read(state.reading.moved_to(self.path.parent))
+            live = reading
+            if reading.study is None:
+                live = self._context.read(state.live.moved_to(self.path.parent))
+            self._history.state = replace(state, reading=reading, live=live)
+
+    # Files
+
+    def disk(self) -> OnDisk:
+        """Tell how the file stands to what was read from it or written to it last."""
+        if self.file is None:
+            return "never saved"
+        try:
+            return "same" if digest_of(text_of(self.file)) == self._digest else "changed"
+        except InputError:
+            return "changed" if self.file.exists() else "gone"
+
+    def reload(self) -> None:
+        """Take what the file holds now, as a step that can be undone.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or is no text; then nothing changes.
+        """
+        text = text_of(self.path)
+        self.rejected.clear()
+        self._set_saved(self._context.read(text))
+        if text != self.text:
+            self._take("Reload", None, self._saved, moves=True)
+
+    def save(self) -> None:
+        """Write the text to its file, whole or not at all.
+
+        Raises
+        ------
+        OutputError
+            If there is no file yet, or it cannot be written.
+        """
+        if self.file is None:
+            raise OutputError(f"{self.name}: a shipped study is saved under another name")
+        write_text(self.file, self.text)
+        self._set_saved(self.state.reading)
+
+    def save_as(self, path: Path) -> None:
+        """Write the study to another file, which it is from now on.
+
+        Paths in it that are relative to where it was are rewritten for where it is.
+
+        Raises
+        ------
+        OutputError
+            If the file cannot be written; then nothing changes.
+        """
+        text = self.state.reading.moved_to(path.parent)
+        write_text(path, text)
+        self.file, self._context = path, replace(self._context, path=path)
+        self._stay_here()
+        self._set_saved(self.state.reading)
+
+    def _set_saved(self, reading: Reading) -> None:
+        self._saved, self._digest = reading, digest_of(reading.text)
+
+
+def _small(label: str) -> str:
+    return label[:1].lower() + label[1:]

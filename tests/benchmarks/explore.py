@@ -1,0 +1,143 @@
+"""How quickly the window's answers follow a change of the payload, against a whole report.
+
+Run:  python tests/benchmarks/explore.py [--report]
+
+For three and for eight cables: editing the study, then, in the worker, the pose, the coarse map
+that is shown while a slider moves, and the fine one when it rests; each the median of some turns.
+With them, how late a thread beside the worker gets its turn at worst, as a window would. With
+--report the same study is also analysed, and its report written; the ratio is that time over that
+of an edit, the pose and the coarse map.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from designer.analysis.analyse import analyse
+from designer.explore.question import Rope
+from designer.explore.requests import Delivery, Done, Progress
+from designer.explore.session import Session
+from designer.explore.worker import Worker
+from designer.plugins.find import find_plugins
+from designer.report.render import write_report
+
+_TURNS = 15
+_BEAT_S = 0.002
+_SHOWN = frozenset({"utilisation"})
+_ROPE = Rope("unirope-7x19-galvanised", "7/32 in")
+
+
+class Heartbeat:
+    """A thread that wants its turn every 2 ms, and how late it got it at worst [s]."""
+
+    def __init__(self) -> None:
+        self.late_s = 0.0
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._beat, daemon=True)
+        self._thread.start()
+
+    def _beat(self) -> None:
+        while not self._ends.is_set():
+            before = time.perf_counter()
+            time.sleep(_BEAT_S)
+            self.late_s = max(self.late_s, time.perf_counter() - before - _BEAT_S)
+
+    def end(self) -> float:
+        """Stop, and return how late it was at worst [s]."""
+        self._ends.set()
+        self._thread.join()
+        return self.late_s
+
+
+class Asker:
+    """Asks a worker and waits."""
+
+    def __init__(self) -> None:
+        self._got: SimpleQueue[Delivery] = SimpleQueue()
+        self.worker = Worker(self._got.put)
+
+    def __call__(self, kind: Any, session: Session, **options: Any) -> Any:
+        question = session.question()
+        assert question is not None
+        number = self.worker.ask(kind, question, **options)
+        while True:
+            end = self._got.get()
+            if end.number == number and not isinstance(end, Progress):
+                assert isinstance(end, Done), getattr(end, "text", "cancelled")
+                return end.answer
+
+
+def _median_s(action: Callable[[], object]) -> float:
+    times = []
+    for _ in range(_TURNS):
+        before = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - before)
+    return statistics.median(times)
+
+
+def _measure(name: str, ask: Asker, with_report: bool) -> None:
+    session = Session.example(name, find_plugins(with_plugins=False))
+    session.choose(_ROPE)
+    mass = next(one for one in session.fields() if one.path == "robot.platform.mass")
+    assert mass.value_SI is not None
+    loads = iter(range(1, 10_000))
+
+    def edit() -> None:
+        assert mass.value_SI is not None
+        text = f"{mass.value_SI * (1.0 + 1e-4 * next(loads)):.9g} kg"
+        assert session.edit(mass.path, text, continuous=True) == ()
+
+    fine = ask("fine", session)  # loads the kernels
+    ask("coarse", session)
+    points = sum(grid[..., 0].size for grid in fine.grids.values())
+    steps = {
+        "edit": _median_s(edit),
+        "pose": _median_s(lambda: (edit(), ask("here", session))),
+        "coarse map": _median_s(lambda: (edit(), ask("coarse", session, quantities=_SHOWN))),
+    }
+    heart = Heartbeat()
+    steps["fine map"] = _median_s(lambda: (edit(), ask("fine", session)))
+    late_s = heart.end()
+    for step in ("pose", "coarse map", "fine map"):
+        steps[step] -= steps["edit"]
+    cables = session.study.robot.n_cables if session.study else 0
+    each = ", ".join(f"{step} {1e3 * took:.0f} ms" for step, took in steps.items())
+    print(f"{name}, {cables} cables, fine map of {points} points: {each}")
+    print(f"  a thread beside it was late by {1e3 * late_s:.0f} ms at most")
+    if with_report:
+        change = steps["edit"] + steps["pose"] + steps["coarse map"]
+        whole = _whole_s(session)
+        print(
+            f"  analysis and report {whole:.1f} s, {whole / change:.0f} times a change of payload"
+        )
+
+
+def _whole_s(session: Session) -> float:
+    assert session.study is not None
+    with TemporaryDirectory() as folder:
+        before = time.perf_counter()
+        write_report(analyse(session.study), Path(folder))
+        return time.perf_counter() - before
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--report", action="store_true")
+    with_report = parser.parse_args().report
+    ask = Asker()
+    for name in ("yard", "ipanema", "cogiro"):
+        _measure(name, ask, with_report)
+    ask.worker.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,213 @@
+"""Opening, saving, leaving; files that are faulty, change or vanish."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QListWidget, QMessageBox, QPushButton
+from window_driver import Driver, small_yard
+
+BUTTON = QMessageBox.StandardButton
+
+
+def test_the_start_page_shows_shipped_and_recent_studies(empty: Driver, tmp_path: Path) -> None:
+    names = [one.objectName() for one in empty.window.start.findChildren(QPushButton)]
+    assert {"example yard", "example cogiro", "example fast"} <= set(names)
+    empty.open(small_yard(tmp_path))
+    empty.keys("Ctrl+W")
+    assert empty.window.pages.currentWidget() is empty.window.start
+    recent = empty.find(QPushButton, "recent yard")
+    empty.click(recent)
+    empty.rest()
+    assert empty.session.file == tmp_path / "yard.yaml"
+
+
+def test_a_shipped_study_is_opened_by_a_click_and_has_no_file(empty: Driver) -> None:
+    empty.click(empty.find(QPushButton, "example yard"))
+    empty.rest()
+    assert empty.session.name == "Yard crane on three masts"
+    assert empty.session.file is None
+
+
+def test_saving_keeps_comments(yard: Driver) -> None:
+    yard.type_into("entry robot.platform.mass", "190 kg")
+    yard.keys("Ctrl+S")
+    text = yard.session.file.read_text(encoding="utf-8")
+    assert "mass: 190 kg" in text
+    assert "# sheaves near the mast tops" in text
+    assert not yard.window.isWindowModified()
+    yard.rest()
+
+
+def test_saving_under_another_name_is_asked_for(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from PySide6.QtWidgets import QFileDialog
+
+    other = tmp_path / "other"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(other), ""))
+    yard.keys("Ctrl+Shift+S")
+    assert yard.session.file == tmp_path / "other.yaml"
+    assert yard.session.file.is_file()
+    yard.rest()
+
+
+def test_a_place_that_cannot_be_written_loses_nothing(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from PySide6.QtWidgets import QFileDialog
+
+    nowhere = tmp_path / "no" / "such" / "folder.yaml"
+    yard.type_into("entry robot.platform.mass", "190 kg")
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(nowhere), ""))
+    told = yard.answer(BUTTON.Ok)
+    yard.keys("Ctrl+Shift+S")
+    assert str(nowhere) in told[0]
+    assert yard.session.is_modified
+    yard.rest()
+
+
+def test_leaving_with_changes_is_asked_about(yard: Driver) -> None:
+    yard.type_into("entry robot.platform.mass", "190 kg")
+    told = yard.answer(BUTTON.Cancel)
+    yard.window.close()
+    assert "not saved" in told[0]
+    assert yard.window.isVisible()
+    told = yard.answer(BUTTON.Save)
+    yard.keys("Ctrl+W")
+    assert told
+    assert "mass: 190 kg" in (yard.settings.recent[0]).read_text(encoding="utf-8")
+    assert yard.window.pages.currentWidget() is yard.window.start
+
+
+def test_changes_can_be_dropped(yard: Driver) -> None:
+    file = yard.session.file
+    yard.type_into("entry robot.platform.mass", "190 kg")
+    told = yard.answer(BUTTON.Discard)
+    yard.keys("Ctrl+W")
+    assert told
+    assert "mass: 180 kg" in file.read_text(encoding="utf-8")
+
+
+def test_a_faulty_study_is_shown_with_all_faults_and_mended(empty: Driver, tmp_path: Path) -> None:
+    file = small_yard(tmp_path)
+    text = file.read_text(encoding="utf-8")
+    faulty = text.replace("180 kg\n", "180 apples\n").replace("samples: 600", "samples: -3")
+    file.write_text(faulty, encoding="utf-8")
+    empty.open(file)
+    assert empty.window.pages.currentWidget() is empty.window.text
+    told = empty.find(QListWidget, "faults")
+    assert told.count() == 2
+    assert told.item(0).text().startswith("line 9: robot.platform.mass: ")
+    assert not empty.find(QPushButton, "leave text").isEnabled()
+    file.write_text(text, encoding="utf-8")
+    empty.press("reload text")
+    assert told.count() == 0
+    empty.press("leave text")
+    empty.rest()
+    assert empty.window.pages.currentWidget() is empty.window.work
+    assert empty.scene.stage.slice.coloured.mesh.n_cells > 0
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe\x00", b"[1, 2", b"name: nothing\n", None])
+def test_what_is_no_study_is_told(empty: Driver, tmp_path: Path, content: bytes | None) -> None:
+    file = tmp_path / "odd.yaml"
+    if content is not None:
+        file.write_bytes(content)
+    told: list[str] = []
+
+    def accept() -> None:
+        box: Any = QApplication.activeModalWidget()
+        if box is not None:
+            told.append(box.text())
+            QTest.mouseClick(box.button(BUTTON.Ok), Qt.MouseButton.LeftButton)
+
+    QTimer.singleShot(200, accept)
+    empty.window.files.open(file)
+    empty.bot.wait(250)
+    has_faults = empty.find(QListWidget, "faults").count() > 0
+    assert told or has_faults
+    assert empty.window.isVisible()
+
+
+def test_a_file_that_another_program_changes_is_told_of(yard: Driver) -> None:
+    file = yard.session.file
+    text = file.read_text(encoding="utf-8").replace("180 kg\n", "185 kg\n")
+    file.write_text(text, encoding="utf-8")
+    yard.bot.waitUntil(
+        lambda: yard.window.findChild(QPushButton, "notice Reload") is not None, timeout=10_000
+    )
+    yard.press("notice Reload")
+    assert yard.session.study.robot.platform.mass_kg == 185.0
+    assert not yard.session.is_modified
+    yard.rest()
+
+
+def test_a_file_that_is_gone_is_told_of_and_written_again(yard: Driver) -> None:
+    file = yard.session.file
+    file.unlink()
+    yard.window.files.look_at_disk()
+    yard.press("notice Save")
+    assert "mass: 180 kg" in file.read_text(encoding="utf-8")
+
+
+def test_closing_in_the_middle_of_work_does_not_hang(empty: Driver, tmp_path: Path) -> None:
+    file = small_yard(tmp_path)
+    text = file.read_text(encoding="utf-8").replace("samples: 600", "samples: 3000000")
+    file.write_text(text, encoding="utf-8")
+    empty.window.files.open(file)
+    empty.bot.waitUntil(lambda: "worst" in empty.window.live.busy, timeout=20_000)
+    empty.press("full selection")
+    start = time.monotonic()
+    empty.window.close()
+    assert not empty.window.isVisible()
+    assert time.monotonic() - start < 20.0  # and not the minutes that the work would take
+
+
+def test_a_value_that_makes_every_pose_impossible_is_shown(yard: Driver) -> None:
+    yard.type_into("entry robot.platform.mass", "100000 t")
+    yard.rest()
+    assert yard.scene.stage.slice.hatched.mesh.n_cells > 1000
+    assert "no rope serves" in yard.scene.colour_legend.texts
+    yard.keys("Ctrl+Z")
+    yard.rest()
+    assert yard.scene.stage.slice.hatched.mesh.n_cells == 0
+
+
+def test_a_failure_in_the_worker_is_shown(yard: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise RuntimeError("a plugin fell over")
+
+    monkeypatch.setattr("designer.explore.worker.map_answer", broken)
+    yard.type_into("entry robot.platform.mass", "200 kg")
+    yard.rest()
+    assert "the map: " in yard.window.messages.toPlainText()
+    assert "a plugin fell over" in yard.window.messages.toPlainText()
+    assert "a plugin fell over" in yard.window.statusBar().currentMessage()
+    monkeypatch.undo()
+    yard.keys("Ctrl+Z")
+    yard.rest()
+
+
+def test_layout_theme_and_recent_files_are_remembered(
+    empty: Driver, tmp_path: Path, qtbot: Any
+) -> None:
+    empty.open(small_yard(tmp_path))
+    empty.window.menus.actions["panel Here"].trigger()
+    empty.window.menus.themes["dark"].trigger()
+    assert not empty.window.docks["Here"].isVisible()
+    dark = empty.picture(empty.scene)[5, 5].sum()
+    empty.window.close()
+    again = Driver(qtbot, tmp_path, theme="")
+    again.open(tmp_path / "yard.yaml")
+    assert again.settings.theme == "dark"
+    assert not again.window.docks["Here"].isVisible()
+    assert again.picture(again.scene)[5, 5].sum() == dark < 200
+    assert again.settings.recent == (tmp_path / "yard.yaml",)
+    again.window.menus.themes["light"].trigger()
+    again.close()

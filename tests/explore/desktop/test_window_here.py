@@ -1,0 +1,62 @@
+"""The panel of the present pose tells what the command and the report tell."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QTableView
+from window_driver import Driver
+
+import designer
+from designer.report import format as fmt
+
+
+def test_the_same_numbers_as_the_command(yard: Driver) -> None:
+    yard.press("no rope")  # the command sizes with the configured family
+    yard.rest()
+    sized = designer.size(designer.read_study(yard.session.path)).sizing
+    table = yard.find(QTableView, "cables").model()
+    for cable in range(3):
+        row = [table.index(cable, column).data() for column in range(table.columnCount())]
+        statics = sized.statics
+        assert row[0] == str(cable + 1)
+        assert row[1] == fmt.fixed(float(statics.length_m[cable]), 3)
+        assert row[2] == fmt.number(float(statics.exit_tension_N[cable]) / 1e3, 4)
+        assert row[3] == fmt.number(float(statics.platform_tension_N[cable]) / 1e3, 4)
+    assert yard.find(QLabel, "here diameter").text() == fmt.millimetres(float(sized.diameter_m))
+    assert (
+        yard.find(QLabel, "verdict").text() == "The cables hold the platform; both residuals "
+        "are within tolerance."
+    )
+
+
+def test_every_head_says_what_it_is(yard: Driver) -> None:
+    for name in ("cables", "candidates"):
+        model = yard.find(QTableView, name).model()
+        for column in range(model.columnCount()):
+            tip = model.headerData(column, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
+            assert tip
+            assert len(tip) > len("<p></p>")
+
+
+def test_a_pose_that_nothing_holds_is_told(yard: Driver) -> None:
+    yard.type_into("place z", "40")
+    yard.rest()
+    verdict = yard.find(QLabel, "verdict")
+    assert verdict.text().startswith("No cables can hold the platform")
+    assert verdict.property("role") == "fault"
+    assert yard.find(QTableView, "cables").model().rowCount() == 0
+    assert "lies outside the region" in yard.find(QLabel, "cautions").text()
+    chords = yard.scene.stage.cables.mesh.points
+    assert len(chords) == 6  # straight lines
+
+
+def test_small_robots_are_told_in_newtons(empty: Driver) -> None:
+    empty.open("ipanema")
+    model = empty.find(QTableView, "cables").model()
+    assert model.headerData(2, Qt.Orientation.Horizontal).endswith("\nN")
+    tension = float(model.index(0, 2).data().replace("\u202f", ""))
+    assert tension == pytest.approx(empty.window.answers["here"].cables[0].exit_tension_N, rel=1e-3)
+    assert math.isfinite(tension)

@@ -1,0 +1,339 @@
+"""What the window shows is what the commands print and the report says."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designer.analysis.analyse import analyse, analyse_pose
+from designer.cli.commands import main
+from designer.explore.here import here
+from designer.explore.map import map_answer, unserved, values_at, worst_answer
+from designer.explore.quantities import CHEAP, QUANTITIES, category_labels
+from designer.explore.question import Question, Rope
+from designer.explore.ropes import full_ropes, quick_ropes, ropes_of
+from designer.explore.session import Session
+from designer.model.robot import Poses
+from designer.model.verdict import Verdict
+from designer.plugins.find import Plugins
+from designer.selection.products import is_allowed, products_of
+from designer.statics.inverse import solve_sagging
+
+WIRE = "unirope-7x19-galvanised"
+ALL = CHEAP | {"stiffness", "unserved"}
+
+
+def question_of(session: Session) -> Question:
+    question = session.question()
+    assert question is not None
+    return question
+
+
+@pytest.fixture
+def edited(yard: Session) -> Question:
+    """The yard crane with another load, region and pose, on fewer samples."""
+    yard.edit("robot.platform.mass", "260 kg")
+    yard.edit("workspace.region.inset", "4 m")
+    yard.edit("workspace.samples", "900")
+    yard.edit("pose.position[2]", "7.5 m")
+    return question_of(yard)
+
+
+@pytest.mark.parametrize("name", ["yard", "stadium", "ipanema", "robocrane"])
+def test_the_pose_is_that_of_size(name: str, example: Any) -> None:
+    session: Session = example(name)
+    session.edit("robot.platform.mass", "33 kg")
+    found, pose = here(question_of(session), settled=True), analyse_pose(question_of(session).study)
+    assert pose is not None
+    statics = pose.sizing.statics
+    assert found.is_solved
+    assert found.diameter_m == float(pose.sizing.diameter_m)
+    assert found.max_tension_N == float(statics.largest_tension_N)
+    assert [one.length_m for one in found.cables] == statics.length_m.tolist()
+    assert [one.exit_tension_N for one in found.cables] == statics.exit_tension_N.tolist()
+    assert [one.platform_tension_N for one in found.cables] == statics.platform_tension_N.tolist()
+    assert found.utilisation == pytest.approx(1.0)
+    assert pose.rest is not None
+    assert (found.is_stable, found.stability) == (pose.rest.is_stable, pose.rest.sentence)
+
+
+@pytest.mark.parametrize("name", ["stadium", "ipanema"])
+def test_the_command_prints_what_the_window_shows(
+    name: str, example: Any, tmp_path: Path, monkeypatch: Any, capsys: Any
+) -> None:
+    session: Session = example(name)
+    session.edit("robot.platform.mass", "31 kg")
+    session.move(session.state.place + np.array([0.1, -0.05, 0.02, 0.0, 0.0, 0.0]))
+    session.keep_pose()
+    session.save_as(tmp_path / "mine.yaml")
+    command = ["designer", "size", "--json", "--no-plugins", str(tmp_path / "mine.yaml")]
+    monkeypatch.setattr("sys.argv", command)
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 0
+    printed = json.loads(capsys.readouterr().out)["pose"]["sagging"]
+    found = here(question_of(session))
+    assert printed["diameter_m"] == found.diameter_m
+    assert printed["lengths_m"] == [one.length_m for one in found.cables]
+    assert printed["tensions_N"] == [one.exit_tension_N for one in found.cables]
+
+
+def test_a_place_beside_the_pose_is_as_if_it_were_the_pose(yard: Session) -> None:
+    yard.move([14.0, 10.0, 3.0])
+    found = here(question_of(yard))
+    study = replace(question_of(yard).study, pose=Poses.at([14.0, 10.0, 3.0]))
+    pose = analyse_pose(study)
+    assert pose is not None
+    assert found.diameter_m == float(pose.sizing.diameter_m)
+    yard.keep_pose()
+    assert here(question_of(yard)).diameter_m == found.diameter_m
+
+
+def test_the_map_has_the_values_of_the_report(edited: Question) -> None:
+    analysis = analyse(edited.study, edited.catalogue)
+    assert analysis.workspace is not None
+    assert edited.workspace is not None
+    samples = analysis.workspace.to_xarray()
+    found = values_at(edited, edited.workspace, samples["position"].to_numpy(), ALL)
+    assert np.array_equal(found["diameter"], samples["diameter"])
+    assert np.array_equal(found["tension"], samples["max_tension"])
+    assert np.array_equal(found["verdict"], samples["verdict"])
+    tensions = samples["exit_tension"].to_numpy()
+    assert np.array_equal(found["governing"], tensions.argmax(axis=1) + 1)
+
+
+def test_worst_pose_and_ropes_are_those_of_the_report(edited: Question) -> None:
+    analysis = analyse(edited.study, edited.catalogue)
+    worst = worst_answer(edited)
+    assert worst is not None
+    assert analysis.workspace is not None
+    assert analysis.workspace.sagging is not None
+    assert worst.workspace.sagging is not None
+    assert worst.workspace.sagging.diameter_m == analysis.workspace.sagging.diameter_m
+    assert np.array_equal(worst.place, analysis.workspace.sagging.place)
+    assert worst.workspace.census == analysis.workspace.census
+    ropes = full_ropes(edited)
+    assert ropes is not None
+    assert analysis.selection is not None
+    assert analysis.selection.chosen is not None
+    rows = {row.rope: row for row in ropes.rows}
+    for one in analysis.selection.candidates:
+        row = rows[Rope(one.grade.id, one.size.id)]
+        assert (row.standing, row.reason) == (one.standing, one.reason)
+        assert row.utilisation == one.verification.utilisation
+        assert row.total_mass_kg == one.total_mass_kg
+    chosen = analysis.selection.chosen
+    assert ropes.best == Rope(chosen.grade.id, chosen.size.id)
+    with_rope = worst_answer(replace_rope(edited, ropes.best))
+    assert with_rope is not None
+    assert with_rope.rope is not None
+    assert with_rope.rope.utilisation == pytest.approx(chosen.verification.utilisation, rel=1e-9)
+    assert np.allclose(with_rope.place[:3], chosen.verification.worst_position_m, atol=1e-3)
+
+
+def replace_rope(question: Question, rope: Rope | None) -> Question:
+    return Question(
+        question.study, question.place, rope, question.text, question.path, question.plugins
+    )
+
+
+def test_quick_ropes_hold_no_less_than_the_full_selection(edited: Question) -> None:
+    quick, full = quick_ropes(edited), full_ropes(edited)
+    assert quick is not None
+    assert full is not None
+    assert not quick.is_final
+    for row in quick.rows:
+        whole = full.row(row.rope)
+        assert whole is not None
+        assert row.utilisation <= whole.utilisation * (1.0 + 1e-9) or not row.holds
+    assert quick.best == full.best
+
+
+def test_what_falls_out_is_there_with_its_reason(yard: Session) -> None:
+    yard.edit("selection.sheave_diameter", "5 mm")
+    yard.edit("workspace.samples", "100")
+    ropes = full_ropes(question_of(yard))
+    assert ropes is not None
+    gone = [row for row in ropes.rows if row.standing == "not_tried"]
+    assert gone
+    assert all("sheave" in row.reason for row in gone)
+
+
+@pytest.mark.parametrize(
+    ("name", "grids"),
+    [
+        ("yard", {"top", "bottom", "wall", "slice"}),
+        ("stadium", {"top", "bottom", "wall", "slice"}),
+        ("ipanema", {"top", "bottom", "wall", "slice"}),
+    ],
+)
+def test_every_value_of_the_map_with_a_rope_is_that_of_its_pose(
+    name: str, grids: set[str], example: Any
+) -> None:
+    session: Session = example(name)
+    session.choose(Rope(WIRE, "5/32 in"))
+    found = map_answer(question_of(session), quantities=CHEAP | {"stiffness"})
+    rng = np.random.default_rng(3)
+    assert grids == set(found.grids)
+    for part, grid in found.grids.items():
+        i, j = (int(rng.integers(n)) for n in grid.shape[:2])
+        session.move(grid[i, j])
+        one, values = here(question_of(session)), found.values[part]
+        assert one.utilisation == pytest.approx(values["utilisation"][i, j], rel=1e-9)
+        assert one.max_tension_N == pytest.approx(values["tension"][i, j], rel=1e-9)
+        assert one.diameter_m == pytest.approx(values["diameter"][i, j], rel=1e-9)
+        assert one.stiffness_N_per_m == pytest.approx(values["stiffness"][i, j], rel=1e-6)
+        sag = max(cable.sag_over_chord for cable in one.cables)
+        assert sag == pytest.approx(values["sag"][i, j], rel=1e-6)
+        used = [cable.utilisation for cable in one.cables]
+        assert used[int(values["governing"][i, j]) - 1] == pytest.approx(max(used), rel=1e-9)
+
+
+def test_the_coarse_map_is_every_second_point_of_the_fine_one(example: Any) -> None:
+    for name in ("facade", "stadium"):
+        question = question_of(example(name))
+        coarse, fine = (map_answer(question, fine=is_fine) for is_fine in (False, True))
+        assert coarse.geometry_key != fine.geometry_key
+        for grid, values in coarse.values.items():
+            assert np.array_equal(coarse.grids[grid][0, 0], fine.grids[grid][0, 0])
+            assert values["tension"][0, 0] == fine.values[grid]["tension"][0, 0]
+            assert np.array_equal(coarse.grids[grid][-1, -1], fine.grids[grid][-1, -1])
+
+
+def test_only_what_is_asked_for(yard: Session) -> None:
+    found = map_answer(question_of(yard), parts=frozenset({"slice"}), slice_share=1.0)
+    assert set(found.grids) == {"slice"}
+    assert np.allclose(found.grids["slice"][..., 2], 8.5)
+    assert "stiffness" not in found.values["slice"]
+    assert {one.key for one in QUANTITIES} - {"stiffness"} <= set(found.values["slice"])
+
+
+@pytest.mark.slow
+def test_ropes_for_groups_of_cables(yard: Session) -> None:
+    yard.set_text(
+        yard.text.replace("samples: 20000", "samples: 100")
+        + "  groups: {high: [1, 2], low: [3]}\n  max_distinct_products: 2\n"
+    )
+    question = question_of(yard)
+    analysis, ropes = analyse(question.study, question.catalogue), full_ropes(question)
+    assert ropes is not None
+    assert analysis.groups is not None
+    assert analysis.groups.chosen is not None
+    assert ropes.groups is not None
+    assert [row.cables for row in ropes.groups.rows] == [(1, 2), (3,)]
+    products = [Rope(one.grade.id, one.size.id) for one in analysis.groups.chosen.products]
+    assert [row.rope for row in ropes.groups.rows] == products
+    assert ropes.groups.total_mass_kg == analysis.groups.chosen.total_mass_kg
+    assert ropes.groups.proof == analysis.groups.proof_sentence
+    yard.choose(ropes.groups.assignment)
+    worst = worst_answer(question_of(yard))
+    assert worst is not None
+    assert worst.rope is not None
+    met = analysis.groups.chosen.verification
+    assert worst.rope.utilisation == pytest.approx(met.utilisation.max(), rel=1e-6)
+    chart, one = map_answer(question_of(yard)), here(question_of(yard))
+    assert chart.all_of("utilisation").max() <= met.utilisation.max() * (1.0 + 1e-9)
+    assert one.utilisation == max(cable.utilisation for cable in one.cables)
+
+
+def test_what_no_rope_serves(yard: Session) -> None:
+    yard.edit("robot.platform.mass", "1500 kg")
+    question = question_of(yard)
+    assert question.workspace is not None
+    some = question.workspace.thinned(60)
+    grades = [g for g in question.catalogue.grades if is_allowed(g, question.selection.grades)]
+    least = np.full(len(some), np.inf)
+    for one in products_of(question.selection, grades, question.built):
+        statics = solve_sagging(question.robot, Poses.at(some), one.cable)
+        used = statics.largest_tension_N / one.cable.allowable_tension_N
+        least = np.fmin(least, used)
+    found = unserved(question, question.workspace, some)
+    assert np.array_equal(found, ~(least <= 1.0))
+    assert 0 < found.sum() < len(some)
+
+
+def test_a_load_that_nothing_bears_is_an_answer_too(yard: Session) -> None:
+    yard.edit("workspace.region.z[1]", "60 m")  # above the masts
+    yard.edit("workspace.samples", "300")
+    yard.move([15.0, 9.0, 40.0])
+    question = question_of(yard)
+    found = here(question)
+    assert found.verdict is Verdict.OUTSIDE_HULL
+    assert (found.cables, found.curves_m, found.is_stable) == ((), None, None)
+    assert np.isnan(found.diameter_m)
+    assert found.chords_m.shape == (3, 2, 3)
+    chart = map_answer(question, quantities=ALL)
+    assert chart.all_of("unserved").max() == 1.0
+    assert np.isnan(chart.all_of("diameter")).any()
+    worst = worst_answer(question)
+    assert worst is not None
+    assert "No cable" in worst.sentence
+    ropes = quick_ropes(question)
+    assert ropes is not None
+    assert (ropes.best, ropes.reason) == (None, "none holds at the samples")
+
+
+def test_shapes_of_cables(yard: Session) -> None:
+    yard.choose(Rope(WIRE, "3/8 in"))
+    found = here(question_of(yard))
+    assert found.curves_m is not None
+    for one, curve, chord in zip(found.cables, found.curves_m, found.chords_m, strict=True):
+        line = (chord[1] - chord[0]) / np.linalg.norm(chord[1] - chord[0])
+        off = (curve - chord[0]) - np.outer((curve - chord[0]) @ line, line)
+        assert one.sag_m == pytest.approx(np.linalg.norm(off, axis=1).max(), rel=1e-3)
+        along = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
+        assert one.length_m + one.stretch_m == pytest.approx(along, rel=1e-6)
+        first = curve[1] - curve[0]
+        assert one.angle_rad == pytest.approx(
+            np.arctan2(-first[2], np.hypot(first[0], first[1])), abs=1e-3
+        )
+    shown = found.curves_exaggerated_m(10.0)
+    assert shown is not None
+    assert np.allclose(shown[:, [0, -1]], found.curves_m[:, [0, -1]])
+    same = found.curves_exaggerated_m(1.0)
+    assert same is not None
+    assert np.allclose(same, found.curves_m)
+
+
+def test_a_rope_that_is_too_weak_here_is_told(yard: Session) -> None:
+    yard.edit("robot.platform.mass", "2 t")
+    yard.choose(Rope(WIRE, "5/32 in"))
+    found = here(question_of(yard))
+    assert found.utilisation > 1.0
+    assert "too weak here" in found.sentence
+
+
+def test_outside_the_region_is_told(yard: Session) -> None:
+    yard.move([15.0, 9.0, 0.5])
+    assert here(question_of(yard)).outside == "This pose lies outside the region."
+    yard.move([15.0, 9.0, 5.0])
+    assert here(question_of(yard)).outside == ""
+
+
+@pytest.mark.slow
+def test_effects_act_as_in_the_report(tmp_path: Path, no_plugins: Plugins, yard: Session) -> None:
+    study = tmp_path / "study.yaml"
+    text = yard.text.replace("samples: 20000", "samples: 60")
+    effects = "effects:\n  pulley_radius: {radius_m: 90 mm}\n  linear_mass: {scale: 1.3}\n"
+    study.write_text(text + effects, encoding="utf-8")
+    question = question_of(Session.open(study, no_plugins))
+    pose = analyse_pose(question.study)
+    assert pose is not None
+    found = here(question)
+    assert found.diameter_m == float(pose.sizing.diameter_m)
+    assert found.cables[0].length_m == float(pose.sizing.statics.length_m[0])
+    analysis = analyse(question.study, question.catalogue)
+    assert analysis.selection is not None
+    ropes = full_ropes(question)
+    assert ropes is not None
+    assert ropes.csv == ropes_of(analysis.selection).csv
+
+
+def test_words_for_every_category() -> None:
+    assert category_labels("governing", 3) == {1: "cable 1", 2: "cable 2", 3: "cable 3"}
+    assert set(category_labels("verdict", 3)) == {int(one) for one in Verdict}

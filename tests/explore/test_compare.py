@@ -1,0 +1,80 @@
+"""What has become otherwise since a state was pinned."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designer.explore.compare import Pin, compare
+from designer.explore.here import here
+from designer.explore.map import map_answer, worst_answer
+from designer.explore.question import Rope
+from designer.explore.ropes import full_ropes, quick_ropes
+from designer.explore.session import Session
+
+WIRE = "unirope-7x19-galvanised"
+
+
+def pin_of(session: Session, **how: Any) -> Pin:
+    question = session.question()
+    assert question is not None
+    parts = {"worst": worst_answer(question), "ropes": quick_ropes(question)} | how
+    return Pin(question, session.fields(), here=here(question), **parts)
+
+
+@pytest.fixture
+def few(yard: Session) -> Session:
+    yard.edit("workspace.samples", "200")
+    return yard
+
+
+def test_nothing_differs_from_itself(few: Session) -> None:
+    pin = pin_of(few)
+    found = compare(pin, pin_of(few))
+    assert (found.changes, found.gained, found.lost) == ((), (), ())
+    assert all(line.difference == 0.0 for line in found.lines)
+    assert found.is_like_with_like
+
+
+def test_a_heavier_load(few: Session) -> None:
+    few.choose(Rope(WIRE, "7/32 in"))
+    before = pin_of(few)
+    few.edit("robot.platform.mass", "0.4 t")
+    found = compare(before, pin_of(few))
+    changed = {one.title: (one.before, one.after) for one in found.changes}
+    assert changed["Platform with payload"] == ("180 kg", "0.4 t")
+    assert changed["Best rope"][0] == f"7/32 in of {WIRE}"
+    lines = {one.title: one for one in found.lines}
+    worse = ["Diameter needed here", "Utilisation at worst", "Diameter needed at worst"]
+    assert all(lines[title].difference > 0.0 for title in worse)
+    assert Rope(WIRE, "7/32 in") in found.lost
+    assert found.gained == ()
+    assert all(line.difference > 0.0 for line in found.utilisation.values())
+
+
+def test_a_full_selection_and_a_quick_one_are_told_apart(few: Session) -> None:
+    question = few.question()
+    assert question is not None
+    found = compare(pin_of(few), pin_of(few, ropes=full_ropes(question)))
+    assert not found.is_like_with_like
+    assert compare(pin_of(few, ropes=None, worst=None), pin_of(few)).utilisation == {}
+
+
+def test_the_map_against_another_state(few: Session) -> None:
+    before = few.question()
+    few.edit("robot.platform.mass", "0.4 t")
+    few.edit("workspace.region.inset", "4 m")  # other positions
+    question = few.question()
+    assert question is not None
+    found = map_answer(question, against=before)
+    assert before is not None
+    for name in found.grids:
+        assert np.all(found.difference(name, "diameter") > 0.0)  # type: ignore[operator]
+        governing = found.difference(name, "governing")
+        assert governing is not None
+        assert set(np.unique(governing)) <= {0.0, 1.0}
+    assert map_answer(question).difference("top", "diameter") is None
+    same = map_answer(question, against=question)
+    assert np.all(same.difference("wall", "governing") == 0.0)

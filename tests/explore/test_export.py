@@ -1,0 +1,102 @@
+"""What goes out into files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designer.analysis.analyse import analyse
+from designer.errors import OutputError
+from designer.explore.export import COLUMNS, export, map_columns
+from designer.explore.here import here
+from designer.explore.map import map_answer
+from designer.explore.question import Question, Rope
+from designer.explore.requests import Cancelled, Progress
+from designer.explore.session import Session
+from designer.progress import SILENT
+
+
+@pytest.fixture
+def question(yard: Session) -> Question:
+    yard.edit("workspace.samples", "200")
+    yard.edit("robot.platform.mass", "200 kg")
+    yard.choose(Rope("unirope-7x19-galvanised", "7/32 in"))
+    found = yard.question()
+    assert found is not None
+    return found
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_tables(question: Question, tmp_path: Path) -> None:
+    written = export(question, SILENT, what="tables", target=tmp_path / "out").files
+    assert [path.name for path in written] == ["cables.csv", "map.csv", "ropes.csv"]
+    cables = rows_of(written[0])
+    assert [float(row["length_m"]) for row in cables] == [
+        one.length_m for one in here(question).cables
+    ]
+    chart = rows_of(written[1])
+    columns = map_columns(map_answer(question, fine=True))
+    assert len(chart) == len(columns["x_m"])
+    assert {"diameter_m", "stiffness_N_per_m", "unserved", "verdict"} <= set(chart[0])
+    assert np.allclose([float(row["diameter_m"]) for row in chart], columns["diameter_m"])
+    ropes = rows_of(written[2])
+    assert {"grade", "size_id", "utilisation", "reason", "x_m"} <= set(ropes[0])
+
+
+def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
+    import pyvista as pv
+
+    (path,) = export(question, SILENT, what="vtk", target=tmp_path / "map.vtu").files
+    mesh: Any = pv.read(path)
+    chart = map_answer(question, fine=True)
+    points = map_columns(chart)
+    assert mesh.n_points == len(points["x_m"])
+    assert set(COLUMNS.values()) <= set(mesh.point_data)
+    # In whatever order: at the same position there is the same value.
+    i, j = 7, 11
+    at = mesh.find_closest_point(chart.grids["wall"][i, j])
+    assert np.allclose(mesh.points[at], chart.grids["wall"][i, j])
+    value = chart.values["wall"]["diameter"][i, j]
+    assert mesh.point_data["diameter_m"][at] == pytest.approx(value)
+    assert [one.name for one in tmp_path.iterdir()] == ["map.vtu"]
+
+
+def test_nothing_is_written_where_it_cannot_be(question: Question, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    for what, target in (("tables", tmp_path / "file"), ("vtk", tmp_path / "file" / "map.vtu")):
+        with pytest.raises(OutputError):
+            export(question, SILENT, what=what, target=target)  # type: ignore[arg-type]
+    with pytest.raises(OutputError, match=r"\.vtu"):
+        export(question, SILENT, what="vtk", target=tmp_path / "map.vtk")
+
+
+@pytest.mark.slow
+def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -> None:
+    written = export(question, SILENT, what="report", target=tmp_path / "report").files
+    assert written[0].name == "report.html"
+    result = json.loads((tmp_path / "report" / "result.json").read_text(encoding="utf-8"))
+    own = analyse(question.study, question.catalogue).to_dict()
+    for part in ("pose", "workspace", "selection", "answer"):
+        assert result[part] == json.loads(json.dumps(own[part]))
+    assert here(question).diameter_m == result["pose"]["sagging"]["diameter_m"]
+
+
+@pytest.mark.slow
+def test_a_report_that_is_given_up_leaves_nothing(
+    question: Question, tmp_path: Path, asker: Any
+) -> None:
+    number = asker.ask("export", question, what="report", target=tmp_path / "report")
+    while not isinstance(asker.next(), Progress):
+        pass
+    asker.worker.cancel("export")
+    assert isinstance(asker.end_of(number), Cancelled)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,114 @@
+"""Every number of a study is a field with a name, a meaning and a sensible slider."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from designer.explore.fields import Field, keys_of
+from designer.explore.session import Session
+from designer.plugins.find import Plugins
+from designer.resources import example_names
+from designer.units import read_quantity
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_fields_of_the_shipped_studies(name: str, example: Any) -> None:
+    session: Session = example(name)
+    fields = session.fields()
+    assert len({one.path for one in fields}) == len(fields) > 30
+    assert len({(one.group, one.label) for one in fields}) == len(fields)
+    for one in fields:
+        assert one.definition
+        assert one.label
+        assert one.group
+        if one.low is not None and one.high is not None and one.value_SI is not None:
+            assert one.low <= one.value_SI <= one.high
+        if one.kind == "choice":
+            assert one.text in one.choices
+        elif one.value_SI is not None:
+            assert read_quantity(_plain(one), one.dimension) == pytest.approx(one.value_SI)
+    assert session.differing == frozenset()
+    given = {one.path for one in fields if one.is_given}
+    assert {"robot.platform.mass", "pose.position[0]", "workspace.samples"} <= given
+
+
+def _plain(one: Field) -> float | str:
+    """A bare number as a number, as YAML has it."""
+    try:
+        return float(one.text)
+    except ValueError:
+        return one.text
+
+
+@pytest.mark.parametrize(
+    ("text", "value_SI", "becomes"),
+    [
+        ("180 kg", 212.3456, "212.3 kg"),
+        ("0.18 t", 212.3456, "0.2123 t"),
+        ("180", 212.3456, "212.3"),
+        ("396.8 lb", 200.0, "440.9 lb"),
+    ],
+)
+def test_a_slider_keeps_the_unit(text: str, value_SI: float, becomes: str, yard: Session) -> None:
+    yard.edit("robot.platform.mass", text)
+    assert _of(yard, "robot.platform.mass").text_of(value_SI) == becomes
+
+
+def test_a_temperature_has_its_own_zero(yard: Session) -> None:
+    yard.edit("surroundings.temperature", "50 degF")
+    one = _of(yard, "surroundings.temperature")
+    assert one.value_SI == pytest.approx(10.0)
+    assert one.text_of(20.0) == "68 degF"
+
+
+def test_a_slider_stays_where_it_is_while_it_moves(yard: Session) -> None:
+    before = _of(yard, "robot.platform.mass")
+    yard.edit("robot.platform.mass", "300 kg")
+    after = _of(yard, "robot.platform.mass")
+    assert (after.low, after.high) == (before.low, before.high)
+    yard.edit("robot.platform.mass", "90 t")  # beyond its end
+    beyond = _of(yard, "robot.platform.mass")
+    assert beyond.high is not None
+    assert beyond.high > 90e3
+
+
+def test_a_point_mass_has_no_turns_and_a_body_has(yard: Session, example: Any) -> None:
+    paths = {one.path for one in yard.fields()}
+    assert not any("rotation" in path or "moment" in path for path in paths)
+    paths = {one.path for one in example("ipanema").fields()}
+    assert {"pose.rotation_vector[2]", "robot.platform.wrench.moment[0]"} <= paths
+    assert "robot.tension_min" in paths
+
+
+def test_declared_effects_are_fields(tmp_path: Path, no_plugins: Plugins, yard: Session) -> None:
+    study = tmp_path / "study.yaml"
+    effects = (
+        "effects:\n  pulley_radius: {radius_m: 90 mm}\n  anchor_offset: [{cable: 2, z_m: 1}]\n"
+    )
+    study.write_text(yard.text + effects, encoding="utf-8")
+    session = Session.open(study, no_plugins)
+    assert session.faults == ()
+    assert _of(session, "effects.pulley_radius.radius_m").value_SI == pytest.approx(0.09)
+    assert session.edit("effects.anchor_offset[0].z_m", "20 mm") == ()
+    assert session.edit("effects.anchor_offset[0].x_m", "5 mm") == ()
+    assert "[{cable: 2, z_m: 20 mm, x_m: 5 mm}]" in session.text
+    assert session.study is not None
+    assert dict(session.study.effects[1].parameters) == {"x_m": 0.005, "y_m": 0.0, "z_m": 0.02}
+
+
+def test_paths_and_their_steps() -> None:
+    assert keys_of("robot.anchors[0][12]") == ("robot", "anchors", 0, 12)
+
+
+def test_angles_go_to_either_side(example: Any) -> None:
+    one = _of(example("ipanema"), "pose.rotation_vector[0]")
+    assert np.allclose([one.low, one.high], [-math.pi / 4, math.pi / 4])
+
+
+def _of(session: Session, path: str) -> Field:
+    return next(one for one in session.fields() if one.path == path)
