@@ -52,8 +52,10 @@ def drawn(robot: TwinRobot, effect: str, over_noise: float, seed: int) -> dict:
     return {effect: robot.draw(effect, size_for(robot, effect, over_noise, seed), seed)}
 
 
-def diagnosed(robot: TwinRobot, effects: dict, seed: int, folder: Path, **how) -> Diagnosis:
-    return diagnose(case_in(written(make(robot, effects, rows=40, seed=seed), folder, **how)))
+def diagnosed(
+    robot: TwinRobot, effects: dict, seed: int, folder: Path, rows: int = 40
+) -> Diagnosis:
+    return diagnose(case_in(written(make(robot, effects, rows=rows, seed=seed), folder)))
 
 
 def faults_of(config: Path) -> str:
@@ -119,12 +121,11 @@ def test_what_poses_take_up_is_named_and_never_found(tmp_path) -> None:
 @pytest.mark.slow
 def test_eight_cables(tmp_path) -> None:
     truth = drawn(HALL8, "elastic_modulus", 10.0, 3306)
-    found = diagnosed(HALL8, truth, 3306, tmp_path)
+    found = diagnosed(HALL8, truth, 3306, tmp_path, rows=24)
     (finding,) = found.findings
+    assert finding.effect.id == "elastic_modulus"
     scale = finding.parameters["scale"]
-    assert "elastic_modulus" in {finding.effect.id, *finding.rivals}
-    if finding.effect.id == "elastic_modulus":
-        assert abs(scale.value - truth["elastic_modulus"]["scale"]) < 4.0 * scale.std
+    assert abs(scale.value - truth["elastic_modulus"]["scale"]) < 4.0 * scale.std
 
 
 def test_a_diagnosed_model_is_checked_without_poses(tmp_path) -> None:
