@@ -6,6 +6,7 @@ from designer.analysis.analyse import Analysis
 from designer.report.blocks import Report, Section
 from designer.report.design import (
     assumptions,
+    checks,
     clearance,
     groups,
     inputs,
@@ -27,6 +28,7 @@ SECTIONS = (
     workspace.section,
     selection.section,
     load_cases.section,
+    checks.section,
     groups.section,
     stiffness.section,
     clearance.section,
