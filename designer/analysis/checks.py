@@ -121,7 +121,9 @@ def _slack(chosen: Candidate, least_N: float) -> Check:
         space = one.workspace.space
         own = one.verification.worst_position_m[None]
         places = np.concatenate([own, space.landmarks(), one.workspace.thinned(_SAMPLES)])
-        statics = solve_sagging(one.loaded.robot, Poses.at(places), one.loaded.cable)
+        statics = solve_sagging(
+            one.loaded.robot, Poses.at(places), one.loaded.cable, seeks_better=False
+        )
         tension = np.where(statics.is_solved[:, None], statics.least_tension_N, np.inf)
         row, cable = np.unravel_index(int(tension.argmin()), tension.shape)
         if best is None or tension[row, cable] < best[0]:
