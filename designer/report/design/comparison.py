@@ -11,7 +11,6 @@ from designer.report import format as fmt
 from designer.report.blocks import Block, Box, Column, Fact, Facts, Subheading, Table
 from designer.selection.result import Candidate, GradeOutcome
 
-
 _OF_CASES = (
     " The best diameter is for the static load of the study, the size is what holds in every load "
     "case; its tension and utilisation are those of the case that governs."
