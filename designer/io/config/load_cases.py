@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from designer.arrays import frozen_array
 from designer.errors import Fault
+from designer.io.config.loads import WindSection
 from designer.io.config.parts import Parts
 from designer.io.config.schema import (
     BoxSection,
@@ -13,7 +14,6 @@ from designer.io.config.schema import (
     PointsSection,
     PrismSection,
     RectangleSection,
-    WindSection,
 )
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
