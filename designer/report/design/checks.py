@@ -39,7 +39,7 @@ def _table(checks: tuple[Check, ...]) -> Table:
         Row(
             (
                 one.title,
-                f"{one.formula}. {fmt.capital(one.source)}.",
+                f"{fmt.capital(one.formula)} ({one.source}).",
                 _value(one.demand, one.unit),
                 _value(one.capacity, one.unit),
                 "–" if math.isnan(one.utilisation) else fmt.utilisation(one.utilisation),
