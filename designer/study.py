@@ -25,6 +25,7 @@ from designer.model.space import Orientations, Space
 
 _LIKELY_DIAMETER_M = 0.01
 """Of the cable that stands in where none is given yet."""
+_FLAT = 1e-6
 HangsBelow = Literal["include", "exclude"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
@@ -297,6 +298,11 @@ class Study:
         for case in self.load_cases:
             if case.wind is not None and self.robot.platform.drag_area_m2 is None:
                 raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")
+            along = None if case.wind is None else case.wind.direction
+            if self.robot.is_planar and along is not None:
+                off = abs(float(along @ self.robot.level[1])) / float(np.linalg.norm(along))
+                if off > _FLAT:
+                    raise ValueError(f"the wind of '{case.name}' leaves the plane of the robot")
             lost = case.cable_lost
             if lost not in (None, EACH) and int(lost) > self.robot.n_cables:
                 raise ValueError(f"there is no cable {lost} to be lost in '{case.name}'")

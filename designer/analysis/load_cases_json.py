@@ -2,20 +2,62 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
+from designer.analysis.analyse import Analysis
+from designer.analysis.checks import Check, checks_of
+from designer.analysis.governing import GoverningPose, governing_pose
 from designer.documents.plain import finite
 from designer.model.space import turn_of
 from designer.selection.cases import CaseFound
-from designer.selection.result import Candidate
 from designer.statics.cable_loss import Fate
 
 Json = dict[str, Any]
 
 
-def load_cases_list(chosen: Candidate | None) -> list[Json]:
-    """Return each load case with what the chosen product meets in it; empty if none is chosen."""
-    return [] if chosen is None else [_case(one) for one in chosen.cases]
+def load_cases_dict(analysis: Analysis) -> Json:
+    """Return each load case, each check, and the governing pose; empty where none is chosen."""
+    study, chosen = analysis.study, analysis.selection.chosen if analysis.selection else None
+    if chosen is None or study.selection is None:
+        return {"load_cases": [], "checks": [], "governing": None}
+    least_N = study.robot.tension_min_N
+    checks = checks_of(chosen, study.selection, least_N, analysis.qualities)
+    pose = governing_pose(chosen, study.selection.safety_factor)
+    return {
+        "load_cases": [_case(one) for one in chosen.cases],
+        "checks": [_check(one) for one in checks],
+        "governing": None if pose is None else _governing(pose),
+    }
+
+
+def _check(one: Check) -> Json:
+    names = ("id", "load_case", "cable", "demand", "capacity", "unit", "utilisation", "holds")
+    values = {name: getattr(one, name) for name in (*names, "formula", "source")}
+    pose = None if one.place is None else one.place[:3]
+    plain: Json = finite(values | {"pose": pose})
+    return plain
+
+
+def _governing(pose: GoverningPose) -> Json:
+    found = pose.found
+    place = found.verification.worst_position_m
+    plain: Json = finite(
+        {
+            "load_case": found.case.name,
+            "cable": found.most_used(),
+            "lost_cable": found.loaded.lost_cable,
+            "pose": place[:3],
+            "rotation_vector": turn_of(place),
+            "at_m": pose.statics.poses.position_m[0],
+            "cables": [asdict(one) for one in pose.cables],
+            "loads": [{"name": name, "force_N": force} for name, force in pose.loads],
+            "force_sum_N": pose.left_N,
+            "closure_residual_m": pose.closure_residual_m,
+            "balance_residual": pose.balance_residual,
+        }
+    )
+    return plain
 
 
 def _case(found: CaseFound) -> Json:

@@ -10,7 +10,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis, PoseAnalysis
-from designer.analysis.load_cases_json import load_cases_list
+from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
@@ -49,7 +49,7 @@ def result_dict(analysis: Analysis) -> Json:
             }
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
-        "load_cases": load_cases_list(analysis.selection.chosen if analysis.selection else None),
+        **load_cases_dict(analysis),
         "verification": [
             {
                 "method": one.method,

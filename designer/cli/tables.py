@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.markup import escape
 
+from designer.cli.cases import case_rows, governing_words
 from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
-from designer.model.load_case import STATIC
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis, PoseAnalysis
     from designer.diagnosis.check import Check
     from designer.diagnosis.result import Diagnosis
-    from designer.selection.cases import CaseFound
     from designer.selection.groups.result import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
@@ -120,21 +119,11 @@ def _summary_of_selection(
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
     terms = f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
-    cases = [one for one in chosen.cases if one.case is not STATIC]
-    if cases:
-        terms = f"in the load case '{escape(chosen.governing.case.name)}'"
+    terms = governing_words(chosen) or terms
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
-    yield from map(_case, cases)
+    yield from case_rows(chosen)
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
-
-
-def _case(found: CaseFound) -> Row:
-    met, cable = found.verification, found.most_used()
-    at = ", ".join(f"{x:.4g}" for x in met.worst_position_m[:3])
-    more = f"; {escape(found.loaded.words)}" if found.loaded.words else ""
-    used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"
-    return f"  {escape(found.case.name)}", f"{used}, at ({at}) m{more}"
 
 
 def _clearance(found: Interference) -> str:

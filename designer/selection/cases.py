@@ -14,21 +14,21 @@ from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded, free_axes
 from designer.model.robot import Poses, Robot
 from designer.progress import Advance
 from designer.selection.verify import Sampled, Verification, refined, verify_sizes
 from designer.statics.cable_loss import CableLoss, lose_cable
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import loss_demand, rope_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
-FEW_SAMPLES, MOST_SAMPLES = 128, 512
+FEW_SAMPLES, MOST_SAMPLES = 64, 256
 """Poses in which a cable is lost, for each candidate and for the chosen one."""
-_NEAR = 0.9
+_NEAR = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _FIRST_TURN, _LAST_TURN, _MOST_ROUNDS = 0.5, 1e-6, 6
 _SAME = 1e-9
@@ -87,15 +87,27 @@ class CaseFound:
             return None
         return lose_cable(one.robot, self.pose, one.cable, one.lost_cable)
 
-    def most_used(self) -> int | None:
-        """Return the cable that is used most there, from 1; None where nothing holds the pose."""
-        loss = self.loss()
+    def statics(self) -> Statics | None:
+        """Return the equilibrium there (1,), at rest after a loss; None where there is none."""
         if not np.isfinite(self.utilisation):
             return None
+        loss = self.loss()
         if loss is not None:
-            return int(loss.tension_N[0].argmax()) + 1
-        statics = solve_sagging(self.loaded.robot, self.pose, self.loaded.cable)
-        return int(statics.cable_tension_N[0].argmax()) + 1 if statics.is_solved[0] else None
+            return loss.statics
+        return solve_sagging(self.loaded.robot, self.pose, self.loaded.cable)
+
+    @property
+    def cables(self) -> IntArray:
+        """Numbers of the cables that are left, from 1."""
+        every = np.arange(1, self.loaded.robot.n_cables + 1)
+        return np.asarray(every[every != self.loaded.lost_cable])
+
+    def most_used(self) -> int | None:
+        """Return the cable that is used most there, from 1; None where nothing holds the pose."""
+        statics = self.statics()
+        if statics is None or not statics.is_solved[0]:
+            return None
+        return int(self.cables[statics.cable_tension_N[0].argmax()])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

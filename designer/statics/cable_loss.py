@@ -17,7 +17,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.statics.forward import solve_forward
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 
 _NEAR = 0.01
 
@@ -60,12 +60,15 @@ class CableLoss:
         Where the platform is then (n_poses,); NaN where nowhere.
     moved_m : array (n_poses,)
         How far the origin of its frame has moved [m].
+    statics : Statics
+        Of the cables that are left, at rest, in the poses that were held with all cables.
     """
 
     fate: IntArray
     tension_N: FloatArray
     rest: Poses
     moved_m: FloatArray
+    statics: Statics
 
     @property
     def largest_tension_N(self) -> FloatArray:
@@ -101,4 +104,4 @@ def lose_cable(
     moved = np.linalg.norm(position - poses.position_m, axis=1)
     near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
     fate[at] = np.where(near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
-    return CableLoss(fate, tension, Poses(position, rotation), moved)
+    return CableLoss(fate, tension, Poses(position, rotation), moved, found.statics)

@@ -55,6 +55,8 @@ def chosen_for(study: Study, cases: tuple[LoadCase, ...]) -> SelectionResult:
     assert study.selection is not None
     grades = load_catalogue(()).grades
     named = [grade for grade in grades if grade.id in (study.selection.grades or ())]
+    if study.robot.is_redundant:  # which takes long: one size
+        named = [replace(g, sizes=tuple(s for s in g.sizes if s.id == "5 mm")) for g in named[:1]]
     return select(
         study.robot, study.workspace, study.selection, named,
         built=AsBuilt(study.robot), load_cases=cases,
@@ -102,7 +104,7 @@ def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
 
 @pytest.mark.parametrize("name", ["yard", pytest.param("cogiro", marks=pytest.mark.slow)])
 def test_governing_case_and_utilisation_agree_with_a_twin(name: str) -> None:
-    study = study_of(name, 600)
+    study = study_of(name, 200)
     chosen = chosen_for(study, five(name)).chosen
     assert chosen is not None
     assert [one.case.name for one in chosen.cases] == [case.name for case in five(name)]

@@ -184,3 +184,40 @@ def test_a_point_mass_swings_into_the_plane_of_two_cables(lost: int) -> None:
         loss.tension_N[0, others], tensions_N(pull, length[others], load.q), rtol=1e-7
     )
     assert loss.tension_N[0, lost - 1] == 0.0
+
+
+def test_wind_along_the_plane_of_a_planar_robot() -> None:
+    exits = np.array([[0.0, 0, 10], [6, 8, 10]])
+    robot = Robot(exits, Platform(100.0, drag_area_m2=0.5), is_planar=True)
+    case = LoadCase("gust", wind=Wind(15.0, 1.2), acceleration_m_per_s2=0.3)
+    each = list(case.on(robot, ROPE))
+    assert len(each) == 2 * 8
+    for one in each:
+        assert one.wind is not None
+        assert one.inertia is not None
+        assert abs(one.wind @ [0.8, -0.6, 0.0]) < 1e-12
+        assert abs(one.inertia @ [0.8, -0.6, 0.0]) < 1e-12
+        statics = solve_sagging(one.robot, Poses.at([3.0, 4.0, 3.0]), one.cable)
+        assert statics.is_solved
+        drag = 0.5 * 1.25 * 15.0**2 * 0.5 * one.wind
+        applied = drag + 100.0 * 0.3 * one.inertia + np.array([0, 0, -100.0 * G])
+        np.testing.assert_allclose(pulls_N(statics).sum(axis=0) + applied, 0.0, atol=1e-8)
+
+
+def test_a_frame_that_lies_on_its_side_makes_no_difference() -> None:
+    turn = Rotation.from_rotvec([1.2, 0.3, -0.5]).as_matrix()
+    along, place = np.array([0.6, -0.2, 0.1]), np.array([18.0, 11.0, 8.0])
+    straight = point_robot()
+    lying = replace(
+        straight,
+        exit_points_m=straight.exit_points_m @ turn.T,
+        gravity_direction=turn @ [0.0, 0.0, -1.0],
+    )
+    tensions = []
+    for robot, wind, where in ((straight, along, place), (lying, turn @ along, turn @ place)):
+        case = LoadCase("gust", wind=Wind(18.0, 1.2, direction=wind), ice=Ice(0.004))
+        (one,) = case.on(robot, ROPE)
+        statics = solve_sagging(one.robot, Poses.at(where), one.cable)
+        assert statics.is_solved
+        tensions.append(statics.cable_tension_N)
+    np.testing.assert_allclose(tensions[1], tensions[0], rtol=1e-9)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 from designer.arrays import frozen_array
 from designer.errors import Fault
+from designer.io.config.loads import WindSection
 from designer.io.config.parts import Parts
 from designer.io.config.schema import (
     BoxSection,
@@ -13,7 +14,6 @@ from designer.io.config.schema import (
     PointsSection,
     PrismSection,
     RectangleSection,
-    WindSection,
 )
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
@@ -79,8 +79,10 @@ def _case_fits(
     if isinstance(lost, int) and not isinstance(lost, bool) and lost > parts.n_cables:
         problem = f"there is no cable {lost}, the robot has {parts.n_cables}"
         yield parts.fault(_CASES, problem, f"1 to {parts.n_cables} or each", index, "cable_lost")
-    if lost is not None and parts.n_cables == 1:
-        yield parts.fault(_CASES, "no cable is left", "a robot with more", index, "cable_lost")
+    if lost is not None and parts.n_cables - 1 < (2 if parts.is_planar else 1):
+        yield parts.fault(
+            _CASES, "too few cables are left", "a robot with more", index, "cable_lost"
+        )
     region = case.get("region")
     if parts.is_planar and isinstance(region, dict) and ("prism" in region or "box" in region):
         problem = "is a solid region, but the robot is planar"

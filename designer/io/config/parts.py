@@ -17,7 +17,8 @@ from designer.documents.node import Data, Key
 from designer.effects.effect import Effect
 from designer.errors import Fault
 from designer.io.config.effects import Found, read_effects
-from designer.io.config.schema import MOST_CABLES, StudySection
+from designer.io.config.loads import MOST_CABLES
+from designer.io.config.schema import StudySection
 from designer.model.robot import vertical_frame
 
 

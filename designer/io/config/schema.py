@@ -36,6 +36,14 @@ from designer.documents.fields import (
 from designer.documents.formats import CONFIG_FORMAT
 from designer.documents.section import Section
 from designer.io.config.columns import Columns
+from designer.io.config.loads import (
+    MOST_CABLES,
+    DragSection,
+    IceSection,
+    LostCable,
+    WindSection,
+    plainly,
+)
 from designer.io.config.orientation import (
     EulerSection,
     OrientationRangeSection,
@@ -48,9 +56,7 @@ from designer.model.region import Sampling
 from designer.study import HangsBelow, Objective
 from designer.units import describe
 
-MOST_CABLES = 64
 _GRADES = "'all' or a list of grade ids"
-_LOST = "'each' or the number of a cable"
 _ENDS = "'anchors' or two corners [[x, y], [x, y]]"
 _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
@@ -81,11 +87,6 @@ Names = Annotated[tuple[Text, ...], _names]
 CableNumbers = Annotated[
     tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
     list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
-]
-LostCable = Annotated[
-    Annotated[Literal["each"], only_word("each", _LOST), Tag("a word")]
-    | Annotated[int, WholeNumber(1, MOST_CABLES), Tag("a number")],
-    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
 ]
 Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
@@ -121,13 +122,6 @@ class WrenchSection(Section):
 
     force: fields.Forces = (0.0, 0.0, 0.0)
     moment: fields.Moments = (0.0, 0.0, 0.0)
-
-
-class DragSection(Section):
-    """What the wind finds of the platform."""
-
-    area: fields.DragArea = Field(description="an area such as '1.2 m^2'")
-    coefficient: fields.DragCoefficient = Field(description="a drag coefficient such as 1.1")
 
 
 class PlatformSection(Section):
@@ -296,26 +290,6 @@ class SelectionSection(Section):
     max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
 
 
-class WindSection(Section):
-    """Wind of one speed, horizontal from so many directions or along one."""
-
-    speed: fields.Speed = Field(description="a speed such as '20 m/s'")
-    directions: Annotated[int, WholeNumber(1, 72)] | None = None
-    direction: fields.Direction | None = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _one_kind_of_direction(cls, given: object) -> object:
-        return only_one_of(given, ("directions", "direction"), "the wind")
-
-
-class IceSection(Section):
-    """Ice around the cables."""
-
-    thickness: fields.IceThickness = Field(description="a length such as '10 mm'")
-    density: fields.Density = 900.0
-
-
 class LoadCaseSection(Section):
     """One load case; what it leaves out is as in the rest of the study."""
 
@@ -333,18 +307,10 @@ class LoadCaseSection(Section):
 
     def __str__(self) -> str:
         """Return what it sets, in SI units."""
-        return ", ".join(f"{name} {_plainly(value)}" for name, value in self if self._sets(name))
+        return ", ".join(f"{name} {plainly(value)}" for name, value in self if self._sets(name))
 
     def _sets(self, name: str) -> bool:
         return name != "name" and name in self.model_fields_set
-
-
-def _plainly(value: object) -> str:
-    """Return a value of a load case for the table of inputs, sections in brackets."""
-    if not isinstance(value, Section):
-        return f"{value:g}" if isinstance(value, float) else str(value)
-    given = ((name, part) for name, part in value if name in value.model_fields_set)
-    return "{" + ", ".join(f"{name}: {_plainly(part)}" for name, part in given) + "}"
 
 
 class MeasuredCableSection(Section):

@@ -11,6 +11,11 @@ from designer.report import format as fmt
 from designer.report.blocks import Block, Box, Column, Fact, Facts, Subheading, Table
 from designer.selection.result import Candidate, GradeOutcome
 
+_OF_CASES = (
+    " The best diameter is for the static load of the study, the size is what holds in every load "
+    "case; its tension and utilisation are those of the case that governs."
+)
+
 
 def compared(analysis: Analysis, outcome: GradeOutcome) -> tuple[Block, ...]:
     """Return why the rope that is bought is not the cable that was configured.
@@ -28,7 +33,8 @@ def compared(analysis: Analysis, outcome: GradeOutcome) -> tuple[Block, ...]:
         Box.of("keep", heading, _table(analysis, outcome, best)),
         *_reasons(analysis, outcome.family, best),
         Subheading("snap", "What the step to a size costs"),
-        "Ropes come in sizes. This is what the step from the best diameter to the size costs.",
+        "Ropes come in sizes. This is what the step from the best diameter to the size costs."
+        + (_OF_CASES if analysis.study.load_cases else ""),
         _snap(outcome, best),
     )
 

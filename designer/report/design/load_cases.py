@@ -55,8 +55,19 @@ def section(source: Source) -> Section | None:
         "cables' own weight; an inertia force points where it is worst, as far as a search from "
         "14 directions finds it. Winches hold each pose, so a change of temperature changes "
         "lengths and no tension.",
+        _pulleys(source),
         "The configured family, the maps, the shares of the region that sizes serve, stiffness and "
         "clearance are those of the static load of the study.",
+    )
+
+
+def _pulleys(source: Source) -> str:
+    cases = source.analysis.study.load_cases
+    if source.analysis.built.robot.pulley_radius_m == 0.0 or not any(case.wind for case in cases):
+        return ""
+    return (
+        "In wind the pulleys are taken to swivel about the direction of the load on the cables "
+        "instead of the vertical, which moves a cable by a part of its pulley's radius."
     )
 
 

@@ -7,6 +7,7 @@ from designer.report.blocks import Report, Section
 from designer.report.control import control_of
 from designer.report.design import (
     assumptions,
+    checks,
     clearance,
     groups,
     inputs,
@@ -29,6 +30,7 @@ SECTIONS = (
     workspace.section,
     selection.section,
     load_cases.section,
+    checks.section,
     groups.section,
     stiffness.section,
     clearance.section,

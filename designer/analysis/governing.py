@@ -1,0 +1,189 @@
+"""The pose at which the chosen rope is used most, in figures that can be checked by hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.analysis.field import cable_curves_m
+from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
+from designer.model.robot import Poses
+from designer.selection.cases import CaseFound
+from designer.selection.result import Candidate
+from designer.statics.inverse import Statics
+from designer.statics.task import PulleyRun
+
+_NODE, _SHARE = np.polynomial.legendre.leggauss(32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CableThere:
+    """One cable in that pose.
+
+    Parameters
+    ----------
+    cable : int
+        Its number, from 1.
+    length_m : float
+        Unstrained, from the exit point [m].
+    exit_tension_N, platform_tension_N : float
+        At either end [N].
+    angle_rad : float
+        Of its pull on the platform above the horizontal [rad].
+    sag_m : float
+        Largest distance from its chord [m].
+    stretch_m : float
+        Strained less unstrained length, between pulley and platform [m].
+    safety_factor : float
+        What is left of the breaking load over the larger end tension.
+    frequency_Hz : float
+        Lowest one of a string of its mean end tension T, sqrt(T / m) / (2 l), with ice [Hz].
+    pull_N : array (3,)
+        On the platform, world frame [N].
+    """
+
+    cable: int
+    length_m: float
+    exit_tension_N: float
+    platform_tension_N: float
+    angle_rad: float
+    sag_m: float
+    stretch_m: float
+    safety_factor: float
+    frequency_Hz: float
+    pull_N: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GoverningPose:
+    """The pose, or the rest after the loss of a cable, and what acts there.
+
+    Parameters
+    ----------
+    found : CaseFound
+        The load case that governs.
+    statics : Statics
+        The equilibrium (1,).
+    cables : tuple of CableThere
+        Those that are left.
+    loads : tuple of (name, force)
+        What else acts on the platform, world frame (3,) [N].
+    """
+
+    found: CaseFound
+    statics: Statics
+    cables: tuple[CableThere, ...]
+    loads: tuple[tuple[str, FloatArray], ...]
+
+    @property
+    def left_N(self) -> FloatArray:
+        """What all forces on the platform add up to (3,) [N]."""
+        pulls = [one.pull_N for one in self.cables]
+        return np.asarray(np.sum([*pulls, *(force for _, force in self.loads)], axis=0))
+
+    @property
+    def closure_residual_m(self) -> float:
+        """Largest distance of a cable's end from its attachment [m]."""
+        return float(self.statics.closure_residual_m().max())
+
+    @property
+    def balance_residual(self) -> float:
+        """Largest part of what is left of the balance [N, N·m]."""
+        return float(np.abs(self.statics.equilibrium_residual_N()).max())
+
+
+def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | None:
+    """Return the governing pose of a choice; None where nothing holds it.
+
+    ``safety_factor`` is that of the study, for load cases without their own.
+    """
+    found = chosen.governing
+    statics = found.statics()
+    if statics is None or not statics.is_solved.all():
+        return None
+    pulls = _pulls_N(statics)
+    factor = found.case.safety_factor or safety_factor
+    strength_N = factor * found.loaded.cable.allowable_tension_N
+    tension = statics.cable_tension_N[0]
+    ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
+    mass = _mass_kg_per_m(found.loaded)
+    rows = zip(
+        found.cables.tolist(),
+        statics.length_m[0].tolist(),
+        *(end.tolist() for end in ends),
+        np.arcsin(pulls @ _up(found.loaded) / np.linalg.norm(pulls, axis=1)).tolist(),
+        _sags_m(statics).tolist(),
+        _stretches_m(statics).tolist(),
+        (strength_N / tension).tolist(),
+        (np.sqrt(np.mean(ends, axis=0) / mass) / (2.0 * statics.free_length_m[0])).tolist(),
+        pulls,
+        strict=True,
+    )
+    cables = tuple(CableThere(*row) for row in rows)
+    return GoverningPose(found, statics, cables, tuple(_loads(found.loaded)))
+
+
+def _up(one: Loaded) -> FloatArray:
+    return np.asarray(one.bare[0].level[2])
+
+
+def _mass_kg_per_m(one: Loaded) -> float:
+    cable, ice = one.bare[1], one.case.ice
+    around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
+    return cable.linear_density_kg_per_m + around
+
+
+def _pulls_N(statics: Statics) -> FloatArray:
+    """Return the pulls of the cables on the platform (n_cables, 3), world frame."""
+    plan = statics.force_x_N[0, :, None] * statics.geometry().outward[0]
+    on_cable = np.column_stack([plan, statics.force_z_N[0]])
+    return np.asarray(-on_cable @ statics.robot.upright)
+
+
+def _only(statics: Statics) -> Statics:
+    """Return the one pose (1,) without its leading axis."""
+    run, poses = statics.run, statics.poses
+    names = ("verdict", "weight_N_per_m", "axial_stiffness_N", "length_m", "force_x_N", "force_z_N")
+    return replace(
+        statics,
+        poses=Poses(poses.position_m[0], poses.rotation.reshape(-1, 3, 3)[0]),
+        run=PulleyRun(run.exit_points_m.reshape(-1, 3), run.wrap_m.reshape(-1)),
+        **{name: getattr(statics, name)[0] for name in names},
+    )
+
+
+def _sags_m(statics: Statics) -> FloatArray:
+    """Return the largest distance of each cable from its chord (n_cables,) [m]."""
+    curves = cable_curves_m(_only(statics))
+    chord = curves[:, -1] - curves[:, 0]
+    along = chord / np.linalg.norm(chord, axis=1, keepdims=True)
+    off = curves - curves[:, :1]
+    across = off - np.einsum("npj,nj->np", off, along)[..., None] * along[:, None]
+    return np.asarray(np.linalg.norm(across, axis=2).max(axis=1))
+
+
+def _stretches_m(statics: Statics) -> FloatArray:
+    """Return the integral of the strain over each free cable (n_cables,) [m]."""
+    length, x, z, stiffness, weight = (
+        np.broadcast_to(v[0], statics.length_m[0].shape)[:, None] for v in statics.catenaries
+    )
+    tension = np.hypot(x, z - weight * length * (1.0 + _NODE) / 2.0)
+    return np.asarray((tension * _SHARE / 2.0 * length / stiffness).sum(axis=1))
+
+
+def _loads(one: Loaded) -> list[tuple[str, FloatArray]]:
+    """Return what acts on the platform beside the cables, by its name."""
+    body, case = one.robot.platform, one.case
+    named = [("weight", -one.robot.weight_N * _up(one))]
+    wind = np.zeros(3)
+    if case.wind is not None and one.wind is not None:
+        wind = case.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * one.wind
+        named.append(("wind on the platform", wind))
+    if body.centre_force_N.any():
+        named.append(("inertia force", body.centre_force_N))
+    other = body.wrench_N[:3] - wind
+    if other.any():
+        named.append(("force of the study or load case", other))
+    return named

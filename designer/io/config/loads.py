@@ -1,0 +1,56 @@
+"""What load cases of a config are made of: drag, wind, ice, and a lost cable."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from designer.documents import fields
+from designer.documents.fields import WholeNumber, only_word
+from designer.documents.section import Section
+from designer.io.config.orientation import only_one_of
+
+MOST_CABLES = 64
+_LOST = "'each' or the number of a cable"
+
+LostCable = Annotated[
+    Annotated[Literal["each"], only_word("each", _LOST), Tag("a word")]
+    | Annotated[int, WholeNumber(1, MOST_CABLES), Tag("a number")],
+    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
+]
+
+
+class DragSection(Section):
+    """What the wind finds of the platform."""
+
+    area: fields.DragArea = Field(description="an area such as '1.2 m^2'")
+    coefficient: fields.DragCoefficient = Field(description="a drag coefficient such as 1.1")
+
+
+class WindSection(Section):
+    """Wind of one speed, horizontal from so many directions or along one."""
+
+    speed: fields.Speed = Field(description="a speed such as '20 m/s'")
+    directions: Annotated[int, WholeNumber(1, 72)] | None = None
+    direction: fields.Direction | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_kind_of_direction(cls, given: object) -> object:
+        return only_one_of(given, ("directions", "direction"), "the wind")
+
+
+class IceSection(Section):
+    """Ice around the cables."""
+
+    thickness: fields.IceThickness = Field(description="a length such as '10 mm'")
+    density: fields.Density = 900.0
+
+
+def plainly(value: object) -> str:
+    """Return a value of a load case for the table of inputs, sections in brackets."""
+    if not isinstance(value, Section):
+        return f"{value:g}" if isinstance(value, float) else str(value)
+    given = ((name, part) for name, part in value if name in value.model_fields_set)
+    return "{" + ", ".join(f"{name}: {plainly(part)}" for name, part in given) + "}"

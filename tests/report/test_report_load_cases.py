@@ -1,0 +1,131 @@
+"""Load cases, checks and the governing pose in report, result and terminal."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from report_parts import cells, said, statements, table
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.result_json import result_dict
+from designer.cli.tables import summary_rows
+from designer.documents.plain import json_text
+from designer.report.design import checks, load_cases
+from designer.report.design.first_page import first_page
+from designer.report.design.source import Source, source_of
+
+pytestmark = pytest.mark.slow
+
+YARD = """
+name: Yard
+robot:
+  anchors: [[0, 0, 11.5], [30, 0, 11.5], [15, 26, 11.5]]
+  platform: {mass: 180 kg, drag: {area: 0.5 m^2, coefficient: 1.1}}
+cable:
+  density: 5290 kg/m^3
+  youngs_modulus: 62.7 GPa
+  allowable_stress: 198 MPa
+  drag_coefficient: 1.2
+workspace: {region: {box: [[10, 20], [4, 12], [1, 7]]}, samples: 200}
+selection: {grades: [unirope-7x19-galvanised], sheave_diameter: 150 mm}
+"""
+CASES = """
+load_cases:
+  - name: static
+  - {name: "<b>hoisting</b>", dynamic_factor: 1.5}
+  - {name: storm, wind: {speed: 20 m/s, directions: 2}, ice: {thickness: 5 mm}, safety_factor: 3}
+  - {name: lost, cable_lost: 2, safety_factor: 3}
+"""
+
+
+@pytest.fixture(scope="module")
+def found(solve: Callable[[str], Analysis]) -> Analysis:
+    return solve(YARD + CASES)
+
+
+@pytest.fixture(scope="module")
+def bare(solve: Callable[[str], Analysis]) -> Analysis:
+    return solve(YARD)
+
+
+@pytest.fixture(scope="module")
+def source(found: Analysis) -> Source:
+    return source_of(found, draws=False)
+
+
+def test_result_has_each_case(found: Analysis) -> None:
+    result = json.loads(json_text(result_dict(found)))
+    cases = result["load_cases"]
+    assert [case["name"] for case in cases] == ["static", "<b>hoisting</b>", "storm", "lost"]
+    assert all(case["holds"] and case["refined"] for case in cases)
+    assert cases[1]["utilisation"] == pytest.approx(1.5 * cases[0]["utilisation"], rel=0.02)
+    assert cases[3]["lost_cable"] == 2
+    assert cases[3]["fate"] == "rests_elsewhere"
+    assert cases[3]["moved_m"] > 0.5
+    most = max(cases, key=lambda case: case["utilisation"])
+    assert result["governing"]["load_case"] == most["name"]
+    assert result["governing"]["cable"] == most["cable"]
+    assert result["selection"]["chosen"]["utilisation"] == most["utilisation"]
+
+
+def test_forces_of_the_governing_pose_add_up(found: Analysis) -> None:
+    governing = result_dict(found)["governing"]
+    pulls = np.sum([cable["pull_N"] for cable in governing["cables"]], axis=0)
+    np.testing.assert_allclose(pulls, [0.0, 0.0, 1.5 * 180.0 * 9.81], atol=1e-6)
+    np.testing.assert_allclose(governing["force_sum_N"], 0.0, atol=1e-6)
+    used = [max(c["exit_tension_N"], c["platform_tension_N"]) for c in governing["cables"]]
+    assert int(np.argmax(used)) + 1 == governing["cable"]
+    for cable in governing["cables"]:
+        pull = np.array(cable["pull_N"])
+        assert np.linalg.norm(pull) == pytest.approx(cable["platform_tension_N"], rel=1e-9)
+        assert np.sin(cable["angle_rad"]) == pytest.approx(pull[2] / np.linalg.norm(pull))
+        mean = 0.5 * (cable["exit_tension_N"] + cable["platform_tension_N"])
+        assert found.selection is not None
+        assert found.selection.chosen is not None
+        rope = found.selection.chosen.cable
+        strain = mean / rope.axial_stiffness_N
+        assert cable["stretch_m"] == pytest.approx(strain * cable["length_m"], rel=1e-4)
+        level = np.hypot(*pull[:2]) / np.linalg.norm(pull)
+        sag = rope.weight_N_per_m * level * cable["length_m"] ** 2 / (8.0 * mean)
+        assert cable["sag_m"] == pytest.approx(sag, rel=0.02)
+
+
+def test_the_tables(source: Source) -> None:
+    section = load_cases.section(source)
+    rows = cells(section, "Unirope-7x19-galvanised")
+    assert [row[0] for row in rows] == ["static", "<b>hoisting</b>", "storm", "lost"]
+    assert [row[-1] for row in rows] == ["holds", "holds, governs", "holds", "holds"]
+    assert "without cable 2" in rows[3][-2]
+    assert "comes to rest elsewhere" in said(section)
+    assert table(section, "The load cases").groups[0].rows[1].cells[1] == "Dynamic factor 1.5"
+
+
+def test_the_checks(source: Source) -> None:
+    section = checks.section(source)
+    rows = {row[0]: row for row in cells(section, "Checks")}
+    assert list(rows) == ["Breaking load", "Sheave", "Slack", "Stability"]
+    assert "<b>hoisting</b>" in rows["Breaking load"][-2]
+    assert "clearance (none is asked for)" in said(section)
+    total = cells(section, "The forces")[-1]
+    assert [cell.replace("\u00a0", " ") for cell in total] == ["Sum", "0.0 N", "0.0 N", "0.0 N"]
+
+
+def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
+    rows = dict(summary_rows(found))
+    assert {"  static", "  <b>hoisting</b>", "  storm", "  lost"} <= rows.keys()
+    assert "in the load case '<b>hoisting</b>'" in rows["  utilisation"]
+
+
+def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> None:
+    assert "No acceleration is in any of them" in statements(first_page(source))["Loads"].text
+    alone = source_of(bare, draws=False)
+    text = statements(first_page(alone))["Loads"].text
+    assert text == (
+        "One static load case, at rest: no dynamic factor, acceleration, wind, ice or loss of a "
+        "cable is in it."
+    )
+    assert load_cases.section(alone) is None
+    assert [case["name"] for case in result_dict(bare)["load_cases"]] == ["static"]
