@@ -23,7 +23,7 @@ def differences(driver: Driver) -> dict[str, list[str]]:
 
 def test_differences_follow_the_study(yard: Driver) -> None:
     yard.keys("Ctrl+D")
-    assert differences(yard) == {}
+    assert all(row[2].startswith("0 ") for row in differences(yard).values())
     yard.type_into("entry robot.platform.mass", "230 kg")
     yard.rest()
     found = differences(yard)
@@ -35,7 +35,7 @@ def test_differences_follow_the_study(yard: Driver) -> None:
     assert "do not hold any more" in yard.find(QLabel, "ropes gained and lost").text()
     yard.keys("Ctrl+Z")
     yard.rest()
-    assert differences(yard) == {}
+    assert "Platform with payload" not in differences(yard)
 
 
 def test_the_map_shows_the_difference_to_a(yard: Driver) -> None:
