@@ -125,6 +125,48 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "Different ropes",
         "How many different ropes the groups of cables may have between them.",
     ),
+    "load_cases.mass": (
+        "Mass in load case",
+        "Mass of the platform with its payload in this case, instead of the study's.",
+    ),
+    "load_cases.wrench.force": (
+        "Force in load case",
+        "Constant force on the platform in this case, along the axes of the world frame.",
+    ),
+    "load_cases.wrench.moment": (
+        "Moment in load case",
+        "Constant moment on the platform in this case, along the axes of the world frame.",
+    ),
+    "load_cases.dynamic_factor": (
+        "Dynamic factor in load case",
+        "On the weight and the wrench of the platform, not on the cables' own weight.",
+    ),
+    "load_cases.acceleration": (
+        "Acceleration in load case",
+        "Of the platform, in the direction in which its inertia force is worst.",
+    ),
+    "load_cases.wind.speed": (
+        "Wind in load case",
+        "Speed of the wind, horizontal; it acts on the platform and on the cables.",
+    ),
+    "load_cases.wind.directions": (
+        "Winds in load case",
+        "From how many directions, evenly spread, the wind may come.",
+    ),
+    "load_cases.ice.thickness": (
+        "Ice in load case",
+        "Thickness of the ice around the cables.",
+    ),
+    "load_cases.ice.density": ("Density of ice in load case", "Of the ice around the cables."),
+    "load_cases.safety_factor": (
+        "Safety factor in load case",
+        "Instead of that of the selection.",
+    ),
+    "load_cases.termination_efficiency": (
+        "End fittings keep in load case",
+        "Share of the breaking load, instead of that of the selection.",
+    ),
+    "load_cases.cable_lost": ("Cable lost in load case", "Number of the cable that breaks."),
     "measurements.settled": (
         "Settled",
         "Whether each row of the data is a pose at rest; else a sample of a slow motion.",
