@@ -169,7 +169,7 @@ def here(question: Question, *, settled: bool = False) -> Here:
         stiffness_N_per_m=stiffness,
         is_stable=is_stiff,
         stability=stability,
-        caution=_caution(statics),
+        caution=_caution(question, statics),
         outside=question.outside,
         closure_residual_m=float(statics.closure_residual_m().max()),
         equilibrium_residual_N=float(np.abs(statics.equilibrium_residual_N()).max()),
@@ -218,11 +218,12 @@ def _stability(
     return stays, words, stiffness
 
 
-def _caution(statics: Statics) -> str:
-    if not statics.is_solved or not statics.hangs_below:
-        return ""
-    numbers = [str(k + 1) for k in np.flatnonzero(statics.hanging_cables)]
-    which = f"Cable {numbers[0]} hangs"
-    if len(numbers) > 1:
-        which = f"Cables {', '.join(numbers)} hang"
-    return f"{which} below the platform."
+def _caution(question: Question, statics: Statics) -> str:
+    told = []
+    if question.study.load_cases:
+        told.append("At rest, without the load cases of the study.")
+    if statics.is_solved and statics.hangs_below:
+        numbers = [str(k + 1) for k in np.flatnonzero(statics.hanging_cables)]
+        hang = "s " + ", ".join(numbers) + " hang" if len(numbers) > 1 else f" {numbers[0]} hangs"
+        told.append(f"Cable{hang} below the platform.")
+    return " ".join(told)

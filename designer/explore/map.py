@@ -10,15 +10,17 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
-from designer.explore.question import Question
+from designer.explore.question import Question, Rope
 from designer.explore.shape import sag_m
 from designer.model.cable import Cable, Cables
+from designer.model.load_case import STATIC
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
+from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
 from designer.selection.products import Product, is_allowed, products_of, undominated
-from designer.selection.verify import Verification, refined, verify_sizes
+from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
@@ -278,26 +280,35 @@ def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer
         found = map_workspace(built.robot, workspace, material, progress=advance)
     if question.cable is None:
         return WorstAnswer(found, None, *_worst_of_family(found))
-    met = _met(question, workspace, question.cable)
-    return WorstAnswer(found, met, *_worst_of_rope(met))
+    if isinstance(question.rope, Rope):
+        met, case = _met_in_cases(question, workspace, question.rope)
+    else:
+        met, case = _met(question, workspace, question.cable), ""
+    return WorstAnswer(found, met, *_worst_of_rope(met, case))
+
+
+def _met_in_cases(question: Question, workspace: Workspace, rope: Rope) -> tuple[Verification, str]:
+    """Return what a rope meets in all load cases, and that which governs; as the report does."""
+    cases = Cases(question.robot, workspace, question.study.load_cases or (STATIC,))
+    cables = [[question.cable_in(case, rope)] for case in cases.each]
+    (found,) = cases.sampled(cables, lambda _: None)
+    found = searched_all(found)
+    case = governing(found).case
+    return together(found), "" if case is STATIC else f" in the load case '{case.name}'"
 
 
 def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Verification:
-    """Return what a rope, or ropes, meet over the whole workspace."""
+    """Return what the ropes of groups meet over the whole workspace."""
     robot = question.robot
-    if isinstance(cable, Cables):
-        one_each = [np.array([k]) for k in range(robot.n_cables)]
-        met = verify_groups(robot, workspace, cable, one_each)
-        worst = int(np.argmax(met.utilisation))
-        used = float(met.utilisation[worst])
-        tension = used * float(cable.allowable_tension_N[worst])
-        unknown = np.full(robot.n_cables, np.nan)
-        place = met.worst_place[worst]
-        return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
-    (sampled,) = verify_sizes(robot, workspace, [cable])
-    if sampled.not_held or not np.isfinite(sampled.utilisation):
-        return sampled.verification(cable)
-    return refined(robot, workspace, cable, sampled)
+    assert isinstance(cable, Cables)  # of one rope see above
+    one_each = [np.array([k]) for k in range(robot.n_cables)]
+    met = verify_groups(robot, workspace, cable, one_each)
+    worst = int(np.argmax(met.utilisation))
+    used = float(met.utilisation[worst])
+    tension = used * float(cable.allowable_tension_N[worst])
+    unknown = np.full(robot.n_cables, np.nan)
+    place = met.worst_place[worst]
+    return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
 
 
 def _worst_of_family(found: WorkspaceMap) -> tuple[FloatArray | None, str]:
@@ -310,12 +321,15 @@ def _worst_of_family(found: WorkspaceMap) -> tuple[FloatArray | None, str]:
     return pose.place, "No cable of the configured family holds the platform here, for example."
 
 
-def _worst_of_rope(met: Verification) -> tuple[FloatArray | None, str]:
+def _worst_of_rope(met: Verification, case: str) -> tuple[FloatArray | None, str]:
     place = met.worst_position_m
     if not np.isfinite(place).all():
         return None, "The rope serves no pose."
     place = np.pad(place, (0, 6 - len(place)))
     if np.isinf(met.utilisation):
-        return place, "No equilibrium was found here with this rope, for example."
+        return place, f"No equilibrium was found here with this rope{case}, for example."
     percent = f"{100.0 * met.utilisation:.4g} %"
-    return place, f"The pose in which the rope is used most, {percent} of its allowable tension."
+    return (
+        place,
+        f"The pose in which the rope is used most, {percent} of its allowable tension{case}.",
+    )

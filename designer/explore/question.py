@@ -13,6 +13,7 @@ from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.cable import Cable, Cables, Material
+from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
 from designer.plugins.find import Plugins
 from designer.selection.efficiency import Allowance
@@ -137,12 +138,21 @@ class Question:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
         return Cables(tuple(each[rope] for rope in self.rope.ropes))
 
-    def _cable_of(self, rope: Rope) -> Cable:
+    def cable_in(self, case: LoadCase, rope: Rope) -> Cable:
+        """Return a rope with what it may be used to in a load case."""
+        return self._cable_of(rope, case)
+
+    def _cable_of(self, rope: Rope, case: LoadCase = STATIC) -> Cable:
         grade = self.catalogue.grade(rope.grade_id)
         size = next((one for one in grade.sizes if one.id == rope.size_id), None)
         if size is None:
             raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
         allowance = Allowance.of(self.selection)
+        allowance = replace(
+            allowance,
+            safety_factor=case.safety_factor or allowance.safety_factor,
+            termination_efficiency=case.termination_efficiency or allowance.termination_efficiency,
+        )
         if not allowance.efficiency(grade, size.diameter_m) > 0.0:
             raise DesignerError(
                 f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "
