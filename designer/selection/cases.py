@@ -207,7 +207,8 @@ def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
     """Search between the samples in every case: its worst direction in full, those near it lightly.
 
     Of inertia forces, the direction is then turned and the pose searched again by turns until
-    neither gains: no pose and no direction near these is worse.
+    neither gains. What is found is the largest that these searches met, from the worst of the first
+    directions on; that there is none larger is not proved.
     """
     done: dict[int, CaseFound] = {}
     for most in worst_of_each(found):

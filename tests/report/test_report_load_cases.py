@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -111,6 +112,17 @@ def test_the_checks(source: Source) -> None:
     assert "clearance (none is asked for)" in said(section)
     total = cells(section, "The forces")[-1]
     assert [cell.replace("\u00a0", " ") for cell in total] == ["Sum", "0.0 N", "0.0 N", "0.0 N"]
+
+
+def test_a_check_that_fails_is_on_page_one(found: Analysis, source: Source) -> None:
+    assert not list(checks.failing_checks(found))
+    assert found.study.selection is not None
+    bent = replace(found.study.selection, sheave_diameter_m=0.05)
+    other = replace(found, study=replace(found.study, selection=bent))
+    (said_there,) = checks.failing_checks(other)
+    assert said_there.title == "Sheave does not hold"
+    page = first_page(replace(source, analysis=other))
+    assert statements(page)["Sheave does not hold"].tone == "bad"
 
 
 def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.checks import Check, checks_of
 from designer.analysis.governing import GoverningPose, governing_pose
 from designer.report import format as fmt
-from designer.report.blocks import Column, Fact, Facts, Row, Section, Table
+from designer.report.blocks import Column, Fact, Facts, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.study import Study
 
 
 def section(source: Source) -> Section | None:
     """Return every check of the chosen rope; None where none is chosen for all cables."""
-    analysis = source.analysis
-    study, found = analysis.study, analysis.selection
-    if found is None or found.chosen is None or study.selection is None or analysis.has_groups:
+    study, found = source.analysis.study, source.analysis.selection
+    checks = _checks(source.analysis)
+    if not checks or found is None or found.chosen is None or study.selection is None:
         return None
-    least_N = study.robot.tension_min_N
-    checks = checks_of(found.chosen, study.selection, least_N, analysis.qualities)
     pose = governing_pose(found.chosen, study.selection.safety_factor)
     return Section.of(
         "checks",
@@ -28,6 +28,26 @@ def section(source: Source) -> Section | None:
         _not_checked(study, checks),
         *(() if pose is None else (_facts(pose), _cables(pose), _forces(pose))),
     )
+
+
+def failing_checks(analysis: Analysis) -> Iterator[Statement]:
+    """Yield what page 1 must say of checks that do not hold."""
+    for one in _checks(analysis):
+        if not one.holds and one.id != "clearance":  # which page 1 has as a reason already
+            text = (
+                f"{fmt.capital(one.formula)}: {_value(one.demand, one.unit)} are asked for, "
+                f"{_value(one.capacity, one.unit)} are there."
+            )
+            yield Statement(f"{one.title} does not hold", text, "bad")
+
+
+def _checks(analysis: Analysis) -> tuple[Check, ...]:
+    """Return the checks; none where no rope is chosen for all cables."""
+    study, found = analysis.study, analysis.selection
+    if found is None or found.chosen is None or study.selection is None or analysis.has_groups:
+        return ()
+    least_N = study.robot.tension_min_N
+    return checks_of(found.chosen, study.selection, least_N, analysis.qualities)
 
 
 def _table(checks: tuple[Check, ...]) -> Table:

@@ -9,6 +9,7 @@ from designer.analysis.findings import Findings
 from designer.grades.grade import TRUST_MEANING, Grade
 from designer.report import format as fmt
 from designer.report.blocks import Statement
+from designer.report.design.checks import failing_checks
 from designer.report.design.load_cases import loads_statement
 from designer.report.design.scope import (
     orientation_statement,
@@ -34,6 +35,7 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     grades = {grade.id: grade for grade, _ in ropes}.values()
     if analysis.study.selection is not None:
         yield loads_statement(analysis.study)
+    yield from failing_checks(analysis)
     yield from pose_statement(analysis)
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
