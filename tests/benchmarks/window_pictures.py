@@ -49,7 +49,7 @@ def keep(picture: QPixmap, name: str) -> None:
 
     file = PICTURES / f"{name}.png"
     picture.save(str(file))
-    Image.open(file).convert("RGB").quantize(128).save(file, optimize=True)
+    Image.open(file).convert("RGB").quantize(256).save(file, optimize=True)
     print(f"{file.name}: {file.stat().st_size // 1000} kB")
 
 

@@ -101,7 +101,7 @@ class PanelCompare(QWidget):
 
 def _told(found: Differences) -> str:
     parts = []
-    for word, ropes in (("now hold", found.gained), ("do not hold any more", found.lost)):
+    for word, ropes in (("gained", found.gained), ("lost", found.lost)):
         if ropes:
             some = "; ".join(rope.label for rope in ropes[:3])
             more = f" and {len(ropes) - 3} more" if len(ropes) > 3 else ""

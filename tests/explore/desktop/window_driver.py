@@ -137,6 +137,7 @@ class Driver:
         entry = self.find(QLineEdit, name)
         self.click(entry)
         entry.selectAll()
+        QTest.keyClick(entry, Qt.Key.Key_Delete)
         QTest.keyClicks(entry, text)
         QTest.keyClick(entry, Qt.Key.Key_Return)
 
