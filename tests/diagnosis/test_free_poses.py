@@ -64,7 +64,11 @@ def faults_of(config: Path) -> str:
     return str(refused.value)
 
 
-@pytest.mark.parametrize("robot", [YARD3, FAST3, HALL8], ids=lambda robot: robot.name)
+@pytest.mark.parametrize(
+    "robot",
+    [YARD3, FAST3, pytest.param(HALL8, marks=pytest.mark.slow)],
+    ids=["yard3", "fast3", "hall8"],
+)
 def test_poses_are_where_they_were(robot, tmp_path) -> None:
     dataset = make(robot, rows=40, seed=3301)
     case = case_in(written(dataset, tmp_path))
@@ -84,13 +88,15 @@ def test_poses_are_where_they_were(robot, tmp_path) -> None:
     assert np.sum(left**2) / (40 * robot.cables) == pytest.approx(1.0, abs=0.25)
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_nothing_is(tmp_path) -> None:
     found = diagnosed(YARD3, {}, 3302, tmp_path)
     assert found.verdict.value == "nothing_to_find"
     assert found.foretold_after is None
 
 
-@pytest.mark.parametrize("seed", [3303, pytest.param(3304, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [3303, 3304])
 def test_an_effect_shows_in_what_is_to_spare(seed, tmp_path) -> None:
     truth = drawn(YARD3, "tension_gain", 10.0, seed)["tension_gain"]
     found = diagnosed(YARD3, {"tension_gain": truth}, seed, tmp_path)

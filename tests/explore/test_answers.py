@@ -94,6 +94,7 @@ def test_a_place_beside_the_pose_is_as_if_it_were_the_pose(yard: Session) -> Non
     assert here(question_of(yard)).diameter_m == found.diameter_m
 
 
+@pytest.mark.slow
 def test_the_map_has_the_values_of_the_report(edited: Question) -> None:
     analysis = analyse(edited.study, edited.catalogue)
     assert analysis.workspace is not None
@@ -107,6 +108,7 @@ def test_the_map_has_the_values_of_the_report(edited: Question) -> None:
     assert np.array_equal(found["governing"], tensions.argmax(axis=1) + 1)
 
 
+@pytest.mark.slow
 def test_worst_pose_and_ropes_are_those_of_the_report(edited: Question) -> None:
     analysis = analyse(edited.study, edited.catalogue)
     worst = worst_answer(edited)

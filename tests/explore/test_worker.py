@@ -277,6 +277,7 @@ def test_what_a_plugin_fails_at_is_told(asker: Any, site: Path, tmp_path: Path) 
     assert any("no licence" in line for line in end.answer.problems)
 
 
+@pytest.mark.slow
 def test_the_full_selection_in_a_process(asker: Any, yard: Session) -> None:
     yard.edit("workspace.samples", "300")
     end = asker.end_of(asker.ask("select", yard.question()))

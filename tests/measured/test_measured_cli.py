@@ -376,6 +376,7 @@ def refused(told: Outcome, lines: list[str]) -> None:
     assert {path.name for path in Path().iterdir()} == {"robot.yaml", "log.csv"}
 
 
+@pytest.mark.slow
 def test_what_is_left_out_is_said_in_page_and_json(
     good: Columns, diagnose: Callable[..., Outcome]
 ) -> None:

@@ -102,7 +102,8 @@ def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
     return tensions_N(pull, length[others], load.q)
 
 
-@pytest.mark.parametrize("name", ["yard", pytest.param("cogiro", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["yard", "cogiro"])
 def test_governing_case_and_utilisation_agree_with_a_twin(name: str) -> None:
     study = study_of(name, 200)
     chosen = chosen_for(study, five(name)).chosen
@@ -162,6 +163,7 @@ def test_inertia_points_where_it_is_worst() -> None:
         )
 
 
+@pytest.mark.slow
 def test_a_lost_cable_is_told() -> None:
     study = study_of("yard", 300)
     lost = LoadCase("second lost", cable_lost=2, safety_factor=2.0)

@@ -83,6 +83,7 @@ def test_refine_finds_a_peak_inside_and_a_kink_on_the_boundary() -> None:
     assert worst.place[2] == pytest.approx(4.0, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_refine_ends_where_the_demand_grows_for_ever_at_one_start() -> None:
     """One start climbs on and on while the other's cloud shrinks to nothing."""
     box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
