@@ -23,7 +23,7 @@ def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
             [*DESIGNER, *arguments],
             stdout=write_end,
             stderr=subprocess.PIPE,
-            timeout=60,
+            timeout=300,
             check=False,
         )
     finally:
@@ -54,7 +54,7 @@ def test_a_reader_who_goes_away_is_no_negative_answer(
 def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
-            [*DESIGNER, *command], stdout=full, stderr=subprocess.PIPE, timeout=60, check=False
+            [*DESIGNER, *command], stdout=full, stderr=subprocess.PIPE, timeout=300, check=False
         )
     assert done.returncode == 2
     assert done.stderr.startswith(b"standard output: cannot be written")
@@ -64,7 +64,7 @@ def test_an_output_that_is_full_is_told_in_one_line(command: tuple[str, ...]) ->
 @posix
 def test_no_output_at_all() -> None:
     closed = f"exec {' '.join([*DESIGNER, *LIST])} >&-"
-    done = subprocess.run(["sh", "-c", closed], capture_output=True, timeout=60, check=False)
+    done = subprocess.run(["sh", "-c", closed], capture_output=True, timeout=300, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -72,7 +72,7 @@ def test_letters_that_the_terminal_lacks_become_question_marks() -> None:
     done = subprocess.run(
         [*DESIGNER, *LIST],
         capture_output=True,
-        timeout=60,
+        timeout=300,
         check=False,
         env={**os.environ, "PYTHONIOENCODING": "ascii"},
     )
@@ -105,7 +105,7 @@ def test_a_request_to_end_leaves_nothing_behind(
         assert process.stdout is not None
         assert process.stdout.readline() == b"at work\n"
         process.send_signal(request_to_end)
-        status = process.wait(timeout=60)
+        status = process.wait(timeout=300)
     assert status != 0
     assert list(tmp_path.iterdir()) == []
 
@@ -143,7 +143,7 @@ def test_a_request_to_end_does_not_unwind_a_library_that_is_half_loaded(
         [sys.executable, "-c", LOADING, request_to_end.name],
         cwd=tmp_path,
         capture_output=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     assert (done.returncode, done.stdout) == (128 + request_to_end, b"")
@@ -166,7 +166,7 @@ def test_notes_that_nobody_reads_are_no_negative_answer(
     read_end, write_end = os.pipe()
     os.close(read_end)
     try:
-        done = subprocess.run([sys.executable, *command], stderr=write_end, timeout=60, check=False)
+        done = subprocess.run([sys.executable, *command], stderr=write_end, timeout=300, check=False)
     finally:
         os.close(write_end)
     assert done.returncode == 128 + signal.SIGPIPE
