@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 _NEAR_PX = 10.0
 
+_BELOW = 5e-3
+"""How far the floor lies below everything, over the size of the scene."""
+
 
 class Stage:
     """Robot, floor, map, cables and marks of one plotter."""
@@ -91,8 +94,9 @@ class Stage:
             everything.append(study.pose.position_m[None])
         around = np.concatenate(everything)
         self.bounds_m = np.array([around.min(axis=0), around.max(axis=0)])
-        floor = self.bounds_m[0, 2]
-        self.floor.put(_floor_m(self.bounds_m))
+        # A little below, so that its lines do not shine through the lowest face of the region.
+        floor = self.bounds_m[0, 2] - _BELOW * float(np.ptp(self.bounds_m, axis=0).max())
+        self.floor.put(_floor_m(self.bounds_m, floor))
         self.region.put(edges)
         self.base.put([base_outline_m(robot)])
         self.posts.put(np.stack([points, points * [1, 1, 0] + [0, 0, floor]], axis=1))
@@ -168,13 +172,13 @@ def _those(grids: Mapping[str, FloatArray], name: str) -> list[str]:
     return [name] if name in grids else []
 
 
-def _floor_m(bounds_m: FloatArray) -> list[FloatArray]:
+def _floor_m(bounds_m: FloatArray, floor_m: float) -> list[FloatArray]:
     """A grid of round numbers on the floor, and its rim."""
     low, high = bounds_m
     lines = []
     for axis, across in ((0, 1), (1, 0)):
         for at in [low[axis], *ticks_between(low[axis], high[axis]), high[axis]]:
-            line = np.full((2, 3), low[2])
+            line = np.full((2, 3), floor_m)
             line[:, axis] = at
             line[:, across] = low[across], high[across]
             lines.append(line)
