@@ -166,7 +166,9 @@ def test_notes_that_nobody_reads_are_no_negative_answer(
     read_end, write_end = os.pipe()
     os.close(read_end)
     try:
-        done = subprocess.run([sys.executable, *command], stderr=write_end, timeout=300, check=False)
+        done = subprocess.run(
+            [sys.executable, *command], stderr=write_end, timeout=300, check=False
+        )
     finally:
         os.close(write_end)
     assert done.returncode == 128 + signal.SIGPIPE
