@@ -27,6 +27,7 @@ def diagnosed(robot: TwinRobot, effect: str, seed: int, folder, unknown=()) -> D
     return diagnose(case_of(study, measurements, read_measured(study)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robot", "seed", "unknown"),
     [(FAST3, 5103, ()), (YARD3, 5201, ("length_offset",))],

@@ -110,6 +110,7 @@ def test_an_effect_shows_in_what_is_to_spare(seed, tmp_path) -> None:
     assert "Poses estimated" in {s.title for s in first_page(found).sureness}
 
 
+@pytest.mark.slow
 def test_what_poses_take_up_is_named_and_never_found(tmp_path) -> None:
     """Warm cables look like a lower platform, unless load cells are fine enough to tell."""
     coarse = replace(YARD3, noise_N=80.0)

@@ -156,6 +156,7 @@ def test_quick_ropes_hold_no_less_than_the_full_selection(edited: Question) -> N
     assert quick.best == full.best
 
 
+@pytest.mark.slow
 def test_what_falls_out_is_there_with_its_reason(yard: Session) -> None:
     yard.edit("selection.sheave_diameter", "5 mm")
     yard.edit("workspace.samples", "100")

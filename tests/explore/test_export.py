@@ -52,6 +52,7 @@ def test_tables(question: Question, tmp_path: Path) -> None:
     assert {"grade", "size_id", "utilisation", "reason", "x_m"} <= set(ropes[0])
 
 
+@pytest.mark.slow
 def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
     import pyvista as pv
 

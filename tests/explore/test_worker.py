@@ -294,6 +294,7 @@ def test_the_full_selection_in_a_process(asker: Any, yard: Session) -> None:
     assert isinstance(second, Done)
 
 
+@pytest.mark.slow
 def test_a_failure_in_a_process_is_told(asker: Any, yard: Session, tmp_path: Path) -> None:
     wrong = asker.ask("export", yard.question(), what="vtk", target=tmp_path / "map.txt")
     end = asker.end_of(wrong)

@@ -30,6 +30,7 @@ def diagnosed(config: Path, candidates: set[str]) -> Diagnosis:
     return diagnose(replace(case, candidates=tried))
 
 
+@pytest.mark.slow
 def test_a_swaying_platform_on_four_cables_names_the_clock(tmp_path: Path) -> None:
     candidates = {"clock_offset", "pulley_radius", "drum_scale", "base_tilt"}
     found = diagnosed(write_hanging(tmp_path), candidates)

@@ -146,6 +146,7 @@ def test_a_case_that_nothing_holds_is_named() -> None:
     assert "gale" in result.reason
 
 
+@pytest.mark.slow
 def test_inertia_points_where_it_is_worst() -> None:
     study = study_of("yard", 300)
     case = LoadCase("jerk", acceleration_m_per_s2=2.0)

@@ -21,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from impossible import compare, random_case
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_random_robots_against_another_solver(seed) -> None:
     rng = np.random.default_rng([1, seed])
