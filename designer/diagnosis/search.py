@@ -225,10 +225,10 @@ class Searcher:
     ) -> list[Effect]:
         """Return the effects that the data cannot reject in place of one that was found.
 
-        Each is fitted from the present model, and from where each round of the search left it. It
-        stays a rival if the fitted rows suit it about as well, with a penalty for its parameters or
-        without one; or if it predicted unseen rows at least half as well when ``effect`` was added,
-        and predicts them about as well in its place.
+        Each is fitted from the present model, and from where the first and the last round left
+        it. It stays a rival if the fitted rows suit it about as well, with a penalty for its
+        parameters or without one; or if it predicted unseen rows at least half as well when
+        ``effect`` was added, and predicts them about as well in its place.
         """
         rest = [e for e in found if e.key != effect.key]
         scale = present.variance * present.inflation[effect.key]
@@ -257,10 +257,10 @@ class Searcher:
     def _in_place(
         self, effects: Sequence[Effect], present: Fit, other: Effect, steps: Sequence[Step]
     ) -> Fit:
-        """Fit from the present model and from every trial of ``other``, and return the best."""
+        """Return the best fit from the present model, and the first and last trial of ``other``."""
         trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
         fits = [self.fit(effects, present, anew=True)]
-        fits += [self.fit(effects, near) for near in trials]
+        fits += [self.fit(effects, near) for near in dict.fromkeys([*trials[:1], *trials[-1:]])]
         return min(fits, key=lambda one: one.loss)
 
     def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
