@@ -33,10 +33,10 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     used = found.products if found is not None else [chosen] if chosen is not None else []
     ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
     grades = {grade.id: grade for grade, _ in ropes}.values()
-    if analysis.study.selection is not None:
-        yield loads_statement(analysis.study)
     yield from failing_checks(analysis)
     yield from pose_statement(analysis)
+    if analysis.study.selection is not None:
+        yield loads_statement(analysis.study)
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
         yield verification_statement(analysis.verification)
