@@ -38,6 +38,7 @@ def test_a_gain_is_clear_of_zero_by_twice_its_deviation() -> None:
     assert not Gain(-0.1, 0.01).is_clear
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robot", "seed"), [(YARD3, 1), (YARD3, 7), (FAST3, 930045), (HALL6, 910014)]
 )

@@ -22,6 +22,7 @@ def application() -> QApplication:
     app = QApplication.instance()
     if isinstance(app, QApplication):
         return app
+    sys.setswitchinterval(1e-3)  # the worker's thread shall hold the window up for less than that
     app = QApplication(sys.argv[:1])
     app.setApplicationName("cdpr-designer")
     app.setStyle("Fusion")

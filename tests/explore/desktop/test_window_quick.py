@@ -6,6 +6,7 @@ import gc
 import resource
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer
@@ -84,6 +85,17 @@ def test_the_window_never_waits_for_a_map(empty: Driver, tmp_path: Path) -> None
     scene, live = empty.scene, empty.window.live
     scene.setUpdatesEnabled(False)  # solving is looked at, not colouring and drawing
     live.answered.disconnect()
+    late = []
+    for _ in range(3):  # other programs can make a beat late, and nothing makes it early
+        late.append(_lateness(live))
+        if late[-1] < LATE_MS:
+            break
+    scene.setUpdatesEnabled(True)
+    assert min(late) < LATE_MS, late
+
+
+def _lateness(live: Any) -> float:
+    """Return by how much the latest beat is later while a map is solved than while all rests."""
     idle = Heartbeat()
     idle.start()
     end = time.monotonic() + 3.0
@@ -97,6 +109,5 @@ def test_the_window_never_waits_for_a_map(empty: Driver, tmp_path: Path) -> None
     while live.busy:
         QTest.qWait(5)
     busy_ms = busy.stop()
-    scene.setUpdatesEnabled(True)
     assert len(busy.late_ms) > 10
-    assert busy_ms - idle_ms < LATE_MS, (busy_ms, idle_ms)
+    return busy_ms - idle_ms
