@@ -137,3 +137,15 @@ def test_a_planar_robot_stays_in_its_plane(tmp_path) -> None:
     first, second = str(caught.value).splitlines()
     assert ":3: x_m: row 2 leaves the plane of the robot by 0.1 m" in first
     assert ":4: rx_rad: row 3 turns the platform out of its plane" in second
+
+
+def test_load_cases_are_said_to_be_left_out(tmp_path, designer) -> None:
+    cases = "load_cases: [{name: hoisting, dynamic_factor: 1.1}]\n"
+    text = STUDY + WORKSPACE.replace("samples: 300", "samples: 50") + cases
+    found = designer("lengths", str(study(tmp_path, text)), "--poses", str(poses(tmp_path)))
+    assert found.status == 0, found.err
+    assert "at rest, without the load cases" in found.out
+    assert (
+        "without the load cases"
+        not in designer("lengths", str(study(tmp_path)), "--poses", str(poses(tmp_path))).out
+    )

@@ -98,7 +98,7 @@ def _options(
 @app.command()
 def report(
     config: Config,
-    output: Annotated[Path | None, output_option("report")] = None,
+    output: Annotated[Path | None, output_option("CONFIG-report")] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Size, sweep the workspace, choose a rope, and write the report.
@@ -187,7 +187,7 @@ def size(
 @app.command()
 def diagnose(
     config: Config,
-    output: Annotated[Path | None, output_option("diagnosis")] = None,
+    output: Annotated[Path | None, output_option("CONFIG-diagnosis")] = None,
     checks: Annotated[
         bool, typer.Option("--check", help="Search nothing: how well do the declared effects fit?")
     ] = False,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, path_of
+from designer.cli.options import NoPlugins, output_option, path_of
 from designer.cli.studies import catalogue_of, study_of
 
 if TYPE_CHECKING:
@@ -18,16 +18,7 @@ if TYPE_CHECKING:
 def compare(
     a: Annotated[Path, typer.Argument(parser=path_of, metavar="A", help="A study or result.json.")],
     b: Annotated[Path, typer.Argument(parser=path_of, metavar="B", help="Another one.")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            parser=path_of,
-            metavar="DIR",
-            help="Folder to write, A-B-comparison if left out.",
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_option("A-B-comparison")] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Put two designs side by side: what differs in what was asked, and in the answer.

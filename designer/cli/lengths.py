@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NEGATIVE_ANSWER, Config, NoPlugins, path_of
+from designer.cli.options import NEGATIVE_ANSWER, Config, NoPlugins, output_option, path_of
 from designer.cli.studies import catalogue_of, study_of
 
 if TYPE_CHECKING:
@@ -30,16 +30,7 @@ def lengths(
             help="Poses: columns x_m, y_m, z_m, and rx_rad, ry_rad, rz_rad if the platform turns.",
         ),
     ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            parser=path_of,
-            metavar="FILE",
-            help="File to write, CONFIG-lengths.csv if left out.",
-        ),
-    ] = None,
+    output: Annotated[Path | None, output_option("CONFIG-lengths.csv", "FILE")] = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Give the unstrained lengths and tensions at poses of yours, with the chosen rope.
@@ -73,6 +64,8 @@ def lengths(
     write_file(path, found.to_csv(table.names, table.values))
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
     _print_lengths(found, path)
+    if study.load_cases:
+        show("These are of the platform at rest, without the load cases of the study.")
     if not found.holds.all():
         raise typer.Exit(NEGATIVE_ANSWER)
 

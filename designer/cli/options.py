@@ -20,14 +20,15 @@ def path_of(text: str) -> Path:
     return Path(text)
 
 
-def output_option(suffix: str) -> typer.models.OptionInfo:
-    """Return the option for the folder to write, which otherwise is called after the study."""
+def output_option(usual: str, metavar: str = "DIR") -> typer.models.OptionInfo:
+    """Return the option for the folder, or FILE, to write; ``usual`` is what else is written."""
+    what = "Folder" if metavar == "DIR" else "File"
     return typer.Option(  # type: ignore[no-any-return]  # typer types it for use as a default
         "-o",
         "--output",
         parser=path_of,
-        metavar="DIR",
-        help=f"Folder to write, CONFIG-{suffix} if left out.",
+        metavar=metavar,
+        help=f"{what} to write, {usual} if left out.",
     )
 
 
