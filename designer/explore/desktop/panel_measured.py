@@ -10,9 +10,11 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
+    QFrame,
     QHBoxLayout,
     QLabel,
     QPushButton,
+    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -57,6 +59,7 @@ class PanelMeasured(QWidget):
         self.plot = ScatterPlot()
         for box in (self.channel, self.over):
             box.currentIndexChanged.connect(self._draw)
+            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.without.toggled.connect(self._draw)
         self._diagnose = QPushButton("Diagnose")
         self._diagnose.setObjectName("diagnose")
@@ -74,7 +77,12 @@ class PanelMeasured(QWidget):
         self.told = QLabel()
         self.told.setObjectName("diagnosis")
         self.told.setWordWrap(True)
+        self.told.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.told.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._lay_out()
+        self.show_diagnosis(None)
+
+    def _lay_out(self) -> None:
         above = QHBoxLayout()
         above.addWidget(QLabel("Residual of"))
         above.addWidget(self.channel)
@@ -83,17 +91,22 @@ class PanelMeasured(QWidget):
         for widget in (self.without, self.in_scene):
             above.addWidget(widget)
         above.addStretch(1)
-        below = QHBoxLayout()
-        below.addWidget(self.told, 1)
+        told = QScrollArea()  # beside the plot: a long answer shall not squeeze it
+        told.setWidget(self.told)
+        told.setWidgetResizable(True)
+        told.setFrameShape(QFrame.Shape.NoFrame)
+        answer = QVBoxLayout()
+        answer.addWidget(told, 1)
         for button in (self._diagnose, self._take):
-            below.addWidget(button)
+            answer.addWidget(button)
+        beside = QHBoxLayout()
+        beside.addWidget(self.plot, 2)
+        beside.addLayout(answer, 1)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(8, 4, 8, 4)
         rows.setSpacing(4)
         rows.addLayout(above)
-        rows.addWidget(self.plot, 1)
-        rows.addLayout(below)
-        self.show_diagnosis(None)
+        rows.addLayout(beside, 1)
 
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
