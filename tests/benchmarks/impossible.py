@@ -132,6 +132,8 @@ def main() -> None:
             bad += outcome == "thicker" or outcome.startswith("wrongly")
             if line and not given.quiet:
                 print(f"{index}: {line}", flush=True)
+        if index % 20 == 19:
+            print(f"{index + 1} robots, {bad} bad, {time.perf_counter() - begun:.0f} s", flush=True)
     print(
         f"{sum(outcomes.values())} poses in {time.perf_counter() - begun:.0f} s, seed {given.seed}"
     )

@@ -1,6 +1,6 @@
 """Random regions of every shipped robot: does anything exceed the worst pose that is reported?
 
-    python tests/benchmarks/worst.py [--regions 500] [--samples 1000000] [--seed 0] [--only NAME]
+    python tests/benchmarks/worst.py [--regions 500] [--samples 1000000] [--seed 0] [--first 0] [--only NAME]
 
 Each region is mapped as the report does; then the same demands are asked at many more samples, at
 every vertex, and about the largest of these by a method of its own (Nelder-Mead). What exceeds the
@@ -229,13 +229,14 @@ def main() -> int:
     parser.add_argument("--regions", type=int, default=500)
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--first", type=int, default=0, help="number of the first region")
     parser.add_argument("--only")
     options = parser.parse_args()
     names = [options.only] if options.only else list(example_names())
     studies = [read_study(example_file(name)) for name in names]
     bad = done = 0
     start = time.perf_counter()
-    for number in range(options.regions):
+    for number in range(options.first, options.first + options.regions):
         study = studies[number % len(studies)]
         rng = np.random.default_rng([options.seed, number])
         workspace = random_workspace(study, rng)
