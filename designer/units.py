@@ -107,6 +107,14 @@ def read_quantity(given: object, dimension: Dimension) -> float:
         raise QuantityError(f"{describe(given)} {error.problem}", expected + hint) from None
 
 
+def split_quantity(given: object) -> tuple[float, str] | None:
+    """Return number and unit of a quantity as they are written; None for what is none."""
+    number = _NUMBER.match(str(given).strip())
+    if number is None or isinstance(given, bool):
+        return None
+    return float(number[0]), str(given).strip()[number.end() :].strip()
+
+
 def format_SI(value: float, dimension: Dimension) -> str:
     """Return ``value`` (in SI) as text with its SI unit, such as ``0.002 m`` or ``2e11 Pa``."""
     shown = f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0

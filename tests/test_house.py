@@ -11,7 +11,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "spelling", "units", "resources", "progress", "model",
     "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "selection", "diagnosis", "analysis", "io", "report",
-    "api", "explore", "cli", "__main__",
+    "api", "sweep", "explore", "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

@@ -235,8 +235,11 @@ def _needs_programmes(study: Study) -> bool:
     return has_groups or study.robot.is_redundant
 
 
-def analyse_pose(study: Study) -> PoseAnalysis | None:
-    """Size the configured pose in every way; None if the study has none."""
+def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis | None:
+    """Size the configured pose in every way; None if the study has none.
+
+    ``finds_rest`` is whether other places to rest are looked for, which takes most of the time.
+    """
     if study.pose is None:
         return None
     built = as_built_by(study)
@@ -244,7 +247,7 @@ def analyse_pose(study: Study) -> PoseAnalysis | None:
     robot, material = built.robot, built.material(study.material, section_m)
     sizing = size_poses(robot, study.pose, material)
     rest = None
-    if sizing.statics.is_solved:
+    if finds_rest and sizing.statics.is_solved:
         cable = material.cable(float(sizing.diameter_m))
         rest = resting_places(robot, study.pose, cable, sizing.statics.length_m)
     return PoseAnalysis(

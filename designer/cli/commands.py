@@ -27,6 +27,7 @@ from designer.cli.options import (
     path_of,
 )
 from designer.cli.studies import catalogue_of, study_of
+from designer.cli.sweep import sweep
 from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
 
@@ -61,6 +62,7 @@ app = typer.Typer(
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
+app.command()(sweep)
 
 
 def main() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 Data = dict[str, "Data"] | list["Data"] | str | int | float | bool | None
 """What a document holds, in plain Python."""
@@ -69,6 +69,27 @@ class Node:
             return self.content[key]
         return None
 
+    def with_value(self, keys: Sequence[Key], value: Node) -> Node:
+        """Return the same with another value at a path, in the line of what it replaces.
+
+        Fields that are missing on the way are made.
+
+        Raises
+        ------
+        KeyError
+            If the path leads through a text, or to an item that a list does not have.
+        """
+        if not keys:
+            return replace(value, line=self.line)
+        key, *rest = keys
+        if isinstance(self.content, dict) and isinstance(key, str):
+            child = self.content.get(key, Node(self.line, {}))
+            return replace(self, content={**self.content, key: child.with_value(rest, value)})
+        if isinstance(self.content, tuple) and isinstance(key, int) and key < len(self.content):
+            child = self.content[key].with_value(rest, value)
+            return replace(self, content=(*self.content[:key], child, *self.content[key + 1 :]))
+        raise KeyError(key)
+
     def walk(self, keys: tuple[Key, ...] = ()) -> Iterator[tuple[tuple[Key, ...], Node]]:
         """Yield this value and all below it, each with its path."""
         yield keys, self
@@ -84,6 +105,12 @@ def path_text(keys: Sequence[Key]) -> str:
     """Return a path as text, such as ``robot.anchors[2]``."""
     parts = (f"[{key}]" if isinstance(key, int) else f".{printable(key)}" for key in keys)
     return "".join(parts).removeprefix(".")
+
+
+def path_keys(text: str) -> tuple[Key, ...]:
+    """Return the path that a text names, such as ``robot.anchors[2]`` or ``robot.anchors.2``."""
+    parts = re.findall(r"[^.\[\]]+", text)
+    return tuple(int(part) if part.isdecimal() else part for part in parts)
 
 
 def printable(name: str) -> str:

@@ -1,0 +1,95 @@
+"""`designer sweep`: a study over values of its fields."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from designer.cli.options import NoPlugins, output_option, path_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def sweep(
+    plan: Annotated[
+        Path, typer.Argument(parser=path_of, metavar="SWEEP", help="What to vary, a YAML file.")
+    ],
+    output: Annotated[Path | None, output_option("SWEEP.zarr", "STORE")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Processes; all processors if left out.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="A running Dask cluster to solve on.")
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Solve a study for many values of its fields, and keep what you name of each.
+
+    \b
+        study: crane.yaml
+        vary:
+          robot.platform.mass: {from: 100 kg, to: 300 kg, count: 21}
+          selection.safety_factor: [4, 5, 6]
+        keep: [selection.chosen.utilisation, selection.chosen.total_mass_kg]
+
+    Writes a Zarr store for xarray.open_zarr, and beside it STORE-report with a report of
+    trade-offs. A sweep that was ended in any way goes on with the same command. Values that are no
+    valid study are kept with the reason.
+
+    Example:  designer sweep masses.yaml --workers 4
+
+    Exit status 0: all points are solved. 2: the input is wrong, or the store cannot be written.
+    """
+    from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
+    from designer.io.output import file_names, output_folder
+
+    announce_compiling()
+
+    from designer.report.sweep import write_sweep
+    from designer.sweep import run as running
+    from designer.sweep.read import read_sweep
+    from designer.sweep.store import opened, read_store
+
+    laid_out, base = read_sweep(plan, with_plugins=not no_plugins)
+    print_left_out(base.catalogue().problems)
+    path = output or Path(f"{plan.stem}.zarr")
+    count = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else "1")
+    make = running.cluster(cluster) if cluster else running.processes(count)
+    with opened(path, laid_out) as store, ProgressBars() as bars:
+        before = laid_out.n_points - sum(map(len, store.pending()))
+        if before:
+            print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
+        running.run(laid_out, base, store, make, count, bars)
+    found = read_store(path)
+    folder = path.with_name(f"{path.stem}-report")
+    with output_folder(folder) as building:
+        write_sweep(found, plan.stem, building)
+        written = file_names(building)
+    _print_summary(found)
+    show(f"{path}, {folder}: {', '.join(written)}", markup=False)
+
+
+def _print_summary(found: xr.Dataset) -> None:
+    """Print the range of each number that is kept, and why points have none."""
+    import numpy as np
+    from rich.markup import escape
+
+    from designer.cli.terminal import bare_table, show
+
+    table = bare_table(
+        "", "least", "median", "most", "points", title=f"{found.sizes['point']} points"
+    )
+    for name, kept in found.filter_by_attrs(role="kept").items():
+        values = kept.values[~np.isnan(kept.values)] if kept.dtype.kind == "f" else np.array([])
+        if len(values):
+            figures = (np.min(values), np.median(values), np.max(values))
+            table.add_row(escape(str(name)), *(f"{x:.5g}" for x in figures), str(len(values)))
+    if table.row_count:
+        show(table)
+    reasons, counts = np.unique([why for why in found.reason.values if why], return_counts=True)
+    for count, why in sorted(zip(counts, reasons, strict=True), reverse=True)[:10]:
+        show(f"{count} points: {why}", markup=False)

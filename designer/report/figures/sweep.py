@@ -1,0 +1,137 @@
+"""A sweep in pictures: each result over each field, two goals against each other, all at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.report.figures import canvas, palette
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MOST_LINES = 1500
+_FRONT: canvas.Style = {
+    **canvas.DOTS, "markersize": 3.6, "markeredgewidth": 0.6, "color": palette.SAG,
+    "markeredgecolor": palette.INK,
+}  # fmt: skip
+
+
+def _pale(n_points: int) -> canvas.Style:
+    """Return how all points look: few must not be lost, many not hide each other."""
+    size = 3.2 if n_points < 200 else 1.8
+    look: canvas.Style = {"markersize": size, "markeredgewidth": 0.0, "rasterized": n_points > 2000}
+    return {**canvas.DOTS, **look, "color": palette.SAG_PALE}
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One quantity over all points: numbers, NaN for none, or places among labels."""
+
+    title: str
+    values: FloatArray
+    labels: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, name: str, unit: str, values: np.ndarray) -> Axis:
+        """Return an axis of numbers, or of the texts in the order of the alphabet."""
+        title = f"{name} [{unit}]" if unit else name
+        if values.dtype.kind == "f":
+            return cls(title, values)
+        labels, places = np.unique(values.astype(str), return_inverse=True)
+        return cls(title, places.astype(float), tuple(map(str, labels)))
+
+    def tick(self, axes: Axes, which: str) -> None:
+        """Write the labels of texts at an axis, ``x`` or ``y``."""
+        if self.labels:
+            short = [label if len(label) < 18 else f"{label[:16]}…" for label in self.labels]
+            axes.set(**{f"{which}ticks": range(len(short)), f"{which}ticklabels": short})
+
+
+def influences(varied: Sequence[Axis], kept: Sequence[Axis], front: BoolArray) -> str:
+    """Return every kept number over every varied field, the front marked, as SVG."""
+    with canvas.drawing():
+        figure = canvas.sheet(14.0 + 30.0 * len(kept))
+        grid = figure.subplots(len(kept), len(varied), squeeze=False, sharex="col", sharey="row")
+        for row, result in zip(grid, kept, strict=True):
+            for axes, field in zip(row, varied, strict=True):
+                axes.plot(field.values, result.values, **_pale(len(front)))
+                axes.plot(field.values[front], result.values[front], **_FRONT)
+                field.tick(axes, "x")
+                canvas.grid_lines(axes, "both")
+            row[0].set_ylabel(_wrapped(result.title))
+        for axes, field in zip(grid[-1], varied, strict=True):
+            axes.set_xlabel(_wrapped(field.title))
+        return canvas.svg(figure, "influences", "Each result over each field that is varied")
+
+
+def trade_offs(goals: Sequence[tuple[Axis, Axis]], front: BoolArray) -> str:
+    """Return pairs of goals against each other, the front marked, as SVG."""
+    with canvas.drawing():
+        figure = canvas.sheet(70.0)
+        for axes, (x, y) in zip(
+            figure.subplots(1, len(goals), squeeze=False)[0], goals, strict=True
+        ):
+            axes.plot(x.values, y.values, **_pale(len(front)))
+            order = np.flatnonzero(front)[np.argsort(x.values[front])]
+            axes.plot(
+                x.values[order], y.values[order], **{**_FRONT, "linestyle": "-"}, linewidth=0.6
+            )
+            axes.set(xlabel=_wrapped(x.title), ylabel=_wrapped(y.title))
+            canvas.grid_lines(axes, "both")
+        return canvas.svg(figure, "trade-offs", "Goals against each other")
+
+
+def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
+    """Return a line a point over parallel axes, coloured by one of them, as SVG."""
+    import matplotlib as mpl
+    from matplotlib.collections import LineCollection
+
+    ranges = [(np.nanmin(one.values), np.nanmax(one.values)) for one in axes_of]
+    shares = np.column_stack(
+        [
+            (one.values - low) / (high - low) if high > low else np.full(len(one.values), 0.5)
+            for one, (low, high) in zip(axes_of, ranges, strict=True)
+        ]
+    )
+    whole = np.flatnonzero(np.isfinite(shares).all(axis=1))
+    shown = whole[:: -(-max(len(whole), 1) // _MOST_LINES)]
+    shown = np.concatenate([shown, np.flatnonzero(front)])
+    places = np.broadcast_to(np.arange(len(axes_of), dtype=float), (len(shown), len(axes_of)))
+    with canvas.drawing():
+        figure = canvas.sheet(85.0)
+        axes = figure.subplots()
+        lines: Any = LineCollection(
+            np.stack([places, shares[shown]], axis=2).tolist(),
+            array=colour.values[shown],
+            cmap=mpl.colormaps[palette.COLORMAP],
+            linewidths=np.where(front[shown], 1.4, 0.4),
+            alpha=0.8,
+            rasterized=True,
+        )
+        axes.add_collection(lines)
+        axes.set(xlim=(-0.15, len(axes_of) - 0.85), ylim=(-0.09, 1.06), yticks=[])
+        axes.set_xticks(range(len(axes_of)), [_wrapped(one.title) for one in axes_of])
+        axes.spines["left"].set_visible(False)
+        for place, (one, (low, high)) in enumerate(zip(axes_of, ranges, strict=True)):
+            axes.axvline(place, color=palette.INK, linewidth=0.6)
+            ends = (one.labels[0], one.labels[-1]) if one.labels else (f"{low:.4g}", f"{high:.4g}")
+            for text, at in zip(ends, (-0.05, 1.04), strict=True):
+                ground = canvas.paper(0.5, 0.8)
+                axes.text(place, at, text[:18], ha="center", va="center", bbox=ground)
+        figure.colorbar(lines, ax=axes, label=_wrapped(colour.title), pad=0.02)
+        return canvas.svg(figure, "parallel", "Every point as a line over all quantities")
+
+
+def _wrapped(title: str) -> str:
+    """Return a path on several lines, broken at its dots, so that neighbours stand apart."""
+    lines = [""]
+    for part in title.replace(".", ".\n").split("\n"):
+        if len(lines[-1]) + len(part) > 22 and lines[-1]:
+            lines.append("")
+        lines[-1] += part
+    return "\n".join(lines)

@@ -1,0 +1,146 @@
+"""One study of a sweep, from its values to what is kept of it; and many in a row, in a process."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from designer.analysis.analyse import analyse, analyse_pose
+from designer.analysis.result_json import Json, size_dict
+from designer.api import catalogue
+from designer.documents.document import Document
+from designer.documents.node import Key, Node
+from designer.effects.load import load_effects
+from designer.errors import DesignerError, InputError
+from designer.grades.registry import Catalogue
+from designer.io.config.reader import checked, study_of
+from designer.plugins.find import Plugins, find_plugins
+from designer.study import Study, require_enough_cables
+
+Change = tuple[tuple[Key, ...], Node]
+
+_OF_THE_CHOICE = ("stiffness", "interference", "hanging")
+"""Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """The study that a sweep starts from, and what is kept of those made of it."""
+
+    document: Document
+    keep: tuple[str, ...]
+    with_plugins: bool = True
+
+    def study(self, changes: Sequence[Change] = ()) -> Study:
+        """Return the study with some values put in.
+
+        Raises
+        ------
+        InputError
+            If it is none then.
+        """
+        root = self.document.root
+        for keys, node in changes:
+            root = root.with_value(keys, node)
+        plugins = _plugins(self.with_plugins)
+        known = load_effects(plugins)
+        document = replace(self.document, root=root)
+        path = Path(document.name)
+        return study_of(checked(document, known), document, path, known, plugins)
+
+    def catalogue(self) -> Catalogue:
+        """Return the grades that its studies choose from."""
+        return _catalogue(self.study().catalogues, self.with_plugins)
+
+    def result(self, study: Study) -> Json:
+        """Return as much of ``result.json`` as what is kept of it asks for."""
+        require_enough_cables(study)
+        parts = {name.split(".")[0] for name in self.keep}
+        if parts <= {"pose", "name"}:
+            finds_rest = any(name.startswith("pose.rest") for name in self.keep)
+            pose = analyse_pose(study, finds_rest=finds_rest)
+            if pose is None:
+                raise InputError([study.source.fault("pose", "is missing", "a pose to size")])
+            return size_dict(study, pose)
+        if "pose" not in parts:
+            study = replace(study, pose=None)
+        if parts <= {"pose", "workspace"} and not any(
+            name.split(".")[1:2] == [quality] for name in self.keep for quality in _OF_THE_CHOICE
+        ):
+            study = replace(study, selection=None, load_cases=())
+        return analyse(study, _catalogue(study.catalogues, self.with_plugins)).to_dict()
+
+
+@cache
+def _plugins(with_plugins: bool) -> Plugins:
+    return find_plugins(with_plugins)
+
+
+@cache
+def _catalogue(paths: tuple[Path, ...], with_plugins: bool) -> Catalogue:
+    return catalogue(paths, with_plugins=with_plugins)
+
+
+def value_at(result: Json, path: str) -> Any:
+    """Return what a result holds at a path such as ``selection.chosen.utilisation``.
+
+    None where a part on the way is None: there is no such result.
+
+    Raises
+    ------
+    KeyError
+        If results never have it; carries the names that there are in its place.
+    """
+    value: Any = result
+    for key in path.split("."):
+        if value is None:
+            return None
+        names = list(map(str, range(len(value)))) if isinstance(value, list) else value
+        if not isinstance(names, dict | list) or key not in names:
+            raise KeyError(key, list(names) if isinstance(names, dict | list) else [])
+        value = value[int(key)] if isinstance(value, list) else value[key]
+    return value
+
+
+def solve_points(base: Base, points: Sequence[Sequence[Change]]) -> list[tuple[list[Any], str]]:
+    """Return of each point what is kept, and why there is nothing of it where there is not.
+
+    A study that is none, or fails, is a result like others: one of many must not end the rest.
+    Runs on one thread: as many processes as processors are at work.
+    """
+    import numba
+    from threadpoolctl import threadpool_limits
+
+    numba.set_num_threads(1)
+    with threadpool_limits(1):
+        return [_solve(base, changes) for changes in points]
+
+
+def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
+    try:
+        result = base.result(base.study(changes))
+        return [value_at(result, name) for name in base.keep], why_negative(result)
+    except InputError as error:
+        fault = error.faults[0]
+        expected = f" (expected {fault.expected})" if fault.expected else ""
+        reason = f"{fault.field}: {fault.problem}{expected}"
+    except DesignerError as error:
+        reason = str(error).partition("\n")[0]
+    except KeyError as error:
+        reason = f"there is no {error.args[0]} in this result"
+    except Exception as error:  # whatever a plugin or a library may raise
+        reason = f"{type(error).__name__}: {error}"
+    return [None] * len(base.keep), reason
+
+
+def why_negative(result: Json) -> str:
+    """Return why a result is no answer, in a line; empty where it is one."""
+    pose, workspace = result.get("pose"), result.get("workspace")
+    if pose is not None and pose["sagging"]["status"] != "solved":
+        return f"the configured pose: {pose['sagging']['status']}"
+    if workspace is not None and workspace["sagging"] is None:
+        return "no cable holds in all of the workspace"
+    return "" if result.get("positive", True) else "no rope holds as asked"

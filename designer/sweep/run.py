@@ -1,0 +1,133 @@
+"""Solves what is pending of a sweep, here or on a cluster, and stores it as it comes."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from typing import Any
+
+from designer.errors import DesignerError, OutputError
+from designer.progress import SILENT, Reporter
+from designer.sweep.plan import Plan
+from designer.sweep.point import Base, solve_points
+from designer.sweep.store import Store
+
+_AHEAD = 2
+"""Tasks that wait at each worker, so that none is idle while a result is stored."""
+_MOST_DEATHS = 2
+"""A task that ends its process so often, alone in its pool, is to blame for it."""
+
+Solved = list[tuple[list[Any], str]]
+MakeExecutor = Callable[[], Executor]
+
+
+def processes(workers: int) -> MakeExecutor:
+    """Return what makes pools of processes here; spawned, so that none shares threads."""
+    return lambda: ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+
+
+def run(
+    plan: Plan,
+    base: Base,
+    store: Store,
+    make_executor: MakeExecutor,
+    workers: int,
+    reporter: Reporter = SILENT,
+) -> None:
+    """Solve and store every point that is not done.
+
+    A worker that is killed takes nothing along: what it was at is solved again.
+
+    Raises
+    ------
+    OutputError
+        If the store cannot be written, or the cluster is gone; what is stored stays.
+    """
+    waiting = deque(store.pending())
+    deaths: Counter[range] = Counter()
+    with reporter.task("sweep", sum(map(len, waiting))) as advance:
+        while waiting:
+            _run_until_death(plan, base, store, make_executor, workers, waiting, deaths, advance)
+
+
+def _run_until_death(
+    plan: Plan,
+    base: Base,
+    store: Store,
+    make_executor: MakeExecutor,
+    workers: int,
+    waiting: deque[range],
+    deaths: Counter[range],
+    advance: Callable[[int], None],
+) -> None:
+    """Work through what waits; ends early, with the rest waiting, where a worker dies."""
+    running: dict[Future[Solved], range] = {}
+    executor = make_executor()
+    try:
+        while waiting or running:
+            while waiting and len(running) < _at_once(workers, waiting, running, deaths):
+                changes = [plan.changes(point) for point in waiting[0]]
+                running[executor.submit(solve_points, base, changes)] = waiting[0]
+                waiting.popleft()
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                found = _result(future)
+                points = running.pop(future)
+                deaths.pop(points, None)
+                store.write(points, found)
+                advance(len(points))
+    except BrokenProcessPool:
+        for points in reversed(running.values()):
+            deaths[points] += 1
+            waiting.appendleft(points)
+        if len(running) == 1 and deaths[waiting[0]] > _MOST_DEATHS:
+            points = waiting.popleft()
+            del deaths[points]
+            nothing = [None] * len(plan.keep)
+            store.write(points, [(nothing, "its process ended without an answer")] * len(points))
+            advance(len(points))
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _at_once(
+    workers: int,
+    waiting: deque[range],
+    running: dict[Future[Solved], range],
+    deaths: Counter[range],
+) -> int:
+    """Return how many tasks may run: after a death one, so that it shows which one does that."""
+    suspects = any(deaths[points] for points in (waiting[0], *running.values()))
+    return 1 if suspects else _AHEAD * workers
+
+
+def _result(future: Future[Solved]) -> Solved:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        raise
+    except Exception as error:  # of a cluster: each kind of it tells this in its own way
+        line = f"the workers are gone ({type(error).__name__}: {error})"
+        raise OutputError(f"{line}; what is stored stays, and the same command goes on") from error
+
+
+def cluster(address: str) -> MakeExecutor:
+    """Return what hands out the executor of a running Dask cluster.
+
+    Raises
+    ------
+    DesignerError
+        If Dask is not installed, or nothing answers at the address.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        line = "--cluster needs Dask: pip install 'cdpr-designer[cluster]'"
+        raise DesignerError(line) from None
+    try:
+        client = Client(address, timeout=10)
+    except (OSError, ValueError, TypeError) as error:
+        raise DesignerError(f"--cluster {address}: nothing answers there ({error})") from None
+    return lambda: client.get_executor(pure=False)

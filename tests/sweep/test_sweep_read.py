@@ -1,0 +1,73 @@
+"""Sweep files with mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from sweep_cases import SWEEP, written
+
+from designer.errors import InputError
+from designer.sweep.read import read_sweep
+
+IN_ONE_UNIT = (
+    "(expected a list of values, or {from: 100 kg, to: 300 kg, count: 21}; both ends in one unit)"
+)
+
+
+def lines(path: Path) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        read_sweep(path, with_plugins=False)
+    return [str(fault).replace(f"{path}:", "") for fault in caught.value.faults]
+
+
+def test_a_plan_knows_its_points_and_kinds(tmp_path: Path) -> None:
+    plan, base = read_sweep(written(tmp_path), with_plugins=False)
+    assert plan.n_points == 9
+    assert plan.kinds == {"pose.optimum.diameter_m": float, "pose.sagging.status": str}
+    assert plan.goals == {"pose.optimum.diameter_m": 1}
+    study = base.study(plan.changes(8))
+    assert study.robot.platform.mass_kg == 200.0
+    assert study.pose is not None
+    assert study.pose.position_m.tolist() == [10.0, 6.0, 5.0]
+
+
+def test_the_digest_is_that_of_what_counts(tmp_path: Path) -> None:
+    digests = [
+        read_sweep(written(tmp_path, sweep), with_plugins=False)[0].digest
+        for sweep in (SWEEP, "# a remark\n" + SWEEP, SWEEP.replace("count: 3", "count: 4"))
+    ]
+    assert digests[0] == digests[1] != digests[2]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("mass: {", "masss: {", "3: vary.robot.platform.masss: unknown field 'masss'"),
+        ("pose[2]", "pose[3]", "4: vary.pose[3]: the study has no such field"),
+        ("200 kg", "0.2 t", f"mass: its ends are in 'kg' and 't' {IN_ONE_UNIT}"),
+        (", count: 3", "", f"mass: has no whole number 'count' {IN_ONE_UNIT}"),
+        ("count", "number", "3: vary.robot.platform.mass: unknown field 'number'"),
+        ("from: 100 kg", "from: few", "has no two numbers 'from' and 'to'"),
+        ("[4, 12, 5]", "4 m", "4: vary.pose[2]: '4 m' is no list"),
+        ("diameter_m,", "diametre_m,", "(expected one of diameter_m; did you mean 'diameter_m'?)"),
+        ("pose.optimum.diameter_m", "pose.optimum", "values (expected pose.optimum.diameter_m)"),
+        ("keep: [pose.optimum.diameter_m, pose.sagging.status]", "kept: []", "did you mean"),
+        ("keep:", "sampling: random\nkeep:", "points: is missing (expected how many, for random)"),
+        ("keep:", "points: 7\nkeep:", "points: a grid has no number of points of its own"),
+        ("keep:", "maximise: [x]\nkeep:", "is no number that is kept"),
+    ],
+)  # fmt: skip
+def test_a_mistake_gets_one_line(tmp_path: Path, old: str, new: str, line: str) -> None:
+    assert old in SWEEP
+    found = lines(written(tmp_path, SWEEP.replace(old, new)))
+    assert any(line in one for one in found), found
+
+
+def test_no_study_and_no_fields(tmp_path: Path) -> None:
+    path = written(tmp_path, "study: none.yaml\nvary: {}\nkeep: [name]\n")
+    assert lines(path) == [
+        "2: vary: the mapping is empty (expected at least one field of the study)"
+    ]
+    path = written(tmp_path, SWEEP.replace("crane.yaml", "none.yaml"))
+    assert "none.yaml: there is no such file" in lines(path)[0]

@@ -1,0 +1,239 @@
+"""Sweeps that are solved, ended, and gone on with."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sweep_cases import STUDY, SWEEP, written
+
+import designer
+from designer.errors import InputError, OutputError
+from designer.sweep import run as running
+from designer.sweep import store as stores
+from designer.sweep.plan import Plan
+from designer.sweep.point import Base
+from designer.sweep.read import read_sweep
+from designer.sweep.run import run
+from designer.sweep.store import Store, opened, read_store
+
+
+def in_threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1)
+
+
+def swept(path: Path, target: Path, make: running.MakeExecutor = in_threads) -> None:
+    plan, base = read_sweep(path, with_plugins=False)
+    with opened(target, plan) as store:
+        run(plan, base, store, make, 1)
+
+
+def same(a: Path, b: Path) -> bool:
+    return bool(read_store(a).identical(read_store(b)))
+
+
+def test_each_point_is_what_the_study_says(tmp_path: Path) -> None:
+    swept(written(tmp_path), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    assert found.done.all()
+    assert found["pose.sagging.status"].values.tolist()[0] == "solved"
+    assert found["robot.platform.mass"].units == "kg"
+    for point in (0, 2, 8):
+        height, mass = float(found["pose[2]"][point]), float(found["robot.platform.mass"][point])
+        text = STUDY.replace("[10, 6, 4]", f"[10, 6, {height!r}]").replace("100 kg", f"{mass!r} kg")
+        (tmp_path / "one.yaml").write_text(text)
+        alone = designer.size(designer.read_study(tmp_path / "one.yaml"))
+        assert float(found["pose.optimum.diameter_m"][point]) == float(alone.sizing.diameter_m)
+    above = found.isel(point=1)  # above its anchors no cable holds it
+    assert np.isnan(above["pose.optimum.diameter_m"])
+    assert above["reason"].item().startswith("the configured pose: ")
+
+
+def test_a_point_that_is_no_study_is_kept_with_its_reason(tmp_path: Path) -> None:
+    sweep = SWEEP.replace("from: 100 kg", "from: -100 kg")
+    swept(written(tmp_path, sweep), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    bad = found["robot.platform.mass"].values <= 0.0
+    assert bad.any()
+    assert found.done.all()
+    assert all(
+        why.startswith("robot.platform.mass: '-100.0 kg'") for why in found.reason.values[bad]
+    )
+
+
+class Dying(Executor):
+    """Ends as a pool does whose process is killed, at chosen submissions; else solves."""
+
+    submitted = 0
+    deadly: tuple[int, ...] = ()
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        Dying.submitted += 1
+        future: Future[Any] = Future()
+        if Dying.submitted in Dying.deadly:
+            future.set_exception(BrokenProcessPool())
+        else:
+            future.set_result(fn(*args, **kwargs))
+        return future
+
+
+@pytest.mark.parametrize("deadly", [(2,), (1, 3, 6)])
+def test_a_worker_that_dies_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, deadly: tuple[int, ...]
+) -> None:
+    path = written(tmp_path)
+    swept(path, tmp_path / "alone.zarr")
+    monkeypatch.setattr(Dying, "submitted", 0)
+    monkeypatch.setattr(Dying, "deadly", deadly)
+    swept(path, tmp_path / "out.zarr", Dying)
+    assert same(tmp_path / "alone.zarr", tmp_path / "out.zarr")
+
+
+def test_a_point_that_ends_its_process_each_time_does_not_end_the_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Deadly(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, base: Base, changes: Any) -> Future[Any]:  # type: ignore[override]
+            future: Future[Any] = Future()
+            if "150" in changes[0][0][1].as_written():
+                future.set_exception(BrokenProcessPool())
+                return future
+            return super().submit(fn, base, changes)
+
+    swept(written(tmp_path), tmp_path / "out.zarr", Deadly)
+    found = read_store(tmp_path / "out.zarr")
+    why = found.reason.values[found["robot.platform.mass"].values == 150.0]
+    assert why.tolist() == ["its process ended without an answer"] * 3
+    assert np.isfinite(found["pose.optimum.diameter_m"].values).sum() == 4
+
+
+def test_a_sweep_goes_on_after_what_is_stored(tmp_path: Path) -> None:
+    path, target = written(tmp_path), tmp_path / "out.zarr"
+    swept(path, tmp_path / "alone.zarr")
+    solved: list[int] = []
+
+    class Counting(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, base: Base, changes: Sequence[Any]) -> Future[Any]:  # type: ignore[override]
+            solved.append(len(changes))
+            if len(solved) == 5:
+                raise KeyboardInterrupt
+            return super().submit(fn, base, changes)
+
+    with pytest.raises(KeyboardInterrupt):
+        swept(path, target, Counting)
+    before = int(read_store(target).done.sum())
+    assert 0 < before < 9
+    solved.clear()
+    swept(path, target, Counting) if before >= 5 else swept(path, target)
+    assert same(tmp_path / "alone.zarr", target)
+
+
+def test_the_store_of_another_sweep_is_left_alone(tmp_path: Path) -> None:
+    target = tmp_path / "out.zarr"
+    swept(written(tmp_path), target)
+    before = read_store(target)
+    with pytest.raises(InputError, match=r"out\.zarr: is the store of another sweep"):
+        swept(written(tmp_path, SWEEP.replace("count: 3", "count: 2")), target)
+    assert read_store(target).identical(before)
+    (tmp_path / "folder.zarr").mkdir()
+    with pytest.raises(InputError, match="is no store of a sweep"):
+        swept(written(tmp_path), tmp_path / "folder.zarr")
+
+
+def test_two_runs_do_not_fill_one_store(tmp_path: Path) -> None:
+    path, target = written(tmp_path), tmp_path / "out.zarr"
+    plan, _ = read_sweep(path, with_plugins=False)
+    with opened(target, plan), pytest.raises(OutputError, match="another run fills this store"):
+        swept(path, target)
+
+
+def test_a_full_disk_is_told_and_what_is_stored_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, target = written(tmp_path), tmp_path / "out.zarr"
+    write, written_chunks = Store.write, []
+
+    def until_full(self: Store, points: range, found: Any) -> None:
+        if len(written_chunks) == 3:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        written_chunks.append(points)
+        write(self, points, found)
+
+    monkeypatch.setattr(Store, "write", until_full)
+    with pytest.raises(OutputError, match=r"out\.zarr: cannot be written \(No space left"):
+        swept(path, target)
+    monkeypatch.undo()
+    assert int(read_store(target).done.sum()) == 3
+    swept(path, target)
+    assert read_store(target).done.all()
+
+
+def test_a_store_that_cannot_be_laid_out_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    path = written(tmp_path)
+    monkeypatch.setattr("zarr.consolidate_metadata", full)
+    with pytest.raises(OutputError, match="No space left"):
+        swept(path, tmp_path / "out.zarr")
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["crane.yaml", "masses.yaml"]
+
+
+def test_a_cluster_that_goes_away_is_told(tmp_path: Path) -> None:
+    class Gone(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_exception(OSError("the scheduler is gone"))
+            return future
+
+    with pytest.raises(OutputError, match=r"the workers are gone .*the same command goes on"):
+        swept(written(tmp_path), tmp_path / "out.zarr", Gone)
+
+
+def test_a_large_sweep_has_few_chunks() -> None:
+    chunks = {n: max(1, min(stores._LARGEST_CHUNK, n // stores._CHUNKS)) for n in (9, 10**4, 10**5)}
+    assert chunks == {9: 1, 10**4: 5, 10**5: 50}
+
+
+@pytest.mark.slow
+def test_killed_ten_times_and_gone_on_is_bit_for_bit_the_same(tmp_path: Path) -> None:
+    path = written(tmp_path, SWEEP.replace("count: 3", "count: 60"))
+    swept(path, tmp_path / "alone.zarr")
+    program = [sys.executable, "-m", "designer", "sweep", str(path), "--no-plugins"]
+    target, rng = tmp_path / "killed.zarr", np.random.default_rng(5)
+    counts = []
+    for _ in range(10):
+        process = subprocess.Popen(
+            [*program, "-o", str(target), "--workers", "2"], start_new_session=True
+        )
+        deadline = time.monotonic() + 120.0
+        wanted = (counts[-1] if counts else 0) + int(rng.integers(1, 12))
+        while process.poll() is None and time.monotonic() < deadline:
+            if target.exists() and int(read_store(target).done.sum()) >= wanted:
+                break
+            time.sleep(0.05)
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        counts.append(int(read_store(target).done.sum()))
+    assert counts == sorted(counts)
+    subprocess.run([*program, "-o", str(target)], check=True, capture_output=True)
+    assert same(tmp_path / "alone.zarr", target)
+
+
+def test_plans_do_not_share_points(tmp_path: Path) -> None:
+    plan: Plan = read_sweep(written(tmp_path), with_plugins=False)[0]
+    assert len({str(plan.changes(point)) for point in range(plan.n_points)}) == plan.n_points
