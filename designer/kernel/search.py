@@ -2,9 +2,10 @@
 
 Cables that sag are no convex matter: a cable may hang as a counterweight or be pulled tight, and
 each way can be a branch of its own. What is tried: straight cables' pulls; those with one cable
-after the other hanging; all cables with half of their pull or hanging; and pulls drawn at random
-between hanging and the strength, the same in every run. An answer replaces what was there if it is
-better and its residuals say that it holds; the search proves nothing of what it does not find.
+after the other hanging; all cables with half of their pull or hanging; pulls drawn at random
+between hanging and the strength, the same in every run; and the best of these with one cable after
+the other hanging or pulled tight. An answer replaces what was there if it is better and its
+residuals say that it holds; the search proves nothing of what it does not find.
 
 What it does prove is that **no finite cable** holds a pose. For any wrench y whose product with
 the load is not negative, and cables as strong as they are,
@@ -22,7 +23,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.answer import LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
+from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
 from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
@@ -53,6 +54,8 @@ _RANDOM_STARTS = 6
 _RANDOM_SEED = 88172645463325252  # Marsaglia's own
 _HANGS = 0.5
 """Pull of a cable that is to hang, a sixth longer than its horizontal distance."""
+_HANGS_DEEP = 0.2
+"""Of one that is two and a half times as long."""
 _LIGHT = 0.1
 """Scaled inverse weight to start from where straight cables hold nothing."""
 _BETTER = 1e-7
@@ -94,11 +97,16 @@ def search_range(
             best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]
         state = np.uint64(_RANDOM_SEED)
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
-        for attempt in range(n + 3 + _RANDOM_STARTS):
-            if is_proved and best == -np.inf:  # nor does this section hold within its strength
-                out.verdict[at] = NO_FINITE_CABLE if sizing else out.verdict[at]
+        first = n + 3 + _RANDOM_STARTS
+        for attempt in range(first + 2 * n):
+            if best == -np.inf and (is_proved or attempt >= first):
+                # Nor does any section hold within its strength.
+                out.verdict[at] = NO_FINITE_CABLE if is_proved and sizing else out.verdict[at]
                 break
-            s, state = _begin(pose, ask, straight_c, attempt, state)
+            if attempt < first:
+                s, state = _begin(pose, ask, straight_c, attempt, state)
+            else:
+                s = _begin_beside(pose, ask, best, out, at, attempt - first)
             s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)
             is_optimal = gap <= OPTIMAL_WITHIN
             if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
@@ -145,6 +153,22 @@ def _begin(
         state, share = _random(state)
         s *= share if ask.c_s > 0.0 else 1.0 + share
     return s, state
+
+
+@kernel
+def _begin_beside(pose: Pose, ask: Ask, best: float, out: Answers, at: int, attempt: int) -> float:
+    """Set the pulls of the answer, but one cable hangs, or is pulled tight; return the guess of s.
+
+    Where many cables hang, each way in which they share the load has a small neighbourhood only,
+    which starts from straight cables miss.
+    """
+    c = pose.cables
+    s = (START_OF_STRAIGHT if best > 0.0 else 1.0 / START_OF_STRAIGHT) * best
+    for i in range(c.shape[1]):
+        c[P, i] = out.cables[at, i, FORCE_X] / (out.poses[at, WEIGHT] * np.sqrt(c[X2, i]))
+    i = attempt // 2
+    _slacken(pose, ask, s, i, _HANGS_DEEP if attempt % 2 == 0 else 0.5 * c[UNIT, i])
+    return s
 
 
 @kernel

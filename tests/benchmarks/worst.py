@@ -1,6 +1,7 @@
 """Random regions of every shipped robot: does anything exceed the worst pose that is reported?
 
-    python tests/benchmarks/worst.py [--regions 500] [--samples 1000000] [--seed 0] [--first 0] [--only NAME]
+    python tests/benchmarks/worst.py [--regions 500] [--samples 1000000] [--seed 0] [--first 0]
+                                      [--only NAME]
 
 Each region is mapped as the report does; then the same demands are asked at many more samples, at
 every vertex, and about the largest of these by a method of its own (Nelder-Mead). What exceeds the

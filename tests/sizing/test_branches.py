@@ -31,6 +31,17 @@ def test_random_robots_against_another_solver(seed) -> None:
     assert not [o for o in outcomes if o == "thicker" or o.startswith("wrongly")]
 
 
+@pytest.mark.parametrize(("robot", "pose"), [(12, 4), (244, 0)])
+def test_cables_that_hang_deep_share_the_load_as_well_as_they_can(robot, pose) -> None:
+    """Starts from straight cables all end in ways to hang that ask for 7 and 25 % more."""
+    rng = np.random.default_rng([20261123, robot])
+    case = random_case(rng)
+    position, turn = case.position[pose], case.turn[pose]
+    sizing = size_poses(case.robot, Poses.at(position, turn), case.material)
+    other = thinnest(case.robot, position, turn, case.material, rng)
+    assert float(sizing.diameter_m) < 1.001 * other.diameter_m
+
+
 def test_the_other_solver_finds_the_same_cable() -> None:
     poses = cogiro_poses(3, 11)
     sizing = size_poses(COGIRO, poses, steel(30.0))
