@@ -17,6 +17,7 @@ from typer.core import TyperGroup
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
+from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths
 from designer.cli.options import (
     NEGATIVE_ANSWER,
@@ -61,6 +62,7 @@ app = typer.Typer(
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
+app.command("import")(import_robot)
 
 
 def main() -> None:
