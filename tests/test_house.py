@@ -11,7 +11,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "spelling", "units", "resources", "progress", "model",
     "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "selection", "diagnosis", "analysis", "io", "foreign",
-    "report", "api", "explore", "cli", "__main__",
+    "reference", "report", "api", "explore", "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

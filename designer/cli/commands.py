@@ -28,6 +28,7 @@ from designer.cli.options import (
     path_of,
 )
 from designer.cli.studies import catalogue_of, study_of
+from designer.cli.verify import verify
 from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
 
@@ -63,6 +64,7 @@ app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
 app.command("import")(import_robot)
+app.command()(verify)
 
 
 def main() -> None:
