@@ -17,6 +17,7 @@ from typer.core import TyperGroup
 from designer import __version__
 from designer.cli.catalog import catalog
 from designer.cli.compare import compare
+from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths
 from designer.cli.options import (
     NEGATIVE_ANSWER,
@@ -28,6 +29,7 @@ from designer.cli.options import (
 )
 from designer.cli.studies import catalogue_of, study_of
 from designer.cli.sweep import sweep
+from designer.cli.verify import verify
 from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
 
@@ -63,6 +65,8 @@ app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
 app.command()(sweep)
+app.command("import")(import_robot)
+app.command()(verify)
 
 
 def main() -> None:

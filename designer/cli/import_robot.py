@@ -1,0 +1,163 @@
+"""`designer import`: a robot of another program as a study."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from designer.cli.options import NEGATIVE_ANSWER, NoPlugins, output_option, path_of
+from designer.errors import Fault, InputError
+from designer.units import LENGTH, MASS, NUMBER, Dimension, QuantityError, read_quantity
+
+if TYPE_CHECKING:
+    from designer.foreign.robot import ForeignRobot, Point
+    from designer.foreign.study import Gap
+    from designer.plugins.find import Plugins
+
+Vector = Any
+"""Three numbers in one text; typer would have a tuple as three arguments."""
+
+
+def _option(name: str, metavar: str, help_: str, parser: Callable[[str], Any]) -> Any:
+    return typer.Option(name, parser=parser, metavar=metavar, help=help_)
+
+
+def _number(option: str, dimension: Dimension) -> Callable[[str], float]:
+    def read(text: str) -> float:
+        try:
+            return read_quantity(text, dimension)
+        except QuantityError as error:
+            raise InputError([Fault(option, None, "", error.problem, error.expected)]) from None
+
+    return read
+
+
+def _vector(option: str, dimension: Dimension) -> Callable[[str], Point]:
+    def read(text: str) -> Point:
+        parts = [_number(option, dimension)(part) for part in text.strip("[] ").split(",")]
+        if len(parts) != 3:
+            raise InputError([Fault(option, None, "", f"{text!r} is no point", "three: X,Y,Z")])
+        x, y, z = parts
+        return x, y, z
+
+    return read
+
+
+def import_robot(
+    file: Annotated[
+        Path,
+        typer.Argument(parser=path_of, metavar="FILE", help="A CASPR model (.xml) or .wcrfx."),
+    ],
+    output: Annotated[Path | None, output_option("FILE's name with .yaml", "CONFIG")] = None,
+    other: Annotated[
+        Path | None,
+        typer.Option(
+            "--cables",
+            "--bodies",
+            parser=path_of,
+            metavar="XML",
+            help="The other file of a CASPR model, where it does not lie beside.",
+        ),
+    ] = None,
+    cable_set: Annotated[
+        str | None, _option("--cable-set", "ID", "Which cables of a CASPR model.", str)
+    ] = None,
+    mass: Annotated[
+        float | None,
+        _option("--mass", "MASS", "Of the platform, such as '90 kg'.", _number("--mass", MASS)),
+    ] = None,
+    payload: Annotated[
+        float, _option("--payload", "MASS", "Added to it.", _number("--payload", MASS))
+    ] = 0.0,
+    centre_of_mass: Annotated[
+        Vector,
+        _option(
+            "--centre-of-mass",
+            "X,Y,Z",
+            "Of the platform, in its own frame.",
+            _vector("--centre-of-mass", LENGTH),
+        ),
+    ] = None,
+    pose: Annotated[
+        Vector,
+        _option("--pose", "X,Y,Z", "Position to size for.", _vector("--pose", LENGTH)),
+    ] = None,
+    gravity: Annotated[
+        Vector,
+        _option("--gravity", "X,Y,Z", "Where things fall.", _vector("--gravity", NUMBER)),
+    ] = None,
+    grade: Annotated[
+        str | None, _option("--grade", "ID", "A rope of `designer catalog list`.", str)
+    ] = None,
+    safety_factor: Annotated[
+        float | None,
+        _option(
+            "--safety-factor",
+            "NUMBER",
+            "Breaking load over tension.",
+            _number("--safety-factor", NUMBER),
+        ),
+    ] = None,
+    no_plugins: NoPlugins = False,
+) -> None:
+    """Make a commented study of a robot in a file of CASPR or WireX.
+
+    CASPR keeps a model in two files, NAME_bodies.xml and NAME_cables.xml: name either. What neither
+    the file nor an option says is marked 'fill in', and told.
+
+    Example:  designer import CoGiRo_bodies.xml --grade unirope-7x19-galvanised
+
+    Exit status 0: the study is whole. 1: it is written, and something is to be filled in. 2: the
+    input is wrong or no study can hold such a robot, and nothing is written.
+    """
+    from designer.foreign.read import read_foreign
+    from designer.foreign.study import Answers, gaps, study_text
+    from designer.io.output import write_new_file
+    from designer.plugins.find import find_plugins
+
+    robot = read_foreign(file, other, cable_set)
+    answers = Answers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)
+    text = study_text(robot, answers)
+    missing = gaps(text)
+    stem = file.stem.removesuffix("_bodies").removesuffix("_cables")
+    path = output or Path(f"{stem}.yaml")
+    _require_valid(text, missing, robot, path, find_plugins(with_plugins=not no_plugins))
+    write_new_file(path, text)
+    _tell(path, robot, missing)
+    if missing:
+        raise typer.Exit(NEGATIVE_ANSWER)
+
+
+def _require_valid(
+    text: str, missing: tuple[Gap, ...], robot: ForeignRobot, path: Path, plugins: Plugins
+) -> None:
+    """Refuse a study that is faulty beside what is to be filled in, in the foreign file's name."""
+    from designer.documents.document import document_of
+    from designer.effects.registry import SHIPPED
+    from designer.io.config.reader import checked, study_of
+
+    document = document_of(text.encode(), robot.file)
+    marked = {gap.field for gap in missing}
+    try:
+        section = checked(document, SHIPPED)
+        study_of(section, document, path, SHIPPED, plugins)
+    except InputError as error:
+        faults = [replace(one, line=None) for one in error.faults if one.field not in marked]
+        if faults:
+            raise InputError(faults) from None
+
+
+def _tell(path: Path, robot: ForeignRobot, missing: tuple[Gap, ...]) -> None:
+    load = "a point mass" if robot.attachments_m is None else "a platform"
+    typer.echo(f"{path} written: {robot.name}, {len(robot.exit_points_m)} cables on {load}.")
+    if not missing:
+        typer.echo(f"Next:  designer size {shlex.quote(str(path))}")
+        return
+    typer.echo("The file does not tell everything. Fill in, or import with the option:")
+    for gap in missing:
+        typer.echo(f"  line {gap.line}: {gap.field} ({gap.option})")

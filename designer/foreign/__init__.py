@@ -1,0 +1,1 @@
+"""Robot files of other programs, read into what a study can hold of them."""

@@ -1,0 +1,253 @@
+"""Models of CASPR, the cable robot simulator for MATLAB: one file of bodies, one of cables.
+
+Read as CASPR's own loaders do (github.com/darwinlau/CASPR): gravity acts along −z; the first two
+or three coordinates of a joint that moves freely are its position, and the angles after them turn
+about the body's own x, y and z; attachments are counted from the joint or from the centre of mass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from designer.errors import Fault, InputError
+from designer.foreign.robot import ORIGIN, ForeignRobot, Point, held_at_one_point, moved
+from designer.foreign.xml import Element, read_xml
+
+BODIES, CABLES = "bodies", "cables"
+ROOTS = {"bodies_system": BODIES, "links": BODIES, "cables": CABLES}
+"""What a file holds, by its outermost element; older files of bodies have no outer one."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Joint:
+    """How a joint moves: which axes its first coordinates are, normal of its plane, if it turns."""
+
+    axes: tuple[int, ...]
+    normal: Point | None = None
+    turns: bool = True
+
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_JOINTS = {
+    "SPATIAL_EULER_XYZ": _Joint((0, 1, 2)),
+    "SPATIAL_QUATERNION": _Joint((0, 1, 2)),
+    "SPATIAL": _Joint((0, 1, 2)),
+    "T_XYZ": _Joint((0, 1, 2), turns=False),
+    "PLANAR_XY": _Joint((0, 1), _Z),
+    "PLANAR_XZ": _Joint((0, 2), _Y),
+    "PLANAR_YZ": _Joint((1, 2), _X),
+    "P_XY": _Joint((0, 1), _Z, turns=False),
+    "P_XZ": _Joint((0, 2), _Y, turns=False),
+    "P_YZ": _Joint((1, 2), _X, turns=False),
+}
+
+
+def read_caspr(
+    path: Path, root: Element, other: Path | None, cable_set: str | None
+) -> ForeignRobot:
+    """Return the robot of a CASPR model.
+
+    Parameters
+    ----------
+    path : Path
+        Its file of bodies or of cables.
+    root : Element
+        What is in it.
+    other : Path or None
+        The file of the other kind; None for the one beside it that CASPR's names lead to.
+    cable_set : str or None
+        Which of its sets of cables; None for the default of the file.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or faulty, or no study can hold such a robot.
+    """
+    kind = ROOTS[root.tag]
+    wanted = CABLES if kind == BODIES else BODIES
+    second = read_xml(other or _beside(path, kind, wanted))
+    if ROOTS.get(second.tag) != wanted:
+        second.refuse(f"the file holds <{second.tag}>", f"CASPR's {wanted} to {path.name}")
+    bodies, cables = (root, second) if kind == BODIES else (second, root)
+    return _robot(bodies, _chosen_set(cables, cable_set))
+
+
+def _beside(path: Path, kind: str, wanted: str) -> Path:
+    """Return where CASPR keeps the file of the other kind."""
+    before, found, after = path.name.rpartition(f"_{kind}")
+    other = path.with_name(f"{before}_{wanted}{after}")
+    if not found or not other.is_file():
+        option = f"--{wanted} FILE"
+        problem = f"holds the {kind} alone"
+        if found:
+            problem += f", and there is no {other.name} beside it"
+        raise InputError([Fault(str(path), None, "", problem, option)])
+    return other
+
+
+def _chosen_set(cables: Element, wanted: str | None) -> Element:
+    sets = {one.attributes.get("id", ""): one for one in cables.all("cable_set")}
+    name = wanted if wanted is not None else cables.attributes.get("default_cable_set")
+    if name is None and len(sets) == 1:
+        return next(iter(sets.values()))
+    names = ", ".join(sets)
+    if name is None:
+        cables.refuse("the file names no default cable set", f"--cable-set, one of: {names}")
+    if name not in sets:
+        cables.refuse(f"there is no cable set '{name}'", f"one of: {names}" if names else "")
+    return sets[name]
+
+
+def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
+    links_of = bodies if bodies.tag == "links" else bodies.need("links")
+    links = list(links_of.all("link_rigid"))
+    if len(links) != 1:
+        what = "no link" if not links else f"{len(links)} links that move against each other"
+        links_of.refuse(f"the robot has {what}", "one rigid platform: a study has no more")
+    link = links[0]
+    joint_element = link.need("joint")
+    type_ = joint_element.attribute("type")
+    if type_ not in _JOINTS:
+        expected = f"a platform that moves freely: {', '.join(_JOINTS)}"
+        joint_element.refuse(f"the platform hangs in a joint of type {type_}", expected)
+    joint, base = _JOINTS[type_], _point(link.need("parent", "location"))
+    centre = _point(link.need("physical", "com_location"))
+    ends = [_ends(cable, centre) for cable in _cables(cable_set)]
+    exit_points, attachments = (tuple(points) for points in zip(*ends, strict=True))
+    position, euler = _initial(joint_element, joint, base)
+    limits = _limits(joint_element, joint, base)
+    if not joint.turns:
+        held = held_at_one_point(cable_set, attachments)
+        position = None if position is None else moved(position, held)
+        limits = None if limits is None else _shifted(limits, held)
+    radius, remarks = _pulleys(cable_set)
+    tension_min, told = _forces(cable_set)
+    return ForeignRobot(
+        file=bodies.file,
+        name=link.attributes.get("name", Path(bodies.file).stem.removesuffix("_bodies")),
+        source=f"CASPR model: {Path(bodies.file).name} and {Path(cable_set.file).name}, "
+        f"cable set '{cable_set.attributes.get('id', '')}'",
+        exit_points_m=exit_points,
+        attachments_m=attachments if joint.turns else None,
+        mass_kg=link.need("physical", "mass").numbers(1)[0],
+        centre_of_mass_m=centre,
+        plane_normal=joint.normal,
+        position_m=position,
+        euler_xyz_rad=euler,
+        limits_m=limits,
+        tension_min_N=tension_min,
+        pulley_radius_m=radius,
+        remarks={**remarks, **told},
+    )
+
+
+def _cables(cable_set: Element) -> list[Element]:
+    cables = [one for one in cable_set.children if one.tag.startswith("cable_")]
+    if not cables:
+        cable_set.refuse("the cable set has no cables", "<cable_ideal> and the like")
+    return cables
+
+
+def _point(element: Element) -> Point:
+    x, y, z = element.numbers(3)
+    return x, y, z
+
+
+def _ends(cable: Element, centre: Point) -> tuple[Point, Point]:
+    """Return the exit point and the attachment of a cable, whichever the file names first."""
+    name = f"cable '{cable.attributes.get('name', '?')}'"
+    reference = cable.attributes.get("attachment_reference", "joint")
+    exits, attachments = [], []
+    for one in cable.need("attachments").children:
+        if one.tag == "base_rotating_pulley":
+            exits.append(_point(one.need("fixed_location")))
+            continue
+        link, place = one.need("link").numbers(1)[0], _point(one.need("location"))
+        if link not in (0, 1):
+            one.refuse(f"{name} is held by link {link:g}", "0, the base, or 1, the platform")
+        at = one.attributes.get("attachment_reference", reference)
+        if link == 0:
+            exits.append(place)
+        else:
+            attachments.append(moved(place, centre) if at == "com" else place)
+    if len(exits) != 1 or len(attachments) != 1:
+        counted = f"{len(exits)} points of the base and {len(attachments)} of the platform"
+        cable.refuse(f"{name} runs over {counted}", "one of each")
+    return exits[0], attachments[0]
+
+
+def _initial(element: Element, joint: _Joint, base: Point) -> tuple[Point | None, Point | None]:
+    """Return position and angles at first; None where the file gives none that a study knows."""
+    given = element.attributes.get("q_initial", "").split()
+    if len(given) < len(joint.axes):
+        return None, ORIGIN
+    values = element.numbers(len(given), "q_initial")
+    position = moved(base, _along(joint.axes, values))
+    angles = values[len(joint.axes) :] if joint.turns else ()
+    if element.attributes["type"] == "SPATIAL_EULER_XYZ" and len(angles) == 3:
+        return position, (angles[0], angles[1], angles[2])
+    return position, None if any(angles) else ORIGIN
+
+
+def _along(axes: tuple[int, ...], values: tuple[float, ...]) -> Point:
+    point = [0.0, 0.0, 0.0]
+    for axis, value in zip(axes, values, strict=False):
+        point[axis] = value
+    return point[0], point[1], point[2]
+
+
+def _limits(element: Element, joint: _Joint, base: Point) -> tuple[tuple[float, float], ...] | None:
+    if "q_min" not in element.attributes or "q_max" not in element.attributes:
+        return None
+    ends = []
+    for name in ("q_min", "q_max"):
+        count = len(element.attributes[name].split())
+        ends.append(moved(base, _along(joint.axes, element.numbers(count, name))))
+    box = tuple(zip(*ends, strict=True))
+    return box if all(low <= high for low, high in box) else None
+
+
+def _shifted(box: tuple[tuple[float, float], ...], by: Point) -> tuple[tuple[float, float], ...]:
+    return tuple((low + d, high + d) for (low, high), d in zip(box, by, strict=True))
+
+
+def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...]]]:
+    """Return the radius of the pulleys of all cables, if a study can have them."""
+    cables = _cables(cable_set)
+    pulleys = [
+        one for cable in cables for one in cable.need("attachments").all("base_rotating_pulley")
+    ]
+    if not pulleys:
+        return None, {}
+    radii = {one.need("pulley_radius").numbers(1)[0] for one in pulleys}
+    upward = all(math.isclose(_point(one.need("cable_entry_vector"))[2], 1.0) for one in pulleys)
+    if len(pulleys) == len(cables) and len(radii) == 1 and upward:
+        return radii.pop(), {}
+    return None, {
+        "effects": (
+            "The file has pulleys that differ, or that cables do not reach from "
+            "below: exit points are taken as fixed.",
+        )
+    }
+
+
+def _forces(cable_set: Element) -> tuple[float, dict[str, tuple[str, ...]]]:
+    """Return the least tension, the largest of those that the file has, and what to know."""
+    found: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
+    for cable in _cables(cable_set):
+        for name, values in found.items():
+            element = cable.find("properties", name)
+            if element is not None:
+                values.update(element.numbers(1))
+    least, most = found["force_min"], found["force_max"]
+    remarks: dict[str, tuple[str, ...]] = {}
+    if len(least) > 1:
+        remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
+    if most:
+        shown = " and ".join(f"{one:g}" for one in sorted(most))
+        remarks["cable"] = (
+            f"The file lets cables pull with {shown} N at most, which no field of a study takes.",
+        )
+    return max((0.0, *least)), remarks

@@ -1,0 +1,241 @@
+"""A foreign robot as a commented study; what its file does not say is marked for the user."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.errors import Fault, InputError
+from designer.foreign.robot import ForeignRobot, Point
+from designer.units import DENSITY, FORCE, MASS, STRESS, format_SI
+
+FILL_IN = "fill in"
+_DOWN = (0.0, 0.0, -1.0)
+_FIGURES = "density, youngs_modulus and allowable_stress"
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """What the user says beside the file, in SI units; None where nothing."""
+
+    mass_kg: float | None = None
+    payload_kg: float = 0.0
+    centre_of_mass_m: Point | None = None
+    position_m: Point | None = None
+    gravity: Point | None = None
+    grade: str | None = None
+    safety_factor: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A field that is to be filled in: its path, its line, and the option that gives it."""
+
+    field: str
+    line: int
+    option: str
+
+
+_OPTIONS = {
+    "robot.platform.mass": "--mass",
+    "robot.platform.centre_of_mass": "--centre-of-mass",
+    "cable": "--grade",
+    "cable.youngs_modulus": "--grade",
+    "cable.allowable_stress": "--safety-factor",
+    "pose": "--pose",
+}
+
+
+def study_text(robot: ForeignRobot, answers: Answers) -> str:
+    """Return the study of a foreign robot as YAML with comments.
+
+    Raises
+    ------
+    InputError
+        If the platform moves in a plane that is not upright.
+    """
+    _require_upright(robot, answers.gravity or _DOWN)
+    if answers.position_m is not None:
+        robot = replace(robot, position_m=answers.position_m, euler_xyz_rad=(0.0, 0.0, 0.0))
+    lines = [
+        f"# {robot.name}",
+        f"# Imported from a {robot.source}.",
+        f"# Where it says '{FILL_IN}', the file does not tell; the study is refused until all is",
+        "# filled in. The fields are explained in the example that `designer init` writes.",
+        "",
+        f"name: {json.dumps(robot.name, ensure_ascii=False)}",
+        "",
+        *_robot(robot, answers),
+        "",
+        *_remarks(robot, "cable"),
+        *_cable(robot, answers),
+        "",
+        *_pose(robot),
+        "",
+        *_workspace(robot, answers),
+        *_effects(robot),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def gaps(text: str) -> tuple[Gap, ...]:
+    """Return the fields of a study's text that are to be filled in."""
+    found, path = [], list[tuple[int, str]]()
+    for number, line in enumerate(text.splitlines(), 1):
+        plain = line.split("#", 1)[0].rstrip()
+        name, colon, value = plain.strip().partition(":")
+        if not colon or name.startswith("-"):
+            continue
+        depth = len(plain) - len(plain.lstrip())
+        path = [*((d, n) for d, n in path if d < depth), (depth, name)]
+        if value.strip() == FILL_IN:
+            field = ".".join(name for _, name in path)
+            found.append(Gap(field, number, _OPTIONS[field]))
+    return tuple(found)
+
+
+def _require_upright(robot: ForeignRobot, gravity: Point) -> None:
+    normal = robot.plane_normal
+    if normal is not None and abs(np.dot(normal, gravity)) > 1e-9 * np.linalg.norm(gravity):
+        raise InputError(
+            [
+                Fault(
+                    robot.file,
+                    None,
+                    "",
+                    "the platform moves in a plane that is not upright, so that nothing but a "
+                    "table carries its weight",
+                    "an upright plane; --gravity where the frame is drawn lying, such as 0,-1,0",
+                )
+            ]
+        )
+
+
+def _robot(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+    yield "robot:"
+    yield from _remarks(robot, "robot", "  ")
+    yield "  anchors:"
+    yield from (f"    - {_list(point)}" for point in robot.exit_points_m)
+    yield "  platform:"
+    yield from _mass(robot, answers)
+    if robot.attachments_m is not None:
+        yield from _centre_of_mass(robot, answers)
+        yield "    attachments:"
+        yield from (f"      - {_list(point)}" for point in robot.attachments_m)
+    yield from _tension_min(robot)
+    if answers.gravity is not None:
+        yield f"  gravity: {_list(answers.gravity)}"
+    if robot.plane_normal is not None:
+        yield "  planar: true"
+
+
+def _tension_min(robot: ForeignRobot) -> Iterator[str]:
+    least = format_SI(robot.tension_min_N, FORCE)
+    if robot.tension_min_N > 0.0 and robot.has_choice:
+        yield from _remarks(robot, "robot.tension_min", "  ")
+        yield f"  tension_min: {least}"
+    elif robot.tension_min_N > 0.0:
+        yield f"  # The file asks for {least} at least, which so few cables cannot choose."
+
+
+def _mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+    mass, payload = answers.mass_kg, answers.payload_kg
+    if mass is None:
+        mass = robot.mass_kg
+        yield from _remarks(robot, "robot.platform.mass", "    ")
+    if mass is None:
+        and_payload = f", with its payload of {format_SI(payload, MASS)}" if payload else ""
+        yield f"    mass: {FILL_IN}                       # such as 4000 kg{and_payload}"
+    elif payload:
+        whole = f"{format_SI(mass, MASS)} and a payload of {format_SI(payload, MASS)}"
+        yield f"    mass: {format_SI(mass + payload, MASS)}   # {whole}"
+    else:
+        yield f"    mass: {format_SI(mass, MASS)}"
+
+
+def _centre_of_mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+    centre = answers.centre_of_mass_m
+    if centre is None:
+        centre = robot.centre_of_mass_m
+        yield from _remarks(robot, "robot.platform.centre_of_mass", "    ")
+        if centre is not None and answers.payload_kg:
+            yield "    # Of the empty platform; the payload is taken to have the same."
+    yield f"    centre_of_mass: {FILL_IN if centre is None else _list(centre)}"
+
+
+def _cable(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+    rope, safety = robot.rope, answers.safety_factor
+    if answers.grade is not None:
+        and_safety = "" if safety is None else f", safety_factor: {_number(safety)}"
+        yield f"cable: {{grade: {json.dumps(answers.grade)}{and_safety}}}"
+    elif rope is None:
+        yield "# {grade: ID} with an ID of `designer catalog list`, or its figures:"
+        yield f"# {_FIGURES}."
+        yield f"cable: {FILL_IN}"
+    else:
+        modulus, stress = rope.youngs_modulus_Pa, rope.breaking_stress_Pa
+        yield "cable:"
+        yield f"  density: {format_SI(rope.density_kg_per_m3, DENSITY)}"
+        shown = FILL_IN if modulus is None else format_SI(modulus, STRESS)
+        yield f"  youngs_modulus: {shown}"
+        yield f"  # It breaks at {format_SI(stress, STRESS)}; divide by a safety factor of yours."
+        shown = FILL_IN if safety is None else format_SI(stress / safety, STRESS)
+        yield f"  allowable_stress: {shown}"
+
+
+def _pose(robot: ForeignRobot) -> Iterator[str]:
+    position, angles = robot.position_m, robot.euler_xyz_rad
+    if position is None or angles is None:
+        yield "# One pose to size the cables for: [x, y, z] of the platform."
+        yield f"pose: {FILL_IN}"
+    elif any(angles):
+        yield "# Where the file has the platform at first."
+        euler = f"{{convention: XYZ, angles: {_list(angles)}}}"
+        yield f"pose: {{position: {_list(position)}, euler: {euler}}}"
+    else:
+        yield f"pose: {_list(position)}"
+
+
+def _workspace(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+    """Yield the box of the joint's limits, or its upright rectangle in a plane."""
+    limits = robot.limits_m
+    if limits is None or answers.gravity is not None:
+        yield "# All poses that the cables have to serve; the file does not tell."
+        yield "# workspace:"
+        yield "#   region: {box: [[xmin, xmax], [ymin, ymax], [zmin, zmax]]}"
+        return
+    x, y, z = limits
+    region = f"{{box: [{', '.join(map(_list, limits))}]}}"
+    if robot.plane_normal is not None:
+        ends = f"[[{_number(x[0])}, {_number(y[0])}], [{_number(x[1])}, {_number(y[1])}]]"
+        region = f"{{rectangle: {ends}, z: {_list(z)}}}"
+    yield "# The limits of the platform's joint in the file, without turning."
+    yield "workspace:"
+    yield f"  region: {region}"
+    yield "  samples: 5000"
+
+
+def _effects(robot: ForeignRobot) -> Iterator[str]:
+    remarks = list(_remarks(robot, "effects"))
+    if robot.pulley_radius_m is not None:
+        remarks.append(
+            f"effects: {{pulley_radius: {{radius_m: {_number(robot.pulley_radius_m)}}}}}"
+        )
+    if remarks:
+        yield ""
+        yield from remarks
+
+
+def _remarks(robot: ForeignRobot, field: str, indent: str = "") -> Iterator[str]:
+    return (f"{indent}# {line}" for line in robot.remarks.get(field, ()))
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0
+
+
+def _list(values: tuple[float, ...]) -> str:
+    return f"[{', '.join(map(_number, values))}]"

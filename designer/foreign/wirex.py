@@ -1,0 +1,159 @@
+"""Robot files of WireX (A. Pott), ``.wcrfx``: the ATLAS model in XML, versions 0.31 and 0.32.
+
+Read as WireLib does (its ``RobotData.cpp``): lengths in m, elasticity in Pa, ``weight`` in kg/m.
+WireLib writes what nobody entered as well, always with the same values; where a file has exactly
+these, it is taken to say nothing, and the user is asked.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from designer.foreign.robot import ForeignRobot, ForeignRope, Point, held_at_one_point
+from designer.foreign.xml import Element
+
+ROOT = "models"
+_MASS = 25.0
+_CENTRE = (0.0, 1.0, 0.2)
+_RADIUS = 0.1
+_ROPE = {"elasticity": 110e9, "radius": 0.006, "breaking_load": 40e3, "weight": 0.023}
+_WINCH = {
+    ("cable", "f_max"): (720.0, "largest force {:g} N"),
+    ("drum", "r_drum"): (0.1, "drum radius {:g} m"),
+}
+_FREE, _PLANAR, _POINT, _PLANAR_POINT = "3R3T", "1R2T", "3T", "2T"
+
+
+def read_wirex(path: Path, root: Element) -> ForeignRobot:
+    """Return the robot of a WireX file.
+
+    Raises
+    ------
+    InputError
+        If the file is faulty, or no study can hold such a robot.
+    """
+    robots = list(root.all("robot"))
+    if len(robots) != 1:
+        root.refuse(f"the file has {len(robots) or 'no'} robots", "one <robot>")
+    robot = robots[0]
+    pattern = robot.attributes.get("motionpattern", _FREE)
+    if pattern not in (_FREE, _PLANAR, _POINT, _PLANAR_POINT):
+        expected = f"{_FREE}, {_PLANAR}, {_POINT} or {_PLANAR_POINT}"
+        robot.refuse(f"no study has a platform of the motion pattern '{pattern}'", expected)
+    chains = list(robot.need("geometry").all("chain"))
+    if not chains:
+        robot.need("geometry").refuse("the robot has no cables", "<chain>")
+    bases = [chain.need("base") for chain in chains]
+    attachments = tuple(_position(chain.need("platform")) for chain in chains)
+    if pattern in (_POINT, _PLANAR_POINT):
+        held_at_one_point(robot, attachments)
+    platform, remarks = robot.find("platform"), dict[str, tuple[str, ...]]()
+    rope = _rope(root.find("cable"), remarks)
+    _winch(root.find("winch"), remarks)
+    return ForeignRobot(
+        file=str(path),
+        name=robot.attributes.get("name") or path.stem,
+        source=f"WireX robot file: {path.name}",
+        exit_points_m=tuple(map(_position, bases)),
+        attachments_m=None if pattern in (_POINT, _PLANAR_POINT) else attachments,
+        mass_kg=_mass(platform, remarks),
+        centre_of_mass_m=_centre(platform, remarks),
+        plane_normal=(0.0, 0.0, 1.0) if pattern in (_PLANAR, _PLANAR_POINT) else None,
+        pulley_radius_m=_pulley_radius(bases, remarks),
+        rope=rope,
+        remarks=remarks,
+    )
+
+
+def _position(element: Element) -> Point:
+    return element.number("x"), element.number("y"), element.number("z")
+
+
+def _mass(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> float | None:
+    if platform is None or "mass" not in platform.attributes:
+        return None
+    mass = platform.number("mass")
+    if mass != _MASS:
+        return mass
+    remarks["robot.platform.mass"] = (
+        f"The file has {mass:g} kg, which WireX writes where nobody entered a mass.",
+    )
+    return None
+
+
+def _centre(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> Point | None:
+    element = None if platform is None else platform.find("centerofgravity")
+    if element is None:
+        return None
+    centre = _position(element)
+    if centre != _CENTRE:
+        return centre
+    shown = ", ".join(f"{one:g}" for one in centre)
+    remarks["robot.platform.centre_of_mass"] = (
+        f"The file has [{shown}], which WireX writes where nobody entered one.",
+    )
+    return None
+
+
+def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> ForeignRope | None:
+    """Return the rope; None where the file does not say enough of one."""
+    needed = ("radius", "breaking_load", "weight")
+    if cable is None or any(name not in cable.attributes for name in needed):
+        return None
+    given = {name: cable.number(name) for name in _ROPE if name in cable.attributes}
+    if all(value == _ROPE[name] for name, value in given.items()):
+        remarks["cable"] = (
+            "The file has the 6 mm rope that WireX writes where nobody entered one.",
+        )
+        return None
+    if min(given.values()) <= 0.0:
+        cable.refuse("the rope has a figure that is zero or less", "figures above zero")
+    area = math.pi * given["radius"] ** 2
+    remarks["cable"] = (
+        f"A rope of {2e3 * given['radius']:g} mm, {given['weight']:g} kg/m, breaking at "
+        f"{given['breaking_load']:g} N; all over the full circle of its diameter.",
+    )
+    return ForeignRope(
+        density_kg_per_m3=given["weight"] / area,
+        breaking_stress_Pa=given["breaking_load"] / area,
+        youngs_modulus_Pa=given.get("elasticity"),
+    )
+
+
+def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
+    """Tell what the file has of the winches, as far as somebody entered it."""
+    figures = []
+    for (tag, name), (default, shown) in _WINCH.items():
+        element = None if winch is None else winch.find(tag)
+        if element is not None and name in element.attributes:
+            value = element.number(name)
+            figures += [] if value in (0.0, default) else [shown.format(value)]
+    if figures:
+        remarks["robot"] = (
+            f"Of the winches the file has: {', '.join(figures)}. No field of a study takes it.",
+        )
+
+
+def _pulley_radius(bases: list[Element], remarks: dict[str, tuple[str, ...]]) -> float | None:
+    """Return the radius of the pulleys, where a study can have them and the file says so."""
+    given = [one for one in bases if "radius" in one.attributes]
+    radii = {one.number("radius") for one in given}
+    if not given or radii == {0.0}:
+        return None
+    if radii == {_RADIUS}:
+        remarks["effects"] = (
+            "The file has pulleys of 0.1 m, which WireX writes where nobody entered a radius; exit "
+            "points are taken as fixed. If the robot has such pulleys:",
+            "effects: {pulley_radius: {radius_m: 0.1}}",
+        )
+        return None
+    upward = all("a33" not in one.attributes or one.number("a33") == 1.0 for one in given)
+    if len(given) == len(bases) and len(radii) == 1 and upward:
+        return radii.pop()
+    shown = " and ".join(f"{one:g}" for one in sorted(radii))
+    remarks["effects"] = (
+        f"The file has pulleys of {shown} m that differ, or that cables do not reach from below: "
+        "exit points are taken as fixed.",
+    )
+    return None

@@ -1,0 +1,166 @@
+"""Reads an XML file that may be anything into elements that know their lines."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn
+from xml.sax.handler import ContentHandler
+from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
+
+from designer.documents.node import printable
+from designer.errors import Fault, InputError
+
+LARGEST_FILE_BYTES = 1_000_000
+DEEPEST_NESTING = 64
+MOST_ELEMENTS = 100_000
+
+
+@dataclass(slots=True)
+class Element:
+    """An element of an XML file, with the file and the line in which it starts."""
+
+    file: str
+    line: int
+    tag: str
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+
+    def all(self, tag: str) -> Iterator[Element]:
+        """Yield the children of this name."""
+        return (child for child in self.children if child.tag == tag)
+
+    def find(self, *path: str) -> Element | None:
+        """Return the first descendant along a path of names; None if there is none."""
+        found: Element | None = self
+        for tag in path:
+            found = None if found is None else next(found.all(tag), None)
+        return found
+
+    def need(self, *path: str) -> Element:
+        """Return the same; `InputError` if there is none."""
+        found = self.find(*path)
+        if found is None:
+            self.refuse(f"<{self.tag}> has no <{'/'.join(path)}>", f"<{path[-1]}> in it")
+        return found
+
+    def attribute(self, name: str) -> str:
+        """Return an attribute; `InputError` if there is none."""
+        if name not in self.attributes:
+            self.refuse(f"<{self.tag}> has no attribute '{name}'", f"{name}=…")
+        return self.attributes[name]
+
+    def number(self, name: str) -> float:
+        """Return an attribute as a finite number; `InputError` if it is none."""
+        return self._numbers(self.attribute(name), 1, f"{name}=")[0]
+
+    def numbers(self, count: int, name: str | None = None) -> tuple[float, ...]:
+        """Return the finite numbers in the text, or in an attribute; `InputError` otherwise."""
+        if name is None:
+            return self._numbers(self.text, count, "")
+        return self._numbers(self.attribute(name), count, f"{name}=")
+
+    def _numbers(self, text: str, count: int, where: str) -> tuple[float, ...]:
+        wanted = "a finite number" if count == 1 else f"{count} finite numbers"
+        try:
+            values = tuple(float(word) for word in text.split())
+        except ValueError:
+            values = ()
+        if len(values) != count or not all(map(math.isfinite, values)):
+            shown = printable(" ".join(text.split()))[:60]
+            self.refuse(f"<{self.tag}> has {where}'{shown}'", wanted)
+        return values
+
+    def refuse(self, problem: str, expected: str = "") -> NoReturn:
+        """Raise an `InputError` at this line."""
+        raise InputError([Fault(self.file, self.line, "", problem, expected)])
+
+
+class _Builder(ContentHandler):
+    """Builds the tree, and stops where it grows beyond any robot's."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self.root: Element | None = None
+        self._file, self._open, self._count = file, list[Element](), 0
+
+    def setDocumentLocator(self, locator: Locator) -> None:
+        self._locator = locator
+
+    def startElement(self, name: str, attrs: AttributesImpl) -> None:
+        line = self._locator.getLineNumber() or 1
+        element = Element(self._file, line, name, dict(attrs.items()))
+        self._count += 1
+        if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST_NESTING:
+            element.refuse(
+                f"more than {MOST_ELEMENTS} elements, or nested more than {DEEPEST_NESTING} deep",
+                "a robot",
+            )
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self.root = element
+        self._open.append(element)
+
+    def endElement(self, name: str) -> None:
+        self._open.pop()
+
+    def characters(self, content: str) -> None:
+        self._open[-1].text += content
+
+
+def read_xml(path: Path) -> Element:
+    """Return the outermost element of an XML file.
+
+    Entities are refused, so that a small file cannot grow into a large one, and nothing that the
+    file names, such as its DTD, is read.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is too large, is not XML, declares entities, or nests too
+        deeply.
+    """
+    from xml.sax import SAXParseException
+
+    from defusedxml import DefusedXmlException, sax
+
+    name, raw = str(path), _read_bytes(path)
+    builder, parser = _Builder(name), sax.make_parser()
+    parser.forbid_external = False  # CASPR's files name a DTD; the parser leaves it unread
+    parser.setContentHandler(builder)
+    source = InputSource(name)
+    source.setByteStream(io.BytesIO(raw))
+    try:
+        parser.parse(source)
+    except SAXParseException as error:
+        problem = f"this is not valid XML: {printable(error.getMessage())}"
+        raise InputError([Fault(name, error.getLineNumber(), "", problem)]) from None
+    except DefusedXmlException:
+        problem = "the file declares entities"
+        raise InputError([Fault(name, None, "", problem, "a robot without them")]) from None
+    except (LookupError, ValueError) as error:  # an encoding that Python or the parser lacks
+        problem = f"this is not valid XML: {printable(str(error))}"
+        raise InputError([Fault(name, None, "", problem, "XML in UTF-8")]) from None
+    assert builder.root is not None
+    return builder.root
+
+
+def _read_bytes(path: Path) -> bytes:
+    expected = f"an XML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+    problem = "there is no such file" if not path.exists() else "this is no file"
+    if path.is_file():
+        try:
+            with path.open("rb") as file:
+                raw = file.read(LARGEST_FILE_BYTES + 1)
+        except OSError as error:
+            problem = f"the file cannot be read: {(error.strerror or 'unknown').lower()}"
+        else:
+            if len(raw) <= LARGEST_FILE_BYTES:
+                return raw
+            problem = "the file is too large"
+    raise InputError([Fault(str(path), None, "", problem, expected)])

@@ -1,0 +1,95 @@
+"""The verification page: every case computed, as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from designer import __version__
+from designer.reference import robots, single_cables
+from designer.reference.case import Case, Figure
+from designer.reference.converted import ROBOTS, Converted
+
+CASES: tuple[Case, ...] = (*robots.CASES, *single_cables.CASES)
+HEADINGS = ("unit", "theirs", "ours", "difference", "allowed", "")
+Computed = Sequence[tuple[Case, Sequence[Figure]]]
+
+
+def compute(tell: Callable[[str], None] = lambda title: None) -> Computed:
+    """Return all cases with their figures; ``tell`` is called with each title before it."""
+    found = []
+    for case in CASES:
+        tell(case.title)
+        found.append((case, tuple(case.figures())))
+    return found
+
+
+def markdown(computed: Computed) -> str:
+    """Return the page."""
+    return "\n".join(_lines(computed)) + "\n"
+
+
+def _lines(computed: Computed) -> Iterator[str]:
+    count = sum(len(figures) for _, figures in computed)
+    outside = sum(not one.holds for _, figures in computed for one in figures)
+    yield "# Verification"
+    yield ""
+    yield (
+        f"Written by `designer verify` of version {__version__}: {count} figures of others beside "
+        f"ours, computed as this page was written; {outside or 'none'} outside what is allowed. "
+        "Differences are relative to theirs."
+    )
+    for case, figures in computed:
+        yield from ("", f"## {case.title}", "", f"{case.source}.", "", case.note, "")
+        yield from table(
+            ("figure", "unit", "theirs", "ours", "difference", "allowed", ""), "llrrrrl"
+        )
+        yield from (row(cells(one)) for one in figures)
+    yield from _converted()
+
+
+def cells(figure: Figure) -> tuple[str, ...]:
+    """Return the cells of a figure's row."""
+    allowed = "—" if figure.tolerance is None else f"{figure.tolerance:.1e}"
+    judged = "shown only" if figure.tolerance is None else "holds" if figure.holds else "FAILS"
+    return (
+        figure.name,
+        figure.unit,
+        f"{figure.theirs:.12g}",
+        f"{figure.ours:.12g}",
+        f"{figure.difference:+.1e}",
+        allowed,
+        judged,
+    )
+
+
+def _converted() -> Iterator[str]:
+    yield from ("", "## Robots of other programs", "")
+    yield (
+        "Read by `designer import` and sized in one pose. Facts of one run, not computed again "
+        "here, since the files are their authors' and not shipped. What a file leaves out was "
+        "given as 25 kg, a centre of mass at the origin of the platform, a pose in the middle of "
+        "the frame, and galvanised 7x19 wire rope with a safety factor of 5."
+    )
+    yield ""
+    heading = ("robot", "file of", "cables", "left out", "answer", "diameter, mm", "tension, N")
+    yield from table(heading, "llrllrr")
+    yield from (row(_of_robot(one)) for one in ROBOTS)
+
+
+def _of_robot(robot: Converted) -> tuple[str, ...]:
+    answer = robot.reason if robot.verdict is None else robot.verdict.reason
+    figures = (robot.diameter_mm, robot.tension_N)
+    shown = ("" if one is None else f"{one:.6g}" for one in figures)
+    left_out = ", ".join(robot.gaps)
+    return (robot.name, robot.source, str(robot.n_cables), left_out, answer, *shown)
+
+
+def table(heading: Sequence[str], sides: str) -> Iterator[str]:
+    """Yield the first two lines of a table; ``sides`` says l or r for each column."""
+    yield row(heading)
+    yield row(["---:" if side == "r" else "---" for side in sides])
+
+
+def row(cells: Sequence[str]) -> str:
+    """Return a line of a table."""
+    return f"| {' | '.join(cells)} |"

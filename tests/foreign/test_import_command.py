@@ -1,0 +1,168 @@
+"""`designer import`: a whole study, a study with gaps, and refusals that leave nothing behind."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import numpy as np
+import pytest
+from models import EXITS, FREE, HELD, LIMITS, bodies, cables, link, wirex, write_caspr
+
+from designer.cli.commands import main
+from designer.errors import InputError
+from designer.foreign.read import read_foreign
+from designer.foreign.study import Answers, gaps, study_text
+from designer.io.config import read_study
+from designer.study import require_enough_cables
+
+GRADE = ("--grade", "unirope-7x19-galvanised")
+
+
+@pytest.fixture
+def run(capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+
+    def command(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["designer", *arguments])
+        try:
+            main()
+            status = 0
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return command
+
+
+def test_a_whole_study(run, tmp_path) -> None:
+    joint = FREE.replace("0 0 0", "0.1 0 0.2", 1)
+    assert "0.1 0 0.2" in joint
+    path = write_caspr(tmp_path, bodies(link(joint=f"{joint} {LIMITS}")), cables())
+    status, out, err = run("import", str(path), "--payload", "30 kg", *GRADE)
+    assert (status, err) == (0, "")
+    assert "designer size rig.yaml" in out
+    study = read_study(tmp_path / "rig.yaml")
+    require_enough_cables(study)
+    assert study.robot.platform.mass_kg == 50.0
+    assert study.robot.tension_min_N == 5.0
+    assert np.allclose(study.robot.exit_points_m, EXITS)
+    assert np.allclose(study.robot.attachments_m, HELD)
+    assert np.allclose(study.pose.position_m, [0.5, 0, 2])
+    a, c = 0.1, 0.2  # turned about x, then about its own z
+    turn = [
+        [np.cos(c), -np.sin(c), 0],
+        [np.cos(a) * np.sin(c), np.cos(a) * np.cos(c), -np.sin(a)],
+        [np.sin(a) * np.sin(c), np.sin(a) * np.cos(c), np.cos(a)],
+    ]
+    assert np.allclose(study.pose.rotation, turn)
+
+
+def test_gaps_are_told_by_name_and_line_and_refuse_the_study(run, tmp_path) -> None:
+    path = tmp_path / "rig.wcrfx"
+    path.write_text(wirex("", "", ""), encoding="utf-8")
+    status, out, _ = run("import", str(path), "-o", "mine.yaml")
+    assert status == 1
+    told = re.findall(r"line (\d+): (\S+) \((--\S+)\)", out)
+    fields = ["robot.platform.mass", "robot.platform.centre_of_mass", "cable", "pose"]
+    assert [field for _, field, _ in told] == fields
+    lines = (tmp_path / "mine.yaml").read_text(encoding="utf-8").splitlines()
+    for number, field, _ in told:
+        assert field.rpartition(".")[2] in lines[int(number) - 1]
+    status, _, err = run("size", "mine.yaml")
+    assert status == 2
+    assert [line.split(": ")[:2] for line in err.splitlines()] == [
+        [f"mine.yaml:{number}", field] for number, field, _ in told
+    ]
+    options = ("--mass", "40 kg", "--centre-of-mass", "0,0,0", "--pose", "0,0,2", *GRADE)
+    assert run("import", str(path), *options)[0] == 0
+    assert read_study(tmp_path / "rig.yaml").robot.platform.mass_kg == 40.0
+
+
+def test_a_rope_without_its_safety_factor(run, tmp_path) -> None:
+    path = tmp_path / "rig.wcrfx"
+    path.write_text(wirex(), encoding="utf-8")
+    status, out, _ = run("import", str(path), "--pose", "0,0,2")
+    assert status == 1
+    assert "cable.allowable_stress (--safety-factor)" in out
+    (tmp_path / "rig.yaml").unlink()
+    assert run("import", str(path), "--pose", "0,0,2", "--safety-factor", "5")[0] == 0
+    study = read_study(tmp_path / "rig.yaml")
+    stress = 9000 / (np.pi * 0.002**2)
+    assert study.material.allowable_stress_Pa == pytest.approx(stress / 5)
+    assert [one.id for one in study.effects] == ["pulley_radius"]
+
+
+def test_planes(run, tmp_path) -> None:
+    flat = 'type="PLANAR_XY" q_initial="0 2 0"'
+    exits = [(x, y, 0) for x, y, _ in [(-3, 4, 0), (3, 4, 0), (-3, 0, 0), (3, 0, 0)]]
+    held = [(x, y, 0) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
+    text = bodies(link(joint=flat, centre="0 0 0"))
+    path = write_caspr(tmp_path, text, cables(exits, held))
+    status, _, err = run("import", str(path), *GRADE)
+    assert status == 2
+    assert "a plane that is not upright" in err
+    assert not (tmp_path / "rig.yaml").exists()
+    assert run("import", str(path), "--gravity", "0,-1,0", *GRADE)[0] == 0
+    study = read_study(tmp_path / "rig.yaml")
+    assert study.robot.is_planar
+    assert study.robot.degrees_of_freedom == 3
+
+
+def test_so_few_cables_choose_no_tension(tmp_path) -> None:
+    text = cables(EXITS[:6], HELD[:6])
+    robot = read_foreign(write_caspr(tmp_path, bodies(), text))
+    assert "tension_min:" not in study_text(robot, Answers())
+    assert "asks for 5 N at least" in study_text(robot, Answers())
+
+
+def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
+    odd = bodies(link().replace("Test rig", "yes: #1 &quot;fill in&quot;"))
+    path = write_caspr(tmp_path, odd, cables())
+    assert run("import", str(path), *GRADE)[0] == 0
+    assert read_study(tmp_path / "rig.yaml").name == 'yes: #1 "fill in"'
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--mass", "heavy"), "--mass: 'heavy' is not a number"),
+        (("--mass", "-3 kg"), "robot.platform.mass: "),
+        (("--pose", "1,2"), "--pose: '1,2' is no point"),
+        (("--pose", "1,2,3 kg"), "--pose: '3 kg'"),
+        (("--grade", "no-such-grade"), "no-such-grade"),
+        (("--cable-set", "none"), "there is no cable set 'none'"),
+    ],
+)
+def test_options_that_are_wrong(run, tmp_path, options: tuple[str, ...], said: str) -> None:
+    path = write_caspr(tmp_path, bodies(), cables())
+    given = options if "--grade" in options else (*options, *GRADE)
+    status, _, err = run("import", str(path), *given)
+    assert status == 2
+    assert len(err.splitlines()) == 1
+    assert said in err
+    assert not (tmp_path / "rig.yaml").exists()
+
+
+def test_a_robot_that_no_study_can_hold_is_refused_in_its_files_name(run, tmp_path) -> None:
+    path = write_caspr(tmp_path, bodies(), cables([(x, 0, z) for x, _, z in EXITS], HELD))
+    status, _, err = run("import", str(path), *GRADE)
+    assert status == 2
+    assert err.startswith(f"{path}: robot.anchors")
+
+
+def test_nothing_is_overwritten(run, tmp_path) -> None:
+    path = write_caspr(tmp_path, bodies(), cables())
+    (tmp_path / "rig.yaml").write_text("mine", encoding="utf-8")
+    status, _, err = run("import", str(path), *GRADE)
+    assert status == 2
+    assert "exists already" in err
+    assert (tmp_path / "rig.yaml").read_text(encoding="utf-8") == "mine"
+
+
+def test_the_text_of_gaps_alone_counts(tmp_path) -> None:
+    robot = read_foreign(write_caspr(tmp_path, bodies(), cables()))
+    assert [gap.field for gap in gaps(study_text(robot, Answers()))] == ["cable"]
+    with pytest.raises(InputError):
+        read_foreign(tmp_path / "none.xml")

@@ -1,0 +1,82 @@
+"""WireX files: what a study takes from them, and what nobody entered."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from models import ENTERED, EXITS, HELD, NOBODY, NOBODYS_ROPE, wirex
+
+from designer.errors import InputError
+from designer.foreign.read import read_foreign
+
+
+def read(folder, text):
+    path = folder / "rig.wcrfx"
+    path.write_text(text, encoding="utf-8")
+    return read_foreign(path)
+
+
+def test_a_robot_with_all_that_a_study_takes(tmp_path) -> None:
+    robot = read(tmp_path, wirex())
+    assert np.array_equal(robot.exit_points_m, EXITS)
+    assert np.array_equal(robot.attachments_m, HELD)
+    assert (robot.mass_kg, robot.centre_of_mass_m) == (40.0, (0.0, 0.0, 0.1))
+    assert robot.pulley_radius_m == 0.03
+    assert robot.position_m is None
+    area = np.pi * 0.002**2
+    assert robot.rope.density_kg_per_m3 == pytest.approx(0.06 / area)
+    assert robot.rope.breaking_stress_Pa == pytest.approx(9000 / area)
+    assert robot.rope.youngs_modulus_Pa == 6e10
+
+
+def test_what_wirex_writes_where_nobody_entered_anything_is_asked_for(tmp_path) -> None:
+    robot = read(tmp_path, wirex(NOBODY, NOBODYS_ROPE, 'a33="1" radius="0.1"'))
+    assert robot.mass_kg is robot.centre_of_mass_m is robot.rope is robot.pulley_radius_m is None
+    for field in ("robot.platform.mass", "robot.platform.centre_of_mass", "cable", "effects"):
+        assert "nobody entered" in robot.remarks[field][0]
+
+
+def test_a_file_that_leaves_out_what_it_may(tmp_path) -> None:
+    robot = read(tmp_path, wirex("", "", ""))
+    assert robot.mass_kg is robot.centre_of_mass_m is robot.rope is robot.pulley_radius_m is None
+    assert not robot.remarks
+
+
+@pytest.mark.parametrize("more", ['a33="-1" radius="0.03"', 'a33="0.7" radius="0.03"'])
+def test_pulleys_that_no_study_has_are_told(tmp_path, more: str) -> None:
+    robot = read(tmp_path, wirex(more=more))
+    assert robot.pulley_radius_m is None
+    assert "0.03 m" in robot.remarks["effects"][0]
+
+
+def test_winch_data_are_told(tmp_path) -> None:
+    winch = '<winch><cable f_max="900"/><drum r_drum="0.25"/></winch></models>'
+    robot = read(tmp_path, wirex().replace("</models>", winch))
+    assert "largest force 900 N, drum radius 0.25 m" in robot.remarks["robot"][0]
+
+
+def test_a_point_mass(tmp_path) -> None:
+    assert read(tmp_path, wirex(pattern="3T", held=[(0, 0, 0)] * 8)).attachments_m is None
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (wirex(pattern="2R3T"), "no study has a platform of the motion pattern '2R3T'"),
+        (wirex(pattern="3T"), "the platform does not turn though"),
+        (wirex().replace('y="-2.0"', "", 1), "<base> has no attribute 'y'"),
+        (wirex().replace('y="-2.0"', 'y="east"', 1), "<base> has y='east'"),
+        (wirex().replace("<robot", "<robots").replace("</robot", "</robots"), "no robots"),
+        (wirex(rope=NOBODYS_ROPE.replace("40000", "0")), "zero or less"),
+        ("<models><robot><geometry/></robot></models>", "the robot has no cables"),
+        ("<models><robot/></models>", "<robot> has no <geometry>"),
+        ("<html/>", "the file holds <html>"),
+        (ENTERED, "the file holds <platform>"),
+    ],
+)
+def test_what_is_refused(tmp_path, text: str, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, text)
+    (fault,) = refused.value.faults
+    assert said in str(fault)
+    assert fault.line is not None
