@@ -234,6 +234,9 @@ def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> N
 
 def test_init_writes_a_study_that_reads(designer) -> None:
     assert designer("init", "crane.yaml", "--example", "yard").status == 0
+    head = Path("crane.yaml").read_text().splitlines()[0]
+    assert head == "# yaml-language-server: $schema=cdpr-designer.schema.json"
+    assert designer("schema").out == Path("cdpr-designer.schema.json").read_text()
     assert designer("size", "crane.yaml").status == 0
     again = designer("init", "crane.yaml")
     assert again.status == 2

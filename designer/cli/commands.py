@@ -26,9 +26,11 @@ from designer.cli.options import (
     output_option,
     path_of,
 )
+from designer.cli.schema import schema, write_with_schema
 from designer.cli.studies import catalogue_of, study_of
 from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
+from designer.resources import example_names
 
 if TYPE_CHECKING:
     from designer.model.measured_data import Measured
@@ -54,13 +56,13 @@ app = typer.Typer(
     help="Size the cables of large cable-driven parallel robots, and report it.",
     epilog="Start with:  designer init my-crane.yaml  then  designer report my-crane.yaml",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
 app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
+app.command()(schema)
 
 
 def main() -> None:
@@ -329,18 +331,23 @@ def init(
         ),
     ] = None,
     example: Annotated[
-        str, typer.Option("--example", metavar="NAME", help="Which study to copy; see --list.")
+        str,
+        typer.Option(
+            "--example",
+            metavar="NAME",
+            help="Which study to copy; see --list.",
+            autocompletion=example_names,
+        ),
     ] = "fast",
     lists: Annotated[
         bool, typer.Option("--list", help="Tell what studies there are, and stop.")
     ] = False,
 ) -> None:
-    """Write a commented study to start from.
+    """Write a commented study to start from, and beside it the schema by which editors check it.
 
     Example:  designer init --example yard my-crane.yaml
     """
-    from designer.io.output import write_new_file
-    from designer.resources import example_file, example_names, example_summary
+    from designer.resources import example_file, example_summary
 
     if lists:
         width = max(len(name) for name in example_names())
@@ -351,5 +358,5 @@ def init(
         names = ", ".join(example_names())
         raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
     target = path or Path(f"{example}.yaml")
-    write_new_file(target, example_file(example).read_text(encoding="utf-8"))
+    write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")

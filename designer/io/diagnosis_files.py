@@ -11,6 +11,7 @@ import numpy as np
 from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
+from designer.documents.modeline import with_schema_moved
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
@@ -43,7 +44,7 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
     document["measurements"]["file"] = moved(diagnosis.study.measurements.file)
     written = io.StringIO()
     yaml.dump(document, written)
-    return written.getvalue()
+    return with_schema_moved(written.getvalue(), source.parent, moved)
 
 
 def _origin(diagnosis: Diagnosis) -> str:
