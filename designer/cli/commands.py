@@ -23,6 +23,7 @@ from designer.cli.options import (
     WRONG_INPUT,
     Config,
     NoPlugins,
+    Template,
     output_option,
     path_of,
 )
@@ -76,31 +77,37 @@ def main() -> None:
             sys.exit(WRONG_INPUT)
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"cdpr-designer {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
+@app.callback(invoke_without_command=True)
 def _options(
-    _: Annotated[
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+    verbose: Annotated[
         bool,
-        typer.Option(
-            "--version",
-            help="Print the version and stop.",
-            is_eager=True,
-            callback=_version,
-        ),
+        typer.Option("-v", help="With --version: also all that a bug report needs to say."),
     ] = False,
 ) -> None:
-    pass
+    if version:
+        _print_version(verbose)
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        context.fail("-v goes with --version, or a command is missing")
+
+
+def _print_version(verbose: bool) -> None:
+    if not verbose:
+        typer.echo(f"cdpr-designer {__version__}")
+        return
+    from designer.cli.versions import versions
+
+    for name, found in versions():
+        typer.echo(f"{name:20} {found}")
 
 
 @app.command()
 def report(
     config: Config,
     output: Annotated[Path | None, output_option("CONFIG-report")] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Size, sweep the workspace, choose a rope, and write the report.
@@ -138,7 +145,7 @@ def report(
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
         with bars.task("report", 1) as advance:
-            write_report_pages(analysis, building)
+            write_report_pages(analysis, building, template)
             advance(1)
         write_results(analysis, building)
         written = file_names(building)
@@ -199,6 +206,7 @@ def diagnose(
             "--data", parser=path_of, metavar="CSV", help="Measured data, instead of the study's."
         ),
     ] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Compare measured data with the model, and find the effect that the model lacks.
@@ -231,7 +239,7 @@ def diagnose(
         study = replace(study, measurements=measurements)
     measured = read_measured(study)
     if checks:
-        _check(study, measured, output or Path(f"{config.stem}-check"))
+        _check(study, measured, output or Path(f"{config.stem}-check"), template)
         return
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
@@ -247,7 +255,7 @@ def diagnose(
         spinner("the design with and without")
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
-        write_diagnosis(diagnosis, building)
+        write_diagnosis(diagnosis, building, template)
         (building / "diagnosis.json").write_text(f"{diagnosis.to_json()}\n", encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
@@ -259,7 +267,7 @@ def diagnose(
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
-def _check(study: Study, measured: Measured, folder: Path) -> None:
+def _check(study: Study, measured: Measured, folder: Path, template: Path | None) -> None:
     from designer.cli.tables import print_check
     from designer.cli.terminal import Spinner, announce_compiling
     from designer.diagnosis.check import check
@@ -271,7 +279,7 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     with output_folder(folder) as building, Spinner("checking") as spinner:
         found = check(study, study.measurements, measured, spinner)
         spinner("report")
-        write_check(found, building)
+        write_check(found, building, template)
         (building / "diagnosis.json").write_text(f"{found.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     print_check(found, folder, written)
