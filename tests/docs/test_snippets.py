@@ -8,6 +8,7 @@ changes the machine, such as installing, and is not run here: `.ci/run` installs
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -28,6 +29,8 @@ _COMMAND = re.compile(r"^\$ (.*?)(?:\s+# status (\d))?$")
 _AT_ONCE = {"how-to/plugin.md", "how-to/rope-table.md", "how-to/editor.md", "how-to/effect.md"}
 _NOT_RUN = {"how-to/window.md"}
 """Opens the window, which has tests of its own."""
+_SELDOM = {"name", "not_tried", "strongest_covariate", "fraction_of_variance"}
+"""Keys that not every result has."""
 
 
 def name_of(page: Path) -> str:
@@ -62,6 +65,26 @@ def done(command: str, status: int) -> str:
     told = answer.stdout + answer.stderr
     assert answer.returncode == status, f"$ {command}\nstatus {answer.returncode}\n{told}"
     return told
+
+
+def keys_are_told(name: str, found: dict[str, object]) -> None:
+    """Compare a file that a page has made with the reference: first level both ways."""
+    page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
+    part = page.partition(f"## `{name}`")[2].partition("\n## ")[0]
+    cells = [row.split(" | ") for row in re.findall(r"^\| (`.*) \|$", part, re.M)]
+    first = {key for cell in cells for key in re.findall(r"`(\w+)`", cell[0])}
+    if "check" in found:  # of a diagnosis that searches nothing: a sentence of its own
+        assert set(found) - first <= set(re.findall(r"`(\w+)`", part.rpartition("|\n")[2]))
+        return
+    assert first == set(found)
+    below = {key for cell in cells for key in re.findall(r"`(\w+)`", cell[1])}
+    assert below - {key for one in found.values() for key in keys_in(one)} <= _SELDOM
+
+
+def keys_in(value: object) -> set[str]:
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    own = set(value) if isinstance(value, dict) else set()
+    return own.union(*(keys_in(part) for part in parts))
 
 
 def is_part_of_a_study(text: str) -> None:
@@ -101,6 +124,9 @@ def test_a_page_does_what_it_says(
     names: dict[str, object] = {}
     for block in blocks(page):
         follow(block, names)
+    for kind in ("result", "diagnosis"):
+        for file in Path().glob(f"*/{kind}.json"):
+            keys_are_told(f"{kind}.json", json.loads(file.read_text(encoding="utf-8")))
 
 
 def test_no_block_is_overlooked() -> None:
