@@ -75,7 +75,7 @@ class Reading:
         files = root.child("catalogues")
         count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
         places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
-        for keys in [*places, ("measurements", "file")]:
+        for keys in [*places, ("measurements", "file"), ("document", "logo")]:
             node = root
             for key in keys:
                 node = node.child(key) or node

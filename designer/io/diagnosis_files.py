@@ -39,6 +39,8 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
 
     if document.get("catalogues"):
         document["catalogues"] = [moved(source.parent / path) for path in document["catalogues"]]
+    if (control := document.get("document")) and control.get("logo"):
+        control["logo"] = moved(source.parent / control["logo"])
     assert diagnosis.study.measurements is not None
     # The data are not always those that the config names.
     document["measurements"]["file"] = moved(diagnosis.study.measurements.file)
