@@ -69,6 +69,15 @@ def test_help_and_version_import_nothing_heavy() -> None:
         assert run.stdout.splitlines()[-1] == "[]"
 
 
+def test_the_version_for_a_bug_report(designer) -> None:
+    assert len(designer("--version").out.splitlines()) == 1
+    told = dict(line.split(maxsplit=1) for line in designer("--version", "-v").out.splitlines())
+    assert told["Python"].startswith(".".join(map(str, sys.version_info[:3])))
+    assert {"system", "numpy", "numba", "pyvista", "linear", "OpenGL"} <= set(told)
+    alone = designer("-v")
+    assert (alone.status, alone.out) == (2, "")
+
+
 def test_size_gives_the_papers_pose(designer) -> None:
     Path("study.yaml").write_text(STUDY)
     told = designer("size", "study.yaml")
@@ -234,6 +243,9 @@ def test_only_what_was_written_is_named_and_no_older_answer_stays(designer) -> N
 
 def test_init_writes_a_study_that_reads(designer) -> None:
     assert designer("init", "crane.yaml", "--example", "yard").status == 0
+    head = Path("crane.yaml").read_text().splitlines()[0]
+    assert head == "# yaml-language-server: $schema=cdpr-designer.schema.json"
+    assert designer("schema").out == Path("cdpr-designer.schema.json").read_text()
     assert designer("size", "crane.yaml").status == 0
     again = designer("init", "crane.yaml")
     assert again.status == 2

@@ -24,14 +24,17 @@ from designer.cli.options import (
     WRONG_INPUT,
     Config,
     NoPlugins,
+    Template,
     output_option,
     path_of,
 )
+from designer.cli.schema import schema, write_with_schema
 from designer.cli.studies import catalogue_of, study_of
 from designer.cli.sweep import sweep
 from designer.cli.verify import verify
 from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
 from designer.io.process import readable_output, settle_in
+from designer.resources import example_names
 
 if TYPE_CHECKING:
     from designer.model.measured_data import Measured
@@ -57,7 +60,6 @@ app = typer.Typer(
     help="Size the cables of large cable-driven parallel robots, and report it.",
     epilog="Start with:  designer init my-crane.yaml  then  designer report my-crane.yaml",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
@@ -67,6 +69,7 @@ app.command()(compare)
 app.command()(sweep)
 app.command("import")(import_robot)
 app.command()(verify)
+app.command()(schema)
 
 
 def main() -> None:
@@ -80,31 +83,37 @@ def main() -> None:
             sys.exit(WRONG_INPUT)
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"cdpr-designer {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
+@app.callback(invoke_without_command=True)
 def _options(
-    _: Annotated[
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+    verbose: Annotated[
         bool,
-        typer.Option(
-            "--version",
-            help="Print the version and stop.",
-            is_eager=True,
-            callback=_version,
-        ),
+        typer.Option("-v", help="With --version: also all that a bug report needs to say."),
     ] = False,
 ) -> None:
-    pass
+    if version:
+        _print_version(verbose)
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        context.fail("-v goes with --version, or a command is missing")
+
+
+def _print_version(verbose: bool) -> None:
+    if not verbose:
+        typer.echo(f"cdpr-designer {__version__}")
+        return
+    from designer.cli.versions import versions
+
+    for name, found in versions():
+        typer.echo(f"{name:20} {found}")
 
 
 @app.command()
 def report(
     config: Config,
     output: Annotated[Path | None, output_option("CONFIG-report")] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Size, sweep the workspace, choose a rope, and write the report.
@@ -142,7 +151,7 @@ def report(
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
         with bars.task("report", 1) as advance:
-            write_report_pages(analysis, building)
+            write_report_pages(analysis, building, template)
             advance(1)
         write_results(analysis, building)
         written = file_names(building)
@@ -203,6 +212,7 @@ def diagnose(
             "--data", parser=path_of, metavar="CSV", help="Measured data, instead of the study's."
         ),
     ] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Compare measured data with the model, and find the effect that the model lacks.
@@ -235,7 +245,7 @@ def diagnose(
         study = replace(study, measurements=measurements)
     measured = read_measured(study)
     if checks:
-        _check(study, measured, output or Path(f"{config.stem}-check"))
+        _check(study, measured, output or Path(f"{config.stem}-check"), template)
         return
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
@@ -251,7 +261,7 @@ def diagnose(
         spinner("the design with and without")
         diagnosis = with_design(diagnosis, catalogue.grades)
         spinner("report")
-        write_diagnosis(diagnosis, building)
+        write_diagnosis(diagnosis, building, template)
         (building / "diagnosis.json").write_text(f"{diagnosis.to_json()}\n", encoding="utf-8")
         text = diagnosed_config(diagnosis, folder)
         (building / f"{config.stem}.diagnosed.yaml").write_text(text, encoding="utf-8")
@@ -263,7 +273,7 @@ def diagnose(
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
-def _check(study: Study, measured: Measured, folder: Path) -> None:
+def _check(study: Study, measured: Measured, folder: Path, template: Path | None) -> None:
     from designer.cli.tables import print_check
     from designer.cli.terminal import Spinner, announce_compiling
     from designer.diagnosis.check import check
@@ -275,7 +285,7 @@ def _check(study: Study, measured: Measured, folder: Path) -> None:
     with output_folder(folder) as building, Spinner("checking") as spinner:
         found = check(study, study.measurements, measured, spinner)
         spinner("report")
-        write_check(found, building)
+        write_check(found, building, template)
         (building / "diagnosis.json").write_text(f"{found.to_json()}\n", encoding="utf-8")
         written = file_names(building)
     print_check(found, folder, written)
@@ -335,18 +345,23 @@ def init(
         ),
     ] = None,
     example: Annotated[
-        str, typer.Option("--example", metavar="NAME", help="Which study to copy; see --list.")
+        str,
+        typer.Option(
+            "--example",
+            metavar="NAME",
+            help="Which study to copy; see --list.",
+            autocompletion=example_names,
+        ),
     ] = "fast",
     lists: Annotated[
         bool, typer.Option("--list", help="Tell what studies there are, and stop.")
     ] = False,
 ) -> None:
-    """Write a commented study to start from.
+    """Write a commented study to start from, and beside it the schema by which editors check it.
 
     Example:  designer init --example yard my-crane.yaml
     """
-    from designer.io.output import write_new_file
-    from designer.resources import example_file, example_names, example_summary
+    from designer.resources import example_file, example_summary
 
     if lists:
         width = max(len(name) for name in example_names())
@@ -357,5 +372,5 @@ def init(
         names = ", ".join(example_names())
         raise InputError([Fault("--example", None, "", f"there is no example {example!r}", names)])
     target = path or Path(f"{example}.yaml")
-    write_new_file(target, example_file(example).read_text(encoding="utf-8"))
+    write_with_schema(target, example_file(example).read_text(encoding="utf-8"))
     typer.echo(f"{target} written. Next:  designer report {shlex.quote(str(target))}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, output_option, path_of
+from designer.cli.options import NoPlugins, Template, output_option, path_of
 from designer.cli.studies import catalogue_of, study_of
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ def compare(
     a: Annotated[Path, typer.Argument(parser=path_of, metavar="A", help="A study or result.json.")],
     b: Annotated[Path, typer.Argument(parser=path_of, metavar="B", help="Another one.")],
     output: Annotated[Path | None, output_option("A-B-comparison")] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Put two designs side by side: what differs in what was asked, and in the answer.
@@ -51,7 +52,7 @@ def compare(
             for one, catalogue in zip(found, catalogues, strict=True)
         ]
         comparison = compare_results(*results)
-        write_comparison(comparison, (a.name, b.name), building)
+        write_comparison(comparison, (a.name, b.name), building, template)
         text = f"{json_text(comparison.to_dict())}\n"
         (building / "comparison.json").write_text(text, encoding="utf-8")
         written = file_names(building)

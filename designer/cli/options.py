@@ -20,6 +20,15 @@ def path_of(text: str) -> Path:
     return Path(text)
 
 
+def _template_of(text: str) -> Path:
+    """Return the folder of templates that an option names, if it can be used."""
+    from designer.report.templates import check_templates
+
+    folder = path_of(text)
+    check_templates(folder)
+    return folder
+
+
 def output_option(usual: str, metavar: str = "DIR") -> typer.models.OptionInfo:
     """Return the option for the folder, or FILE, to write; ``usual`` is what else is written."""
     what = "Folder" if metavar == "DIR" else "File"
@@ -39,5 +48,14 @@ NoPlugins = Annotated[
     bool,
     typer.Option(
         "--no-plugins", help="Use shipped grades and effects only, for repeatable studies."
+    ),
+]
+Template = Annotated[
+    Path | None,
+    typer.Option(
+        "--template",
+        parser=_template_of,
+        metavar="DIR",
+        help="Folder of page templates and styles of yours, which come before ours.",
     ),
 ]

@@ -6,7 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, GetCoreSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+)
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from designer.documents.bounds import BOUNDS
@@ -23,6 +28,10 @@ from designer.units import (
 )
 
 LONGEST_TEXT = 1000
+_QUANTITY = r"^\s*[-+−]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?\s*(?:[^\s\d.].*)?$"
+"""What a quantity looks like as a text; an editor does not know which units there are."""
+
+JsonSchema = dict[str, Any]
 
 
 def refusal(problem: str, expected: str) -> PydanticCustomError:
@@ -39,8 +48,18 @@ class Reader:
         """Let pydantic read the value by `read`."""
         return core_schema.no_info_plain_validator_function(self.read)
 
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchema:
+        """Tell editors what `read` takes."""
+        return self.json_schema()
+
     def read(self, given: object) -> Any:
         """Return the value, or refuse it."""
+        raise NotImplementedError
+
+    def json_schema(self) -> JsonSchema:
+        """Return what may stand in the file, as a JSON Schema."""
         raise NotImplementedError
 
 
@@ -67,6 +86,15 @@ class QuantityField(Reader):
         if bound:
             raise refusal(f"{describe(given)} is out of range", f"{bound}{self._hint(given)}")
         return value
+
+    def json_schema(self) -> JsonSchema:
+        """Return a number within the limits, or a text with a unit."""
+        ends = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
+        if self.at_least is not None:
+            del ends["exclusiveMinimum"]
+        given = {name: end for name, end in ends.items() if end is not None}
+        text = {"type": "string", "pattern": _QUANTITY, "examples": [self.dimension.example]}
+        return {"anyOf": [{"type": "number", **given}, text], "x-unit": self.dimension.unit}
 
     def _hint(self, given: object) -> str:
         """Return what a bare number was taken for, and what it may have been meant for."""
@@ -111,6 +139,10 @@ class WholeNumber(Reader):
             raise refusal(f"{describe(given)} is out of range", expected)
         return int(value)
 
+    def json_schema(self) -> JsonSchema:
+        """Return a whole number within the limits."""
+        return {"type": "integer", "minimum": self.least, "maximum": self.most}
+
 
 @dataclass(frozen=True)
 class FormatOf(Reader):
@@ -124,6 +156,10 @@ class FormatOf(Reader):
         if why is not None:
             raise refusal(*why)
         return given if isinstance(given, int) else 1
+
+    def json_schema(self) -> JsonSchema:
+        """Return the formats that are read."""
+        return {"type": "integer", "minimum": 1, "maximum": self.newest}
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,18 +176,38 @@ class ReadAs:
         return core_schema.no_info_after_validator_function(lambda read: read.value(), schema)
 
 
-def list_of(least: int, most: int, expected: str) -> BeforeValidator:
-    """Return the check of a list's length, before its items are read."""
+@dataclass(frozen=True)
+class _ListOf:
+    """Annotation of a list: how many items it may have, checked before they are read."""
 
-    def check(given: object) -> object:
+    least: int
+    most: int
+    expected: str
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the items once there are as many as there should be."""
+        return core_schema.no_info_before_validator_function(self._check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchema:
+        """Tell editors how many items there may be."""
+        return {**handler(schema), "minItems": self.least, "maxItems": self.most}
+
+    def _check(self, given: object) -> object:
         if not isinstance(given, list | tuple):
-            raise refusal(f"{describe(given)} is not a list", expected + in_brackets(given))
-        if not least <= len(given) <= most:
+            raise refusal(f"{describe(given)} is not a list", self.expected + in_brackets(given))
+        if not self.least <= len(given) <= self.most:
             count = f"{len(given)} value" + "s" * (len(given) != 1)
-            raise refusal(f"the list has {count}", expected)
+            raise refusal(f"the list has {count}", self.expected)
         return given
 
-    return BeforeValidator(check)
+
+def list_of(least: int, most: int, expected: str) -> _ListOf:
+    """Return the check of a list's length, before its items are read."""
+    return _ListOf(least, most, expected)
 
 
 def only_word(word: str, expected: str) -> BeforeValidator:

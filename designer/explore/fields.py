@@ -16,9 +16,9 @@ from designer.documents.bounds import parameter_bound
 from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Key, Node, path_text
 from designer.effects.effect import Effect
-from designer.explore.meanings import GROUPS, MEANINGS
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import read_effects
+from designer.io.config.meanings import GROUPS, MEANINGS
 from designer.io.config.orientation import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity

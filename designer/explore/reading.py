@@ -9,6 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from designer.documents.document import Document, decode, document_of, read_bytes
+from designer.documents.modeline import with_schema_moved
 from designer.documents.node import Key
 from designer.effects.known import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, OutputError
@@ -74,14 +75,14 @@ class Reading:
         files = root.child("catalogues")
         count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
         places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
-        for keys in [*places, ("measurements", "file")]:
+        for keys in [*places, ("measurements", "file"), ("document", "logo")]:
             node = root
             for key in keys:
                 node = node.child(key) or node
             if isinstance(node.content, str) and not Path(node.content).is_absolute():
                 to = _relative(start / node.content, folder)
                 text = edits.with_value(text, keys, edits.scalar(to))
-        return text
+        return with_schema_moved(text, start, lambda path: _relative(path, folder))
 
 
 def _relative(path: Path, folder: Path) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
+from designer.documents.modeline import with_schema_moved
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
@@ -38,12 +39,14 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
 
     if document.get("catalogues"):
         document["catalogues"] = [moved(source.parent / path) for path in document["catalogues"]]
+    if (control := document.get("document")) and control.get("logo"):
+        control["logo"] = moved(source.parent / control["logo"])
     assert diagnosis.study.measurements is not None
     # The data are not always those that the config names.
     document["measurements"]["file"] = moved(diagnosis.study.measurements.file)
     written = io.StringIO()
     yaml.dump(document, written)
-    return written.getvalue()
+    return with_schema_moved(written.getvalue(), source.parent, moved)
 
 
 def _origin(diagnosis: Diagnosis) -> str:

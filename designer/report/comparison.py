@@ -63,9 +63,11 @@ def comparison_report(found: Comparison, names: tuple[str, str], created: dateti
     )
 
 
-def write_comparison(found: Comparison, names: tuple[str, str], folder: Path) -> None:
+def write_comparison(
+    found: Comparison, names: tuple[str, str], folder: Path, templates: Path | None = None
+) -> None:
     """Write ``comparison.html`` and ``comparison.pdf`` into an existing folder."""
-    write_pages(comparison_report(found, names, datetime.now().astimezone()), folder)
+    write_pages(comparison_report(found, names, datetime.now().astimezone()), folder, templates)
 
 
 def shown(path: str, value: Any) -> str:

@@ -6,41 +6,20 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from designer.errors import Fault, InputError
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
 from designer.report.blocks import Report
 from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
-from designer.resources import data_folder
+from designer.report.templates import check_templates, environment, told_in_one_line
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
-
     from designer.analysis.analyse import Analysis
 
 REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
 """What `designer report` writes; the last two only where the study asks for them."""
-
-
-def environment(user_folder: Path | None = None) -> Environment:
-    """Return the template environment: escaping on, and every undefined name an error.
-
-    Templates of ``user_folder`` come before the shipped ones of the same name; there, the shipped
-    ones are also known under ``default/``, so that ``page.html.j2`` can extend
-    ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
-    """
-    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
-
-    shipped = FileSystemLoader(data_folder("reports"))
-    own = [FileSystemLoader(user_folder)] if user_folder is not None else []
-    return Environment(
-        loader=ChoiceLoader([*own, shipped, PrefixLoader({"default": shipped})]),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def render_html(
@@ -49,7 +28,7 @@ def render_html(
     """Return a report as one self-contained HTML page.
 
     With ``paged`` it is meant for paper: without scenes to turn. For ``user_folder`` see
-    `environment`.
+    `designer.report.templates`.
 
     Raises
     ------
@@ -91,35 +70,53 @@ def render_pdf(html: str) -> bytes:
     return add_outline(stream.getvalue(), html)
 
 
-def write_report(analysis: Analysis, folder: Path | str) -> None:
+def write_report(
+    analysis: Analysis, folder: Path | str, template: Path | str | None = None
+) -> None:
     """Write the report and all results into a folder, as `designer report` does; all or nothing.
 
     An earlier report in the folder is replaced. Where this machine cannot draw in space, the report
-    says which pictures are left out.
+    says which pictures are left out. ``template`` is a folder of templates that come before ours.
 
     Raises
     ------
     OutputError
         If it cannot be written.
+    InputError
+        If a template is faulty.
     """
+    templates = None if template is None else Path(template)
+    if templates is not None:
+        check_templates(templates)
     with output_folder(Path(folder), REPORT_FILES) as building:
-        write_report_pages(analysis, building)
+        write_report_pages(analysis, building, templates)
         write_results(analysis, building)
 
 
-def write_report_pages(analysis: Analysis, folder: Path) -> None:
+def write_report_pages(analysis: Analysis, folder: Path, templates: Path | None = None) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
-    write_pages(design_report(analysis), folder)
+    write_pages(design_report(analysis), folder, templates)
 
 
-def write_pages(report: Report[Any], folder: Path) -> None:
+def write_pages(report: Report[Any], folder: Path, templates: Path | None = None) -> None:
     """Write a report as HTML and as PDF, named after it, into an existing folder.
 
     Both are made before either is written, and each takes its name only when it is whole.
+    ``templates`` is a folder of the user's.
+
+    Raises
+    ------
+    InputError
+        If a template of the user is faulty, or loads anything into its page.
     """
-    files = {
-        f"{report.name}.html": render_html(report).encode(),
-        f"{report.name}.pdf": render_pdf(render_html(report, paged=True)),
-    }
+    with told_in_one_line(templates):
+        pages = [render_html(report, paged=paged, user_folder=templates) for paged in (False, True)]
+    try:
+        pdf = render_pdf(pages[1])
+    except ValueError as error:
+        if templates is None:
+            raise
+        raise InputError([Fault(str(templates), None, "", str(error))]) from error
+    files = {f"{report.name}.html": pages[0].encode(), f"{report.name}.pdf": pdf}
     for name, content in files.items():
         write_whole(folder / name, content)

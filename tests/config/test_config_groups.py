@@ -79,3 +79,10 @@ def test_limit_must_be_a_whole_number(valid: str, faults_of: FaultsOf, limit: st
 def test_limit_without_groups(valid: str, faults_of: FaultsOf) -> None:
     faults = faults_of(f"{valid}  max_distinct_products: 2\n")
     assert [fault.problem for fault in faults] == ["has no meaning without selection.groups"]
+
+
+def test_a_selection_needs_a_workspace(valid: str, faults_of: FaultsOf) -> None:
+    start, end = valid.index("workspace:"), valid.index("selection:")
+    (fault,) = faults_of(valid[:start] + valid[end:])
+    assert (fault.field, fault.line) == ("selection", valid[:start].count("\n") + 1)
+    assert "workspace" in fault.problem

@@ -13,6 +13,7 @@ from twins.robots import HALL6, HALL8, YARD3
 from designer.diagnosis.case import case_of
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose
+from designer.documents.modeline import SCHEMA_FILE, with_modeline
 from designer.io.config import read_study
 from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
@@ -86,14 +87,19 @@ def test_what_is_declared_and_found_acts_in_one_order(tmp_path) -> None:
     assert found.final.length_m.heldout.value < 1.2 * YARD3.noise_m
 
 
-def test_it_names_the_data_that_were_diagnosed(tmp_path) -> None:
+def test_it_names_the_files_from_where_it_lies(tmp_path) -> None:
     path = make(YARD3, rows=32).write(tmp_path)
+    (tmp_path / "logo.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    more = "document: {logo: logo.svg}\n"
+    path.write_text(with_modeline(f"{path.read_text(encoding='utf-8')}\n{more}"), encoding="utf-8")
     (tmp_path / "measured.csv").rename(tmp_path / "new.csv")
     study = read_study(path)
     study = replace(study, measurements=replace(study.measurements, file=tmp_path / "new.csv"))
     case = case_of(study, study.measurements, read_measured(study))
     text = diagnosed_config(diagnose(replace(case, candidates=())), tmp_path / "out")
     assert yaml.safe_load(text)["measurements"]["file"] == "../new.csv"
+    assert yaml.safe_load(text)["document"]["logo"] == "../logo.svg"
+    assert text.startswith(f"# yaml-language-server: $schema=../{SCHEMA_FILE}\n")
 
 
 def test_what_is_unknown_stays_so_and_is_fitted_again(tmp_path) -> None:

@@ -147,6 +147,13 @@ def each_cable_in_one_group(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_GROUPS, f"cables {listed} are in no group", once)
 
 
+def selection_has_workspace(parts: Parts) -> Iterator[Fault]:
+    """A product is chosen for a workspace."""
+    if parts.raw("selection") is not None and parts.raw("workspace") is None:
+        expected = "a workspace that the rope is to serve, or no selection"
+        yield parts.fault("selection", "has no meaning without a workspace", expected)
+
+
 def limit_has_groups(parts: Parts) -> Iterator[Fault]:
     """A limit on the number of products needs groups that may differ."""
     path = "selection.max_distinct_products"
@@ -254,6 +261,7 @@ _CHECKS = (
     places_are_near,
     catalogues_exist,
     each_cable_in_one_group,
+    selection_has_workspace,
     limit_has_groups,
     load_cases_fit,
     effects_are_known,

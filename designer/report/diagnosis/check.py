@@ -40,9 +40,9 @@ def check_report(check: Check, provenance: Provenance) -> Report[None]:
     return Report.of("check", *about, None, sections)
 
 
-def write_check(check: Check, folder: Path) -> None:
+def write_check(check: Check, folder: Path, templates: Path | None = None) -> None:
     """Write ``check.html`` and ``check.pdf`` into an existing folder."""
-    write_pages(check_report(check, Provenance.now()), folder)
+    write_pages(check_report(check, Provenance.now()), folder, templates)
 
 
 def _verdict(check: Check) -> Statement:

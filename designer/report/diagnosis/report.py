@@ -48,9 +48,9 @@ def diagnosis_report(diagnosis: Diagnosis, provenance: Provenance) -> Report[Fir
     return Report.of("diagnosis", *about, first_page(diagnosis), sections, control=control)
 
 
-def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
+def write_diagnosis(diagnosis: Diagnosis, folder: Path, templates: Path | None = None) -> None:
     """Write ``diagnosis.html`` and ``diagnosis.pdf`` into an existing folder."""
-    write_pages(diagnosis_report(diagnosis, Provenance.now()), folder)
+    write_pages(diagnosis_report(diagnosis, Provenance.now()), folder, templates)
 
 
 def _provenance(diagnosis: Diagnosis, provenance: Provenance) -> Section:

@@ -1,4 +1,4 @@
-"""What the numbers of a study are called, and what each is: by their paths without list places."""
+"""What the fields of a study are called and mean: by their paths without list places."""
 
 from __future__ import annotations
 
@@ -202,3 +202,73 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     ),
 }
 """Title and definition."""
+
+WORDS: Mapping[str, str] = {
+    "name": "Title of the report.",
+    "robot": "The machine.",
+    "robot.platform": "What the cables carry.",
+    "robot.platform.wrench": "Constant load beside the weight, at the origin of the platform's "
+    "frame.",
+    "robot.platform.drag": "What the wind of a load case finds of the platform.",
+    "robot.platform.drag.area": "Area across the wind.",
+    "robot.platform.drag.coefficient": "Force over pressure times area.",
+    "cable": "The family of cables in which the optimum is computed: by its figures, or a grade "
+    "as if it were sold in every diameter.",
+    "cable.grade": "Id of a grade, from `designer catalog list`.",
+    "cable.drag_coefficient": "Drag of the cables in the wind of a load case, on their diameter.",
+    "pose": "One pose that the report shows in detail.",
+    "pose.quaternion": "Orientation as a unit quaternion [w, x, y, z] from the platform's frame "
+    "to the world.",
+    "pose.euler": "Orientation as three turns, one after the other.",
+    "pose.euler.convention": "Order of the axes: XYZ turn with the platform, xyz stay.",
+    "workspace": "All poses that the cable has to serve.",
+    "workspace.region": "Where the platform works: one of prism, box, points and rectangle.",
+    "workspace.orientation": "How the platform is turned at every position.",
+    "workspace.orientation.quaternion": "Orientation as a unit quaternion [w, x, y, z].",
+    "workspace.orientation.euler": "Orientation as three turns, one after the other.",
+    "workspace.orientation.euler.convention": "Order of the axes: XYZ turn with the platform, "
+    "xyz stay.",
+    "workspace.orientations": "Several orientations, all of them asked for at every position.",
+    "workspace.orientation_range": "All rotation vectors between two ends a component, zero where "
+    "left out, asked for at every position.",
+    "selection": "Which rope to buy.",
+    "selection.grades": "Grades to choose among: all, or a list of ids from "
+    "`designer catalog list`.",
+    "selection.objectives": "What ropes are compared by; the first decides.",
+    "selection.groups": "Cables that may get a rope of their own: names, each with its cable "
+    "numbers, counted from 1 in the order of the anchors.",
+    "load_cases": "Load cases, in each of which the rope has to hold everywhere; left out, there "
+    "is one case without wind, ice, motion or loss of a cable.",
+    "load_cases.name": "What the report calls the case.",
+    "load_cases.wrench": "Constant load on the platform in this case, instead of the robot's.",
+    "load_cases.wind": "Wind on the platform and on the cables.",
+    "load_cases.wind.direction": "Where the wind blows to; instead of `directions`.",
+    "load_cases.ice": "Ice around the cables.",
+    "load_cases.region": "Where the platform is in this case, instead of the workspace's region.",
+    "catalogues": "Rope tables of your own: files or folders, relative to this file.",
+    "measurements": "What was measured on the built machine, for `designer diagnose`.",
+    "measurements.file": "The table, a CSV file, relative to this file.",
+    "measurements.columns": "What the file's columns are, where their names are not ours.",
+    "measurements.columns.to": "Our name, such as length_1_m; ignore; or covariate.",
+    "measurements.columns.unit": "Unit of the readings.",
+    "measurements.columns.scale": "Factor from the readings to ours; instead of a unit.",
+    "measurements.columns.offset": "What is added after that, as a quantity.",
+    "measurements.unknown": "Effects that are fitted from the start and not counted as a finding; "
+    "`anchors` for all exit points; `poses` where lengths and tensions have to tell them.",
+    "measurements.cable": "The cable that was on the machine.",
+    "measurements.noise": "Standard deviations of one reading; estimated from the data where left "
+    "out.",
+    "measurements.noise.estimated": "Which of them a diagnosis has estimated; it writes this.",
+    "effects": "What the machine is known to do beside the rest, by the ids of effects; "
+    "`designer diagnose` writes here what it finds.",
+    "surroundings": "What the laws of effects are given in a design.",
+    "document": "What a drawing office writes at the head of the report.",
+    "document.number": "Number of the document.",
+    "document.revision": "Its revision.",
+    "document.author": "Who made it.",
+    "document.checker": "Who checked it.",
+    "document.approver": "Who approved it.",
+    "document.logo": "A picture for the head, PNG, JPEG or SVG, relative to this file.",
+    "format": "Format of this file, for later versions of the program.",
+}
+"""What all else is: sections, texts and choices."""

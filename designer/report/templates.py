@@ -1,0 +1,93 @@
+"""Templates of reports: ours, and before them those of a folder of the user's."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from designer.errors import Fault, InputError
+from designer.resources import data_folder
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_KINDS = ("*.j2", "*.css")
+
+
+def environment(user_folder: Path | None = None) -> Environment:
+    """Return the template environment: escaping on, and every undefined name an error.
+
+    Templates of ``user_folder`` come before the shipped ones of the same name; there, the shipped
+    ones are also known under ``default/``, so that ``page.html.j2`` can extend
+    ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
+    """
+    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
+
+    shipped = FileSystemLoader(data_folder("reports"))
+    own = [FileSystemLoader(user_folder)] if user_folder is not None else []
+    return Environment(
+        loader=ChoiceLoader([*own, shipped, PrefixLoader({"default": shipped})]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def check_templates(folder: Path) -> None:
+    """Refuse, before any work, a folder of templates that cannot be used.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder, none of its files is a template, or one of them is not well
+        formed.
+    """
+    if not folder.is_dir():
+        problem = "is a file" if folder.is_file() else "there is no such folder"
+        raise InputError([Fault(str(folder), None, "", problem, "a folder of templates")])
+    names = sorted(path.relative_to(folder) for kind in _KINDS for path in folder.rglob(kind))
+    if not names:
+        expected = "page.html.j2, report.css or another template of cdpr-designer"
+        raise InputError([Fault(str(folder), None, "", "holds no template", expected)])
+    with told_in_one_line(folder):
+        own = environment(folder)
+        for name in names:
+            own.get_template(name.as_posix())
+
+
+@contextmanager
+def told_in_one_line(folder: Path | None) -> Iterator[None]:
+    """Turn whatever goes wrong in a template of the user's into a line that names it.
+
+    Raises
+    ------
+    InputError
+        If a template of the folder is faulty; what goes wrong in ours is raised as it is.
+    """
+    from jinja2 import TemplateSyntaxError
+
+    try:
+        yield
+    except Exception as error:
+        place = _place(error, folder) if folder is not None else None
+        if place is None:
+            raise
+        if isinstance(error, TemplateSyntaxError):
+            place = error.filename or place[0], error.lineno
+        problem = str(error) or type(error).__name__
+        raise InputError([Fault(*place, "", problem, "a template of Jinja")]) from error
+
+
+def _place(error: Exception, folder: Path) -> tuple[str, int | None] | None:
+    """Return file and line of the innermost template of the folder that had a part in it."""
+    filename = getattr(error, "filename", None)  # of a template that is not well formed
+    frames = traceback.extract_tb(error.__traceback__)
+    places = [(frame.filename, frame.lineno) for frame in reversed(frames)]
+    for name, line in [*([(filename, None)] if filename else []), *places]:
+        if Path(name).is_relative_to(folder):
+            return name, line
+    return None

@@ -1,0 +1,97 @@
+"""The figures of the explanation, drawn from the package."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import designer
+from designer.arrays import frozen_array
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
+from designer.model.robot import Platform, Poses, Robot
+from designer.physics.catenary import end_tensions_N, forces_from_length, position_m
+from designer.sizing.limit import limit_ratio
+from designer.sizing.newton import size_poses
+
+
+def draw_all(folder):
+    """Draw each figure that is not there yet."""
+    plt.switch_backend("Agg")
+    folder.mkdir(exist_ok=True)
+    for draw in (catenary, sizing, internal, cone):
+        path = Path(folder, f"{draw.__name__}.svg")
+        if not path.exists():
+            figure, axes = plt.subplots(figsize=(6.4, 3.2), layout="constrained")
+            draw(axes)
+            figure.savefig(path, metadata={"Date": None})
+            plt.close(figure)
+
+
+def catenary(axes):
+    """One cable of the paper's robot between two points, paid out further and further."""
+    section_m2 = np.pi / 4 * 0.032**2
+    weight = 7800.0 * section_m2 * STANDARD_GRAVITY_M_PER_S2
+    stiffness = 200e9 * section_m2
+    for paid_out_m in (320.4, 321, 324, 332):
+        force_x, force_z = forces_from_length(paid_out_m, 316.2, 50.0, stiffness, weight)
+        s = np.linspace(0.0, paid_out_m, 200)
+        x, z = position_m(s, paid_out_m, force_x, force_z, stiffness, weight)
+        top, _ = end_tensions_N(paid_out_m, force_x, force_z, weight)
+        axes.plot(x, z, label=f"{paid_out_m:g} m paid out: {top / 1e3:.0f} kN")
+    axes.plot([0, 316.2], [0, -50], "k.")
+    axes.set(xlabel="horizontal distance [m]", ylabel="height [m]")
+    axes.legend(frameon=False)
+
+
+def sizing(axes):
+    """The needed diameter from the middle of the paper's robot toward its edge."""
+    study = designer.read_study(designer.example_file("fast"), with_plugins=False)
+    robot, middle = study.robot, study.robot.exit_points_m.mean(axis=0)
+    share = np.linspace(0.0, 0.97, 120)
+    at = middle + share[:, None] * ([250.0, 0.0, 0.0] - middle) + [0.0, 0.0, -50.0]
+    found = size_poses(robot, Poses.at(at), study.material)
+    ratio = limit_ratio(robot, Poses.at(at), study.material)
+    distance_m = np.linalg.norm(at[:, :2] - middle[:2], axis=1)
+    axes.plot(distance_m, 1e3 * found.massless_diameter_m, label="weightless cables")
+    axes.plot(distance_m, 1e3 * found.diameter_m, label="cables with their weight")
+    end_m = distance_m[ratio < 1.0].max()
+    axes.axvline(end_m, color="k", linestyle=":", label="no finite cable beyond")
+    axes.set(xlabel="distance from the middle [m]", ylabel="needed diameter [mm]", ylim=(0, 120))
+    axes.legend(frameon=False)
+
+
+def internal(axes):
+    """All tensions of four cables that hold a point: one choice is left."""
+    anchors = np.array([[0, 0, 30], [80, 0, 30], [80, 50, 30], [0, 50, 30]])
+    robot = Robot(frozen_array(anchors), Platform(900.0))
+    pulls = anchors - [30.0, 20.0, 12.0]
+    matrix = (pulls / np.linalg.norm(pulls, axis=1, keepdims=True)).T
+    weight_N = robot.platform.mass_kg * STANDARD_GRAVITY_M_PER_S2
+    one = np.linalg.lstsq(matrix, [0.0, 0.0, weight_N], rcond=None)[0]
+    free = np.linalg.svd(matrix)[2][-1]
+    choice = np.linspace(-9e3, 9e3, 400)
+    tension_kN = (one[:, None] + free[:, None] * choice) / 1e3
+    for number, row in enumerate(tension_kN, start=1):
+        axes.plot(choice / 1e3, row, label=f"cable {number}")
+    largest = np.where((tension_kN >= 0).all(axis=0), tension_kN.max(axis=0), np.inf)
+    best = choice[np.argmin(largest)] / 1e3
+    axes.axvline(best, color="k", linestyle=":", label="smallest largest tension")
+    axes.axhline(0, color="k", linewidth=0.8)
+    axes.set(xlabel="internal force [kN]", ylabel="tension [kN]", ylim=(-3, 12))
+    axes.legend(frameon=False, ncols=2)
+
+
+def cone(axes):
+    """What two cables of a plane can do with a platform between them, whatever they weigh."""
+    for x, colour in ((-3.0, "C0"), (2.0, "C1")):
+        axes.plot([x, 0], [2, 0], "--", color=colour, linewidth=1)
+        axes.annotate("", (x / 2, 1), (0, 0), arrowprops={"arrowstyle": "->", "color": colour})
+        axes.plot(x, 2, "o", color=colour)
+    axes.annotate("", (0, -1.4), (0, 0), arrowprops={"arrowstyle": "->", "color": "C2"})
+    axes.fill([0, -3, -3, 0], [0, 2, -1.6, -1.6], color="C2", alpha=0.15)
+    axes.fill([0, 2, 2, 0], [0, 2, -1.6, -1.6], color="C2", alpha=0.15)
+    axes.fill([0, -3, 2], [0, 2, 2], color="C0", alpha=0.15)
+    axes.text(-0.7, 1.5, "straight cables reach this")
+    axes.text(-2.8, -1.2, "sagging ones also this", color="C2")
+    axes.set(aspect="equal", xlim=(-3.3, 2.3), ylim=(-1.7, 2.3))
+    axes.set_axis_off()

@@ -1,0 +1,170 @@
+"""Pages that the code writes: a line `<!-- generated: NAME -->` is replaced by its text."""
+
+import re
+
+from typer.main import get_command
+
+from designer.cli.commands import app as commands
+from designer.effects.effect import NEEDS
+from designer.effects.registry import SHIPPED
+from designer.io.config.json_schema import study_schema
+from designer.model.verdict import Verdict
+from designer.resources import data_folder
+
+_MARK = re.compile(r"^<!-- generated: (\w+) -->$", re.MULTILINE)
+_NOWHERE = {"type": "null"}
+
+
+def fill(app, page, source):
+    """Sphinx calls it for each page that it reads."""
+    source[0] = _MARK.sub(lambda found: WRITERS[found[1]](), source[0])
+
+
+def config():
+    """Every field of the study: one table for each section."""
+    properties = study_schema(SHIPPED.by_id)["properties"]
+    single = {name: one for name, one in properties.items() if not _sections(one)}
+    text = f"## On the first level\n\n{_table(_rows({'properties': single}, ''))}\n"
+    for name, schema in properties.items():
+        if name not in single and name != "effects":
+            about = schema.get("description", "")
+            rows = dict.fromkeys(_rows_in(schema, name))
+            text += f"\n## `{name}`\n\n{about}\n\n{_table(rows)}\n"
+    return text
+
+
+def _rows_in(schema, path):
+    for section in _sections(schema):
+        yield from _rows(section, path)
+
+
+def _rows(section, path):
+    for name, one in section["properties"].items():
+        place = f"{path}.{name}".lstrip(".")
+        default = f"`{_plain(one['default'])}`" if "default" in one else ""
+        if name in section.get("required", ()):
+            default = "required"
+        yield f"`{place}`", _kind(one), default, _meaning(one)
+        yield from _rows_in(one, place)
+
+
+def _meaning(one):
+    return one.get("description", "").replace("|", "\\|")
+
+
+def _plain(value):
+    if isinstance(value, list):
+        return f"[{', '.join(map(_plain, value))}]"
+    return f"{value:g}" if isinstance(value, float) else str(value).lower()
+
+
+def _sections(schema):
+    """Mappings with fields that a schema allows, wherever in lists and alternatives."""
+    if "properties" in schema:
+        return [schema]
+    parts = [*schema.get("anyOf", ()), *schema.get("oneOf", ())]
+    below = (schema.get("items"), schema.get("additionalProperties"))
+    parts += [one for one in below if isinstance(one, dict)]
+    return [section for part in parts for section in _sections(part)]
+
+
+def _kind(schema):
+    """What may stand there, in words."""
+    if "x-unit" in schema:
+        number = schema["anyOf"][0]
+        return f"{schema['x-unit'] or 'number'}, {number['minimum']:g} to {number['maximum']:g}"
+    kinds = [one for one in (*schema.get("anyOf", ()), *schema.get("oneOf", ())) if one != _NOWHERE]
+    if kinds:
+        return " or ".join(dict.fromkeys(map(_kind, kinds)))
+    if "enum" in schema or "const" in schema:
+        return ", ".join(f"`{one}`" for one in schema.get("enum", [schema.get("const")]))
+    return _KINDS.get(schema.get("type"), lambda _: "quantity")(schema)
+
+
+def _list(schema):
+    least, most = schema.get("minItems"), schema.get("maxItems")
+    return f"list{f' of {least}' if least == most else ''}: {_kind(schema['items'])}"
+
+
+_KINDS = {
+    "array": _list,
+    "integer": lambda schema: f"whole number, {schema['minimum']} to {schema['maximum']}",
+    "object": lambda _: "mapping",
+    "string": lambda _: "text",
+    "boolean": lambda _: "`true`, `false`",
+}
+
+
+def _table(rows, head=("field", "value", "default", "meaning")):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)]) + "\n"
+
+
+def effects():
+    """All effects: what they change, their parameters, what the data must have."""
+    return _table(
+        (
+            (
+                f"`{one.id}`",
+                ", ".join(f"`{p.name.format(cable='1')}`" for p in one.parameters)
+                + (" and `cable`" if one.takes_cable else ""),
+                one.law.replace("|", "\\|"),
+                ", ".join(NEEDS[need] for need in sorted(one.needs)),
+                one.source,
+            )
+            for one in SHIPPED.effects
+        ),
+        ("effect", "parameters", "law", "needs", "source"),
+    )
+
+
+def verdicts():
+    """What may become of a pose."""
+    rows = ((f"`{verdict.label}`", verdict.sentence, verdict.advice) for verdict in Verdict)
+    return _table(rows, ("verdict", "meaning", "what to do"))
+
+
+def commands_page():
+    """Every command with its arguments and options, as `--help` has them."""
+    return "\n".join(_command(get_command(commands), "designer"))
+
+
+def _command(command, path):
+    yield f"## `{path}`\n" if getattr(command, "commands", None) else f"### `{path}`\n"
+    yield f"{_help(command.help or '')}\n"
+    rows = [
+        (_name(one), (getattr(one, "help", "") or "").replace("|", "\\|"))
+        for one in command.params
+        if one.name != "help"
+    ]
+    if rows:
+        yield _table(rows, ("argument", "meaning"))
+    for name, below in getattr(command, "commands", {}).items():
+        yield from _command(below, f"{path} {name}")
+
+
+def _help(text):
+    """Return a help text; its examples as code."""
+    return re.sub(r"^(.*?):  (designer .*)$", r"\1: `\2`", text, flags=re.MULTILINE)
+
+
+def _name(parameter):
+    metavar = parameter.metavar or ""
+    if parameter.param_type_name == "argument":
+        return f"`{metavar}`"
+    return f"`{', '.join(parameter.opts)}{' ' + metavar if metavar else ''}`"
+
+
+def nomenclature():
+    """The table that closes every report."""
+    path = data_folder("reports") / "report" / "nomenclature.html.j2"
+    return f"```{{raw}} html\n{path.read_text(encoding='utf-8')}\n```"
+
+
+WRITERS = {
+    "config": config,
+    "effects": effects,
+    "verdicts": verdicts,
+    "commands": commands_page,
+    "nomenclature": nomenclature,
+}

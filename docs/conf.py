@@ -1,0 +1,46 @@
+"""How the site is built: `sphinx-build -W docs build/docs`. Needs no network."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "build_helpers"))
+
+import figures  # noqa: E402
+import generated  # noqa: E402
+
+from designer import __version__  # noqa: E402
+
+project = "cdpr-designer"
+author = "the cdpr-designer contributors"
+project_copyright = author
+version = release = __version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "mathml"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+exclude_patterns = ["build_helpers"]
+
+default_role = "code"  # numpydoc texts write `names` so
+numpydoc_show_class_members = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the parameters' docs say units and shapes, which types do not
+
+html_theme = "pydata_sphinx_theme"
+html_title = f"cdpr-designer {release}"
+html_static_path = ["_static"]
+html_css_files = ["own.css"]
+html_show_sourcelink = False
+html_theme_options = {
+    "navigation_with_keys": False,
+    "show_prev_next": True,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_end": [],
+}
+html_math_renderer = "mathml"
+
+
+def setup(app):
+    """Fill the pages that are made from the code, and draw the figures."""
+    app.connect("builder-inited", lambda app: figures.draw_all(HERE / "explanation" / "figures"))
+    app.connect("source-read", generated.fill)

@@ -1,0 +1,105 @@
+"""A folder of templates of the user's: before ours, in every report, faults in one line."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from designer.cli.commands import main
+from designer.errors import InputError
+from designer.report.blocks import Report, Section
+from designer.report.render import render_html, write_pages
+from designer.report.templates import check_templates
+
+EXTENDS = '{% extends "default/page.html.j2" %}'
+
+
+def report() -> Report[None]:
+    sections = (Section("inputs", "What was asked", ()),)
+    when = "2026-01-02"
+    return Report("comparison", "Crane", "Comparison", "designer", when, when, None, sections)
+
+
+def page(folder: Path, text: str, name: str = "page.html.j2") -> Path:
+    (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def fault(folder: Path, out: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        write_pages(report(), out, folder)
+    assert list(out.iterdir()) == []
+    return str(caught.value)
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    folder = tmp_path / "out"
+    folder.mkdir()
+    return folder
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    return folder
+
+
+def test_a_page_and_a_style_of_ones_own_extend_ours(own: Path, out: Path) -> None:
+    page(own, EXTENDS + "{% block footer %}<p>Acme Cranes</p>{% endblock %}")
+    page(own, '{% include "default/report.css" %}\n:root { --accent: #c00; }', "report.css")
+    check_templates(own)
+    write_pages(report(), out, own)
+    html = (out / "comparison.html").read_text(encoding="utf-8")
+    assert "Acme Cranes" in html
+    assert html.index("--accent: #1b5e8c") < html.index("--accent: #c00")
+    assert (out / "comparison.pdf").stat().st_size > 1000
+    assert "Acme Cranes" not in render_html(report())
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "problem"),
+    [
+        ("\n{% block %}", 2, "expected token"),
+        ("a\n\n{{ 1 + }}", 3, "end of print statement"),
+        ("{% if x %}", 1, "end of template"),
+    ],
+)
+def test_what_is_not_well_formed_is_told_before_any_work(
+    own: Path, text: str, line: int, problem: str
+) -> None:
+    page(own, text)
+    with pytest.raises(InputError) as caught:
+        check_templates(own)
+    assert str(caught.value).startswith(f"{own / 'page.html.j2'}:{line}: ")
+    assert problem in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_goes_wrong_on_the_way_names_its_line(own: Path, out: Path) -> None:
+    page(own, EXTENDS + "\n{% block footer %}\n{{ report.titel }}{% endblock %}")
+    assert fault(own, out).startswith(f"{own / 'page.html.j2'}:3: ")
+    page(own, EXTENDS + "\n{% block footer %}{{ 1 / 0 }}{% endblock %}")
+    assert fault(own, out).startswith(f"{own / 'page.html.j2'}:2: division by zero")
+    page(own, '{% extends "defalt/page.html.j2" %}')
+    assert "defalt/page.html.j2" in fault(own, out)
+
+
+def test_a_page_that_loads_from_outside_is_refused(own: Path, out: Path) -> None:
+    page(own, EXTENDS + '{% block footer %}<img src="logo.png">{% endblock %}')
+    assert "logo.png" in fault(own, out)
+    assert "data URI" in fault(own, out)
+
+
+def test_the_command_refuses_a_folder_that_is_none(
+    own: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder, problem in ((own / "x", "there is no such folder"), (own, "holds no template")):
+        monkeypatch.setattr(sys, "argv", ["designer", "report", "a", "--template", str(folder)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        assert stop.value.code == 2
+        assert capsys.readouterr().err.startswith(f"{folder}: {problem} (expected ")
