@@ -102,7 +102,7 @@ class Files:
         assert session is not None
         self._told_disk = "same"
         self._window.work.show_notice("")
-        self._window.refresh_fields()
+        self._window.editing.show()
         self._window.changed()
         self._window.statusBar().showMessage(f"Saved {session.file}", 8000)
         return True
@@ -119,7 +119,7 @@ class Files:
             return
         self._told_disk = "same"
         self._window.work.show_notice("")
-        self._window.refresh_fields()
+        self._window.editing.show()
         self._window.changed()
 
     def may_leave(self) -> bool:

@@ -86,15 +86,15 @@ class Menus:
         window = self._window
         self._add(
             self._menu("&Edit", "edit menu"),
-            Entry("undo", "&Undo", "Ctrl+Z", "Take back the last step", window.undo),
-            Entry("redo", "&Redo", "Ctrl+Shift+Z", "Do it again", window.redo),
+            Entry("undo", "&Undo", "Ctrl+Z", "Take back the last step", window.editing.undo),
+            Entry("redo", "&Redo", "Ctrl+Shift+Z", "Do it again", window.editing.redo),
             None,
             Entry(
                 "put all back",
                 "&Put everything back",
                 "",
                 "Make the whole study as the file has it",
-                window.put_all_back,
+                window.editing.put_all_back,
             ),
         )
 
@@ -140,16 +140,17 @@ class Menus:
         self._add(
             self._menu("&Platform", "platform menu"),
             Entry("to worst", "To the &worst pose", "Ctrl+G", "Where most is asked of the rope",
-                  window.to_worst),
+                  window.moving.to_worst),
             Entry("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
-                  window.to_pose),
+                  window.moving.to_pose),
             None,
             Entry("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
-                  window.pin),
-            Entry("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing", window.release),
+                  window.comparing.pin),
+            Entry("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing",
+                  window.comparing.release),
             None,
             Entry("keep pose", "&Keep as the pose of the study", "Ctrl+K",
-                  "Writes this place under `pose`", window.keep_pose),
+                  "Writes this place under `pose`", window.moving.keep),
         )  # fmt: skip
 
     def _add(self, menu: QMenu, *entries: Entry | None) -> None:

@@ -9,7 +9,6 @@ from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from designer.arrays import FloatArray
+from designer.explore.desktop.choice import Choice
 from designer.explore.desktop.theme import LIGHT, Theme
 from designer.report import format as fmt
 from designer.report.figures.overlay import ticks_between
@@ -45,9 +45,7 @@ class PanelMeasured(QWidget):
         self.setObjectName("measured")
         self._residuals: Residuals | None = None
         self._found: DiagnosisAnswer | None = None
-        self.channel, self.over = QComboBox(), QComboBox()
-        self.channel.setObjectName("channel")
-        self.over.setObjectName("covariate")
+        self.channel, self.over = Choice("channel", 14), Choice("covariate", 10)
         self.without = QCheckBox("also without effects")
         self.without.setObjectName("without effects")
         self.without.setToolTip(
@@ -59,7 +57,6 @@ class PanelMeasured(QWidget):
         self.plot = ScatterPlot()
         for box in (self.channel, self.over):
             box.currentIndexChanged.connect(self._draw)
-            box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.without.toggled.connect(self._draw)
         self._diagnose = QPushButton("Diagnose")
         self._diagnose.setObjectName("diagnose")
@@ -124,8 +121,8 @@ class PanelMeasured(QWidget):
             for name, column in zip(residuals.channels, residuals.residual.T, strict=True)
             if np.isfinite(column).any()
         ]
-        _refill(self.channel, [_ALL, *measured])
-        _refill(self.over, list(residuals.covariates))
+        self.channel.refill([_ALL, *measured])
+        self.over.refill(list(residuals.covariates))
         self._draw()
 
     def show_diagnosis(self, found: DiagnosisAnswer | None) -> None:
@@ -249,11 +246,3 @@ class ScatterPlot(QWidget):
         below = QRectF(area.left(), area.bottom() + line, area.width(), line + 4)
         painter.drawText(below, Qt.AlignmentFlag.AlignHCenter, self._labels[0])
         painter.drawText(QPointF(area.left() + 6, area.top() + line), self._labels[1])
-
-
-def _refill(box: QComboBox, texts: list[str]) -> None:
-    if [box.itemText(k) for k in range(box.count())] != texts:
-        box.blockSignals(True)
-        box.clear()
-        box.addItems(texts)
-        box.blockSignals(False)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from designer.explore.desktop.choice import Choice
 from designer.explore.desktop.tables import SORT, Column, Index, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
 from designer.report import format as fmt
@@ -130,11 +130,8 @@ class PanelRopes(QWidget):
         rows.addWidget(self.table, 1)
 
     def _above(self) -> QHBoxLayout:
-        self.material, self.maker = QComboBox(), QComboBox()
-        self.material.setObjectName("material")
-        self.maker.setObjectName("maker")
-        self.material.addItem(_ALL_MATERIALS)
-        self.maker.addItem(_ALL_MAKERS)
+        self.material = Choice("material", 9, _ALL_MATERIALS)
+        self.maker = Choice("maker", 9, _ALL_MAKERS)
         self.material.currentTextChanged.connect(self._filter)
         self.maker.currentTextChanged.connect(self._filter)
         self.only_holding = QCheckBox("only what holds")
@@ -195,8 +192,8 @@ class PanelRopes(QWidget):
         self._ropes, self._rope = ropes, rope
         self.model.show(() if ropes is None else ropes.rows)
         if ropes is not None:
-            _refill(self.material, [_ALL_MATERIALS, *ropes.materials])
-            _refill(self.maker, [_ALL_MAKERS, *ropes.makers])
+            self.material.refill([_ALL_MATERIALS, *ropes.materials])
+            self.maker.refill([_ALL_MAKERS, *ropes.makers])
         self.answer.setText("" if ropes is None else _answer(ropes))
         self.answer.setToolTip(self.answer.text())
         groups = None if ropes is None else ropes.groups
@@ -278,15 +275,3 @@ def _groups_text(groups: Groups) -> str:
     masses = f"{fmt.kilograms(groups.total_mass_kg)}, one rope for all "
     masses += fmt.kilograms(groups.single_mass_kg)
     return f"Groups: {'; '.join(each)}. All cables {masses}. {groups.proof}"
-
-
-def _refill(box: QComboBox, texts: list[str]) -> None:
-    """Offer these texts; the present one stays where it still is among them."""
-    if [box.itemText(k) for k in range(box.count())] == texts:
-        return
-    present = box.currentText()
-    box.blockSignals(True)
-    box.clear()
-    box.addItems(texts)
-    box.setCurrentText(present if present in texts else texts[0])
-    box.blockSignals(False)

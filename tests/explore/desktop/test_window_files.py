@@ -211,3 +211,11 @@ def test_layout_theme_and_recent_files_are_remembered(
     assert again.settings.recent == (tmp_path / "yard.yaml",)
     again.window.menus.themes["light"].trigger()
     again.close()
+
+
+def test_another_theme_takes_no_more_room(yard: Driver) -> None:
+    for theme in ("dark", "light"):
+        yard.window.menus.themes[theme].trigger()
+        yard.rest()
+        assert yard.window.width() == 1280
+        assert yard.window.docks["Here"].geometry().right() < yard.window.width()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import gc
 import resource
+import threading
 import time
+from itertools import count
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer
 from PySide6.QtTest import QTest
@@ -49,11 +51,13 @@ def test_two_hundred_moves_of_a_slider_leave_nothing_behind(yard: Driver) -> Non
 
 
 class Heartbeat(QObject):
-    """How late a timer of the window's thread comes [ms]."""
+    """How late a timer of the window's thread comes, and how long that was busy before [ms]."""
 
     def __init__(self, every_ms: int = 5) -> None:
         super().__init__()
         self.late_ms: list[float] = []
+        self.busy_ms: list[float] = []
+        self._before_s = 0.0
         self._clock = QElapsedTimer()
         self._every_ms = every_ms
         self._timer = QTimer(self, interval=every_ms, timerType=Qt.TimerType.PreciseTimer)
@@ -62,9 +66,13 @@ class Heartbeat(QObject):
     def _beat(self) -> None:
         self.late_ms.append(self._clock.nsecsElapsed() / 1e6 - self._every_ms)
         self._clock.restart()
+        now_s = time.thread_time()
+        self.busy_ms.append(1e3 * (now_s - self._before_s))
+        self._before_s = now_s
 
     def start(self) -> None:
         """Begin to beat."""
+        self._before_s = time.thread_time()
         self._clock.start()
         self._timer.start()
 
@@ -76,38 +84,58 @@ class Heartbeat(QObject):
 
 @pytest.mark.slow
 def test_the_window_never_waits_for_a_map(empty: Driver, tmp_path: Path) -> None:
-    """Eight cables, 20 000 poses; how late an idle window is here is measured in the same run."""
+    """Eight cables, 20 000 poses: solving, and taking up every answer, colours and tables included.
+
+    Frames of the scene are left out: without a graphics card one alone takes longer than the limit
+    (it is printed), and none is drawn but on a change. Where other programs make a window late even
+    beside a thread that only counts, what is left to judge is how long the window's own thread is
+    at work between two beats.
+    """
     text = example_file("cogiro").read_text(encoding="utf-8")
     file = tmp_path / "cogiro.yaml"
     file.write_text(text.replace("samples: 5000", "samples: 20000"), encoding="utf-8")
     empty.open(file)
     assert empty.session.study.workspace.samples == 20_000
-    scene, live = empty.scene, empty.window.live
-    scene.setUpdatesEnabled(False)  # solving is looked at, not colouring and drawing
-    live.answered.disconnect()
-    late = []
+    print(f"a frame of the scene took {1e3 * empty.scene.frame_s:.0f} ms")
+    empty.scene.setUpdatesEnabled(False)
+    taken: list[str] = []
+    empty.window.live.answered.connect(lambda kind, _: taken.append(kind))
+    tries = []
     for _ in range(3):  # other programs can make a beat late, and nothing makes it early
-        late.append(_lateness(live))
-        if late[-1] < LATE_MS:
+        tries.append(_lateness(empty))
+        if tries[-1][0] < LATE_MS:
             break
-    scene.setUpdatesEnabled(True)
-    assert min(late) < LATE_MS, late
+    empty.scene.setUpdatesEnabled(True)
+    late, busy, counting = np.min(tries, axis=0)
+    assert {"here", "fine", "ropes", "worst"} <= set(taken)
+    assert busy < LATE_MS, tries
+    if late > LATE_MS and counting > 0.5 * LATE_MS:
+        pytest.skip(f"late by {counting:.0f} ms beside a thread that counts: a crowded machine")
+    assert late < LATE_MS, tries
 
 
-def _lateness(live: Any) -> float:
-    """Return by how much the latest beat is later while a map is solved than while all rests."""
-    idle = Heartbeat()
-    idle.start()
-    end = time.monotonic() + 3.0
-    while time.monotonic() < end:
-        QTest.qWait(20)
-    idle_ms = idle.stop()
-    busy = Heartbeat()
-    live.ask_map()
-    live._ask("worst", live.question)
-    busy.start()
+def _lateness(driver: Driver) -> tuple[float, float, float]:
+    """Return how late the latest beat is while all is solved, and the longest work between two.
+
+    The last is how late it is while a thread beside it counts [ms].
+    """
+    end = threading.Event()
+    counter = threading.Thread(target=lambda: all(not end.is_set() for _ in count()))
+    counting = Heartbeat()
+    counter.start()
+    counting.start()
+    QTest.qWait(3000)
+    counting_ms = counting.stop()
+    end.set()
+    counter.join()
+    live = driver.window.live
+    solving = Heartbeat()
+    live._ask_whole()
+    solving.start()
     while live.busy:
         QTest.qWait(5)
-    busy_ms = busy.stop()
-    assert len(busy.late_ms) > 10
-    return busy_ms - idle_ms
+    QTest.qWait(50)  # what the last answer has changed is drawn
+    late_ms, busy_ms = solving.stop(), max(solving.busy_ms)
+    print(f"late by {late_ms:.0f} ms, at work for {busy_ms:.0f}; counting {counting_ms:.0f}")
+    assert len(solving.late_ms) > 10
+    return late_ms, busy_ms, counting_ms

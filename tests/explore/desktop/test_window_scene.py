@@ -74,7 +74,7 @@ def test_dragging_the_arrow_lifts(yard: Driver) -> None:
 
 
 def test_keys_move_by_steps_along_the_axes(yard: Driver) -> None:
-    step, start = yard.window.step_m, yard.place.copy()
+    step, start = yard.window.moving.step_m, yard.place.copy()
     yard.scene.setFocus()
     yard.keys("Right")
     right = yard.place - start
