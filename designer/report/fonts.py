@@ -56,13 +56,15 @@ def _letters_of(file: str, letters: str) -> str:
         flavor="woff", hinting=False, layout_features=["kern"], notdef_outline=True
     )
     options.drop_tables += ["FFTM"]  # FontForge's notes, which it does not know
-    options.no_subset_tables += ["name"]  # the search for what is used of it takes half the time
     path = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf"
     subsetter = subset.Subsetter(options)
     subsetter.populate(text=letters)
     stream = io.BytesIO()
     with subset.load_font(path, options) as font:
-        font["name"].names = [one for one in font["name"].names if one.nameID <= _LAST_NAME]
+        names = font["name"]  # put aside: the search for what is used of it takes half the time
+        del font["name"]
         subsetter.subset(font)
+        names.names = [one for one in names.names if one.nameID <= _LAST_NAME]
+        font["name"] = names
         subset.save_font(font, stream, options)
     return base64.b64encode(stream.getvalue()).decode()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
+from designer.progress import SILENT, Reporter
 from designer.report.blocks import Report
 from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
@@ -107,19 +108,20 @@ def write_report(analysis: Analysis, folder: Path | str) -> None:
         write_results(analysis, building)
 
 
-def write_report_pages(analysis: Analysis, folder: Path) -> None:
+def write_report_pages(analysis: Analysis, folder: Path, reporter: Reporter = SILENT) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
-    write_pages(design_report(analysis), folder)
+    write_pages(design_report(analysis, reporter=reporter), folder, reporter)
 
 
-def write_pages(report: Report[Any], folder: Path) -> None:
+def write_pages(report: Report[Any], folder: Path, reporter: Reporter = SILENT) -> None:
     """Write a report as HTML and as PDF, named after it, into an existing folder.
 
     Both are made before either is written, and each takes its name only when it is whole.
     """
-    files = {
-        f"{report.name}.html": render_html(report).encode(),
-        f"{report.name}.pdf": render_pdf(render_html(report, paged=True)),
-    }
+    with reporter.task("pages", 2) as advance:
+        files = {f"{report.name}.html": render_html(report).encode()}
+        advance(1)
+        files[f"{report.name}.pdf"] = render_pdf(render_html(report, paged=True))
+        advance(1)
     for name, content in files.items():
         write_whole(folder / name, content)
