@@ -20,7 +20,7 @@ from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
 from designer.study import Study, Workspace, as_built_by
 from designer.workspace.result import WorkspaceMap
-from designer.workspace.store import open_sweep
+from designer.workspace.store import columns
 
 _MOST_POINTS = 3000
 
@@ -200,14 +200,11 @@ def as_built(study: Study, section_m: float | None = None) -> Study:
 
 def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Served:
     """Return the share of the workspace over diameter, from every sample of a sweep."""
-    with open_sweep(sweep_file) as sweep:
-        verdict = sweep["verdict"].to_numpy()
-        counts = np.ones(verdict.shape, dtype=np.bool_)
-        if workspace.hangs_below == "exclude":
-            hangs = sweep["hangs_below"].to_numpy() == 1
-            counts = ~(hangs | (verdict == Verdict.NO_FINITE_CABLE))
-        diameter = sweep["diameter"].to_numpy()[counts]
-        massless = sweep["massless_diameter"].to_numpy()[counts]
+    names = ("verdict", "hangs_below", "diameter", "massless_diameter")
+    verdict, hangs, diameter, massless = columns(sweep_file, *names)
+    if workspace.hangs_below == "exclude":
+        counts = ~((hangs == 1) | (verdict == Verdict.NO_FINITE_CABLE))
+        diameter, massless = diameter[counts], massless[counts]
     total = max(len(diameter), 1)
     return Served(
         *_cumulative(diameter, total),

@@ -150,9 +150,7 @@ def report(
 
     with output_folder(folder, REPORT_FILES) as building, ProgressBars() as bars:
         analysis = analyse(study, catalogue, building, bars)
-        with bars.task("report", 1) as advance:
-            write_report_pages(analysis, building, template)
-            advance(1)
+        write_report_pages(analysis, building, template, bars)
         write_results(analysis, building)
         written = file_names(building)
     print_left_out(filter(None, [why_no_scenes()]))

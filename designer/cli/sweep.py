@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, output_option, path_of
+from designer.cli.options import NoPlugins, Template, output_option, path_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,6 +25,7 @@ def sweep(
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="A running Dask cluster to solve on.")
     ] = None,
+    template: Template = None,
     no_plugins: NoPlugins = False,
 ) -> None:
     """Solve a study for many values of its fields, and keep what you name of each.
@@ -67,7 +68,7 @@ def sweep(
     found = read_store(path)
     folder = path.with_name(f"{path.stem}-report")
     with output_folder(folder) as building:
-        write_sweep(found, plan.stem, building)
+        write_sweep(found, plan.stem, building, template)
         written = file_names(building)
     _print_summary(found)
     show(f"{path}, {folder}: {', '.join(written)}", markup=False)

@@ -33,9 +33,13 @@ _TOLD_EVERY_S = 5.0
 
 
 class ProgressBars:
-    """Context manager that shows one bar a task on standard error."""
+    """Context manager that shows one bar a task on standard error.
+
+    Where nobody reads on a screen, a line is written from time to time.
+    """
 
     def __init__(self) -> None:
+        self._began_s = self._told_s = time.monotonic()
         self._progress = Progress(
             TextColumn("{task.description:<10}", markup=False),
             BarColumn(),
@@ -56,8 +60,27 @@ class ProgressBars:
     def task(self, name: str, total: int) -> Iterator[Callable[[int], None]]:
         """Open a task of ``total`` steps; yields the function that advances it."""
         bar = self._progress.add_task(name, total=total)
-        yield lambda steps: self._progress.advance(bar, steps)
+        began_s, done = time.monotonic(), 0
+
+        def advance(steps: int) -> None:
+            nonlocal done
+            done += steps
+            self._progress.advance(bar, steps)
+            if not _notes.is_terminal:
+                self._tell(name, min(done / max(total, 1), 1.0), began_s)
+
+        yield advance
         self._progress.update(bar, completed=total, total=total)
+
+    def _tell(self, name: str, share: float, began_s: float) -> None:
+        """Write how far a task is, unless that was told a moment ago."""
+        now_s = time.monotonic()
+        if now_s - self._told_s < _TOLD_EVERY_S or share == 0.0:
+            return
+        self._told_s = now_s
+        left_s = (now_s - began_s) * (1.0 - share) / share
+        text = f"{now_s - self._began_s:.0f} s: {name}, {share:.0%}, {left_s:.0f} s left"
+        _notes.print(text, markup=False, soft_wrap=True)
 
 
 class Spinner:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import base64
 import re
+from typing import TYPE_CHECKING
 
 from designer.report.blocks import Picture
+
+if TYPE_CHECKING:
+    from designer.report.figures.stage import Image
 
 
 def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
@@ -21,13 +25,13 @@ def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
 
 
 def scene(
-    caption: str, alternative: str, png: bytes | None, *, page: str = "", kind: str = ""
+    caption: str, alternative: str, image: Image | None, *, page: str = "", kind: str = ""
 ) -> Picture | None:
     """Return a picture in space; ``page`` is the same to turn. None stays None."""
-    if png is None:
+    if image is None:
         return None
-    from designer.report.figures.overlay import without_empty_rows
+    from designer.report.figures.overlay import png
 
-    kept = base64.b64encode(without_empty_rows(png)).decode()
+    kept = base64.b64encode(png(image)).decode()
     address = f"data:image/png;base64,{kept}"
     return Picture(caption, alternative, bitmap=address, scene=page, kind=kind)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from designer.errors import Fault, InputError
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
+from designer.progress import SILENT, Reporter
 from designer.report.blocks import Report
 from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
@@ -93,12 +94,22 @@ def write_report(
         write_results(analysis, building)
 
 
-def write_report_pages(analysis: Analysis, folder: Path, templates: Path | None = None) -> None:
+def write_report_pages(
+    analysis: Analysis,
+    folder: Path,
+    templates: Path | None = None,
+    reporter: Reporter = SILENT,
+) -> None:
     """Write ``report.html`` and ``report.pdf`` into an existing folder."""
-    write_pages(design_report(analysis), folder, templates)
+    write_pages(design_report(analysis, reporter=reporter), folder, templates, reporter)
 
 
-def write_pages(report: Report[Any], folder: Path, templates: Path | None = None) -> None:
+def write_pages(
+    report: Report[Any],
+    folder: Path,
+    templates: Path | None = None,
+    reporter: Reporter = SILENT,
+) -> None:
     """Write a report as HTML and as PDF, named after it, into an existing folder.
 
     Both are made before either is written, and each takes its name only when it is whole.
@@ -109,14 +120,19 @@ def write_pages(report: Report[Any], folder: Path, templates: Path | None = None
     InputError
         If a template of the user is faulty, or loads anything into its page.
     """
-    with told_in_one_line(templates):
-        pages = [render_html(report, paged=paged, user_folder=templates) for paged in (False, True)]
-    try:
-        pdf = render_pdf(pages[1])
-    except ValueError as error:
-        if templates is None:
-            raise
-        raise InputError([Fault(str(templates), None, "", str(error))]) from error
+    with reporter.task("pages", 2) as advance:
+        with told_in_one_line(templates):
+            pages = [
+                render_html(report, paged=paged, user_folder=templates) for paged in (False, True)
+            ]
+        advance(1)
+        try:
+            pdf = render_pdf(pages[1])
+        except ValueError as error:
+            if templates is None:
+                raise
+            raise InputError([Fault(str(templates), None, "", str(error))]) from error
+        advance(1)
     files = {f"{report.name}.html": pages[0].encode(), f"{report.name}.pdf": pdf}
     for name, content in files.items():
         write_whole(folder / name, content)

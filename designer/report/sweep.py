@@ -113,9 +113,9 @@ def sweep_report(found: xr.Dataset, name: str, created: datetime) -> Report[None
     )
 
 
-def write_sweep(found: xr.Dataset, name: str, folder: Path) -> None:
+def write_sweep(found: xr.Dataset, name: str, folder: Path, templates: Path | None = None) -> None:
     """Write ``sweep.html``, ``sweep.pdf`` and ``sweep.csv`` into an existing folder."""
-    write_pages(sweep_report(found, name, datetime.now().astimezone()), folder)
+    write_pages(sweep_report(found, name, datetime.now().astimezone()), folder, templates)
     write_whole(folder / "sweep.csv", found.to_dataframe().to_csv().encode())
 
 

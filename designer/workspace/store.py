@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from designer.arrays import FloatArray
 from designer.model.verdict import Verdict
@@ -84,6 +85,15 @@ def _values(places: FloatArray, sizing: Sizing) -> Mapping[str, Any]:
         "verdict": statics.verdict,
         "hangs_below": statics.hangs_below,
     }
+
+
+def columns(path: Path, *names: str) -> list[NDArray[Any]]:
+    """Return variables of the sweep as arrays, without xarray, which takes a while to come up."""
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        return [file[name][:] for name in names]
 
 
 def open_sweep(path: Path) -> xr.Dataset:

@@ -126,3 +126,21 @@ def test_lines_of_progress_where_nobody_looks(monkeypatch) -> None:
             clock.now_s = float(step)
             spinner(f"step {step}")
     assert written.getvalue() == "5 s: step 5\n10 s: step 10\n"
+
+
+def test_bars_are_lines_with_the_time_left_where_nobody_looks(monkeypatch) -> None:
+    clock, written = Clock(), io.StringIO()
+    monkeypatch.setattr(terminal, "_notes", Console(file=written, force_terminal=False))
+    monkeypatch.setattr(terminal.time, "monotonic", clock)
+    with terminal.ProgressBars() as bars:
+        for name in ("workspace", "drawing"):
+            with bars.task(name, 8) as advance:
+                for _ in range(8):
+                    clock.now_s += 1.5
+                    advance(1)
+    assert written.getvalue().splitlines() == [
+        "6 s: workspace, 50%, 6 s left",
+        "12 s: workspace, 100%, 0 s left",
+        "18 s: drawing, 50%, 6 s left",
+        "24 s: drawing, 100%, 0 s left",
+    ]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import gc
+import io
 import weakref
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
 
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, overlay
@@ -82,13 +85,38 @@ def test_points_along_lines_are_close_together() -> None:
 def test_a_finished_picture_leaves_no_pixels_behind() -> None:
     with canvas.drawing():
         figure, axes = overlay.over(EMPTY)
-        pixels = weakref.ref(axes.images[0])
+        assert isinstance(figure.canvas, FigureCanvasAgg)
+        pixels = weakref.ref(figure.canvas.get_renderer())
         gc.disable()
         try:
-            assert overlay.png(figure).startswith(b"\x89PNG")
+            overlay.write_clear(axes, FRONT, MIDDLE, "here", NOTHING)
+            assert overlay.finished(figure).shape == EMPTY.shape
             assert pixels() is None
         finally:
             gc.enable()
+
+
+@pytest.mark.parametrize("letters", [1.0, 1.9])
+def test_what_is_not_written_on_stays_as_it_was(letters: float) -> None:
+    image = np.random.default_rng(0).integers(0, 256, EMPTY.shape).astype(np.uint8)
+    with canvas.drawing():
+        figure, axes = overlay.over(image, letters)
+        overlay.write_clear(axes, FRONT, MIDDLE, "here", NOTHING)
+        box = axes.texts[0].get_window_extent()
+        changed = np.argwhere((overlay.finished(figure) != image).any(axis=-1))
+    assert len(changed) > 0
+    (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
+    assert abs(np.array([left, right]) - [box.x0, box.x1]).max() < 12.0
+    assert abs(HEIGHT_PX - np.array([bottom, top]) - [box.y0, box.y1]).max() < 12.0
+
+
+def test_a_picture_is_cut_above_and_below_what_it_shows() -> None:
+    image = EMPTY.copy()
+    image[300:400, 5] = 0
+    with Image.open(io.BytesIO(overlay.png(image))) as cut:
+        assert cut.size == (WIDTH_PX, 120)
+    with Image.open(io.BytesIO(overlay.png(EMPTY))) as whole:
+        assert whole.size == (WIDTH_PX, HEIGHT_PX)
 
 
 def test_shared_logarithmic_axes_are_linear_when_they_are_emptied(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from designer.analysis.analyse import Analysis
+from designer.progress import SILENT, Reporter
 from designer.report.blocks import Report, Section
 from designer.report.control import control_of
 from designer.report.design import (
@@ -44,16 +45,22 @@ SECTIONS = (
 """Each takes a `Source` and returns a section; None where the study gives nothing for it."""
 
 
-def design_report(analysis: Analysis, *, draws: bool = True) -> Report[FirstPage]:
+def design_report(
+    analysis: Analysis, *, draws: bool = True, reporter: Reporter = SILENT
+) -> Report[FirstPage]:
     """Return the report on an analysis; with ``draws`` false, without figures."""
-    return report_from(source_of(analysis, draws=draws))
+    return report_from(source_of(analysis, draws=draws), reporter)
 
 
-def report_from(source: Source) -> Report[FirstPage]:
+def report_from(source: Source, reporter: Reporter = SILENT) -> Report[FirstPage]:
     """Return the report from what its sections are made from."""
-    analysis, page = source.analysis, first_page(source)
-    answer = Section("answer", "The answer", kind=f"first-page{'' if page.reasons else ' alone'}")
-    sections = (answer, *(make(source) for make in SECTIONS))
+    with reporter.task("drawing", len(SECTIONS) + 1) as advance:
+        analysis, page = source.analysis, first_page(source)
+        kind = f"first-page{'' if page.reasons else ' alone'}"
+        sections: list[Section | None] = [Section("answer", "The answer", kind=kind)]
+        for make in SECTIONS:
+            advance(1)
+            sections.append(make(source))
     about = "Cable design report", analysis.study, analysis.provenance
     control = control_of(analysis.study, analysis.catalogue)
     return Report.of("report", *about, page, sections, source.missing, control)

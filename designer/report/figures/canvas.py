@@ -41,6 +41,7 @@ _STYLE = {
     "lines.linewidth": 1.3,
     "hatch.linewidth": 0.5,
     **dict.fromkeys(("axes.spines.top", "axes.spines.right"), False),
+    **dict.fromkeys(("figure.facecolor", "axes.facecolor"), "none"),
     "svg.fonttype": "path",
     "svg.hashsalt": "cdpr-designer",
     "text.parse_math": False,  # names from files are shown as they are
@@ -77,10 +78,13 @@ def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
 
     ``keeps_aspect`` tells that its axes have equal scales, so that they cannot fill their space.
     """
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
     size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
-    return Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
+    figure = Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
+    FigureCanvasSVG(figure)
+    return figure
 
 
 def decimals(ticks: ArrayLike) -> int:
@@ -152,9 +156,13 @@ def svg(figure: Figure, key: str, title: str) -> str:
     Inside `drawing`. ``key`` is put before every id, so that several charts can stand in one page;
     the title tells what the chart shows to those who cannot see it.
     """
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     stream = io.StringIO()
     nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
-    figure.savefig(stream, format="svg", transparent=True, metadata=nothing)
+    sheet = figure.canvas
+    assert isinstance(sheet, FigureCanvasSVG)
+    sheet.print_svg(stream, metadata=nothing)  # `savefig` would draw everything twice
     text = stream.getvalue()
     words = _words(figure)
     empty(figure)
@@ -183,8 +191,8 @@ def _words(figure: Figure) -> str:
 
 
 def _standalone(text: str, key: str, title: str, words: str) -> str:
-    text = re.sub(r'\bid="', f'id="{key}-', text)
-    text = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", text)
+    for reference in (' id="', 'xlink:href="#', "url(#"):
+        text = text.replace(reference, f"{reference}{key}-")
     # A hundredth of a point is enough, and halves the size of a contour plot.
     shorter = re.compile(r"(\.\d\d)\d+")
     text = re.sub(

@@ -34,7 +34,7 @@ def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) 
     add_workspace(stage, maps.thinned(), quantity, steps)
     stage.aim()
     scene = _scene(stage.plotter)
-    stage.plotter.close()
+    stage.plotter.clear()
     return _page(scene, maps.study.name, _overlay(maps, quantity, steps, stage.view))
 
 

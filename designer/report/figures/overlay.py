@@ -1,4 +1,4 @@
-"""Axes and texts that are written over the picture of a scene, and the finished PNG.
+"""Axes and texts that are written over the picture of a scene, and the finished picture.
 
 Matplotlib writes them and not VTK, so that a scene has the letters and the colour bar of a chart.
 Texts stand near what they name, clear of all else.
@@ -23,6 +23,7 @@ from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
 _SIDES = (
@@ -46,44 +47,52 @@ def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
     ``letters`` is the size of letters and lines over the usual, for a picture that is printed
     small.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     dots_per_inch = letters * 240.0  # 1600 px fill the column of the printed report
     size = (WIDTH_PX / dots_per_inch, HEIGHT_PX / dots_per_inch)
-    figure = Figure(figsize=size, dpi=dots_per_inch)
+    figure = Figure(figsize=size, dpi=dots_per_inch, facecolor="none")
+    # An image of Matplotlib would be sampled anew, which takes longer than to draw all the rest.
+    pixels = _pixels(FigureCanvasAgg(figure))
+    pixels[..., :3], pixels[..., 3] = image, 255
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.imshow(image, extent=(0, WIDTH_PX, HEIGHT_PX, 0), interpolation="nearest", aspect="auto")
     axes.set_axis_off()
     axes.set(xlim=(0, WIDTH_PX), ylim=(HEIGHT_PX, 0))
     return figure, axes
 
 
-def png(figure: Figure) -> bytes:
-    """Return the finished picture as a PNG file of 1600 by 1000 pixels, and empty the figure."""
-    stream = io.BytesIO()
-    nothing: Style = {"metadata": {"Software": None}, "pil_kwargs": {"optimize": True}}
-    figure.savefig(stream, format="png", dpi=figure.dpi, **nothing)
+def finished(figure: Figure) -> Image:
+    """Return the picture (1000, 1600, 3) with what was written over it, and empty the figure."""
+    from matplotlib.backend_bases import FigureCanvasBase
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    sheet = figure.canvas
+    assert isinstance(sheet, FigureCanvasAgg)
+    figure.draw(sheet.get_renderer())
+    image = _pixels(sheet)[..., :3].copy()
     canvas.empty(figure)
-    return stream.getvalue()
+    FigureCanvasBase(figure)  # in place of the one that holds the pixels
+    return image
 
 
-def without_empty_rows(png: bytes) -> bytes:
-    """Return a PNG without the rows of one colour at its top and bottom, but for a narrow margin.
+def _pixels(sheet: FigureCanvasAgg) -> Image:
+    """What a canvas has been drawn on, to be written to (height, width, 4)."""
+    return np.asarray(sheet.get_renderer().buffer_rgba())
 
-    The width stays, so that all scenes of a page are drawn to one scale.
+
+def png(image: Image) -> bytes:
+    """Return a picture as a PNG file, without the rows of one colour at its top and bottom.
+
+    A narrow margin stays, and so does the width: all scenes of a page are drawn to one scale.
     """
     from PIL import Image as Pillow
-    from PIL import ImageChops
 
-    image = Pillow.open(io.BytesIO(png)).convert("RGB")
-    blank = Pillow.new("RGB", image.size, image.getpixel((0, 0)))
-    box = ImageChops.difference(image, blank).getbbox()
-    if box is None:
-        return png
-    margin = round(0.01 * image.height)
-    top, bottom = max(box[1] - margin, 0), min(box[3] + margin, image.height)
+    rows = np.flatnonzero((image != image[0, 0]).any(axis=(1, 2)))
+    margin = round(0.01 * len(image))
+    top, bottom = (max(rows[0] - margin, 0), rows[-1] + 1 + margin) if len(rows) else (0, None)
     stream = io.BytesIO()
-    image.crop((0, top, image.width, bottom)).save(stream, format="png", optimize=True)
+    Pillow.fromarray(image[top:bottom]).save(stream, format="png")
     return stream.getvalue()
 
 
@@ -217,19 +226,23 @@ def write_clear(
         *(other.get_window_extent() for other in axes.texts if other is not label),
     )
 
-    def put(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:
-        (right, up), ha, va = side
-        along = distance / np.hypot(right, up)
-        label.xy = (float(anchor_px[0]), float(anchor_px[1]))
-        label.set_position((along * right, along * up))
-        label.set(ha=ha, va=va)
-        return np.asarray(_boxes(label.get_window_extent())[0])
+    size = np.array(label.get_window_extent().size, dtype=np.float64)
+    points = axes.figure.dpi / 72.0
+
+    def box(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:
+        toward = np.array(side[0], dtype=np.float64) * [1.0, -1.0]
+        middle = anchor_px + points * distance * toward / np.hypot(*toward) + 0.5 * size * toward
+        return np.concatenate([middle - 0.5 * size, middle + 0.5 * size])
 
     anchors_px = view.pixels(np.atleast_2d(anchors_m))
     places = [(a, side, d) for d, a, side in product(distances, anchors_px, _SIDES)]
-    costs = [_cost(put(*place), taken, obstacles_px) for place in places]
-    anchor, side, distance = places[int(np.argmin(costs + _BY_ORDER * np.arange(len(costs))))]
-    left, top, right, bottom = put(anchor, side, distance)
+    costs = [_cost(box(*place), taken, obstacles_px) for place in places]
+    best = places[int(np.argmin(costs + _BY_ORDER * np.arange(len(costs))))]
+    anchor, ((right, up), ha, va), distance = best
+    along = distance / np.hypot(right, up)
+    label.xy = (float(anchor[0]), float(anchor[1]))
+    label.set(position=(along * right, along * up), ha=ha, va=va)
+    left, top, right, bottom = box(*best)
     if distance > 15.0:
         end = np.clip(anchor, [left, top], [right, bottom])
         line: Style = {"color": palette.INK, "linewidth": 0.7, "zorder": 1.9}

@@ -23,7 +23,7 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
-from designer.report.figures.stage import Stage
+from designer.report.figures.stage import Image, Stage
 from designer.report.figures.view import (
     Frame,
     View,
@@ -54,8 +54,8 @@ _PAGE = _Look((0.085, 0.85, 0.11, 0.93), (0.895, 0.2, 0.016, 0.6))
 _COVER = _Look((0.03, 0.78, 0.06, 0.90), (0.83, 0.12, 0.028, 0.7), 1.9)
 
 
-def robot_scene(pose: PoseAnalysis) -> bytes:
-    """Return a picture of the robot in the configured pose, with its cables sagging, as PNG.
+def robot_scene(pose: PoseAnalysis) -> Image:
+    """Return a picture of the robot in the configured pose, with its cables sagging.
 
     In a pose that cannot be held the cables are drawn straight.
     """
@@ -85,7 +85,7 @@ def robot_scene(pose: PoseAnalysis) -> bytes:
     with canvas.drawing():
         figure, axes = _taken(stage, bounds)
         _label_robot(axes, stage.view, statics, curves)
-        return overlay.png(figure)
+        return overlay.finished(figure)
 
 
 def _taken(stage: Stage, bounds: FloatArray, letters: float = 1.0) -> tuple[Figure, Axes]:
@@ -144,8 +144,8 @@ def _label_robot(axes: Axes, view: View, statics: Statics, curves: FloatArray) -
 
 def workspace_scene(
     maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER, look: _Look = _PAGE
-) -> bytes:
-    """Return a picture of the workspace with exit points and the cables at its worst pose, as PNG.
+) -> Image:
+    """Return a picture of the workspace with exit points and the cables at its worst pose.
 
     A list of points is drawn as balls.
     """
@@ -159,16 +159,16 @@ def workspace_scene(
         if steps is not None:
             steps.bar(figure, quantity.label, cax=figure.add_axes(look.bar))
         _write_names(axes, stage.view, maps, quantity)
-        return overlay.png(figure)
+        return overlay.finished(figure)
 
 
-def cover_scene(maps: WorkspaceMaps) -> bytes:
+def cover_scene(maps: WorkspaceMaps) -> Image:
     """Return the same for the first page: small in print, so with large letters and no axes."""
     return workspace_scene(maps, look=_COVER)
 
 
-def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
-    """Return a picture of the opened region, each part in the colour of its thinnest size, as PNG.
+def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
+    """Return a picture of the opened region, each part in the colour of its thinnest size.
 
     None for a list of points, and where no size serves a part only.
     """
@@ -193,7 +193,7 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> bytes | None:
         figure, axes = _taken(stage, bounds_m(maps))
         _layers_legend(figure, layers, usable)
         overlay.write_exits(axes, stage.view, exits, np.empty((0, 2)))
-        return overlay.png(figure)
+        return overlay.finished(figure)
 
 
 def colours(layers: Layers) -> list[tuple[float, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,16 +20,17 @@ from designer.report.figures.opengl import why_no_scenes
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
-    from pyvista import PolyData
+    from pyvista import Plotter, PolyData
 
 Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
 class Pen:
-    """Widths of lines [px], and how far lines are lifted off surfaces toward the camera [px].
+    """Widths of lines [samples], and how far they are lifted off surfaces toward the camera [px].
 
-    A viewer in which the scene can be turned lifts them by itself.
+    A viewer in which the scene can be turned lifts them by itself. ``samples`` is of how many a
+    pixel of the picture is the mean, along each side.
     """
 
     contour: float = 1.2
@@ -37,14 +39,29 @@ class Pen:
     cable: float = 6.0
     rim: float = 11.0
     lift: float = 1.0
+    samples: int = 2
 
 
 PRINT = Pen()
-SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0)
+SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0, samples=1)
+
+
+@cache
+def _plotter() -> Plotter:
+    """The one window of all stages: to open one takes longer than to draw what is on it."""
+    import pyvista
+
+    theme = pyvista.themes.DocumentTheme()
+    theme.multi_samples = 1
+    plotter = pyvista.Plotter(off_screen=True, lighting="none", theme=theme)
+    plotter.set_background("white")
+    return plotter
 
 
 class Stage:
     """A white stage without lamps, before a camera: a colour is what the colour bar says it is.
+
+    Only one is set at a time: the next one clears it.
 
     Raises
     ------
@@ -56,15 +73,9 @@ class Stage:
         missing = why_no_scenes()
         if missing:
             raise MissingLibraryError(missing)
-        import pyvista
-
-        self.view, self.pen = view, pen
-        theme = pyvista.themes.DocumentTheme()
-        size = [WIDTH_PX, HEIGHT_PX]
-        self.plotter = pyvista.Plotter(
-            off_screen=True, window_size=size, lighting="none", theme=theme
-        )
-        self.plotter.set_background("white")
+        self.view, self.pen, self.plotter = view, pen, _plotter()
+        self.plotter.window_size = [pen.samples * WIDTH_PX, pen.samples * HEIGHT_PX]
+        self.plotter.clear()
 
     def aim(self) -> None:
         """Point the camera."""
@@ -78,16 +89,18 @@ class Stage:
 
     def picture(self) -> Image:
         """Take the picture (height, width, 3), and clear the stage."""
+        from PIL import Image as Pillow
+
         self.aim()
-        self.plotter.enable_anti_aliasing("ssaa")
-        image = self.plotter.screenshot(return_img=True)
-        self.plotter.close()
-        return np.asarray(image, dtype=np.uint8)
+        self.plotter.render()
+        image = np.asarray(self.plotter.screenshot(return_img=True), dtype=np.uint8)
+        self.plotter.clear()
+        return np.asarray(Pillow.fromarray(image).reduce(self.pen.samples))
 
     def add(self, mesh: PolyData, **look: Any) -> None:
         """Add a mesh, unless it is empty."""
         if mesh.n_cells > 0:
-            self.plotter.add_mesh(mesh, lighting=False, **look)
+            self.plotter.add_mesh(mesh, lighting=False, render=False, reset_camera=False, **look)
 
     def lines(
         self, lines_m: Iterable[FloatArray], colour: str, width: float, lift: float = 0.0
