@@ -7,6 +7,7 @@ from designer.report.blocks import Report, Section
 from designer.report.control import control_of
 from designer.report.design import (
     assumptions,
+    carries,
     checks,
     clearance,
     groups,
@@ -31,6 +32,7 @@ SECTIONS = (
     selection.section,
     load_cases.section,
     checks.section,
+    carries.section,
     groups.section,
     stiffness.section,
     clearance.section,
