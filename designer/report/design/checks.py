@@ -7,10 +7,22 @@ from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.checks import Check, checks_of
-from designer.analysis.governing import GoverningPose, governing_pose
+from designer.analysis.governing import GoverningPose
 from designer.report import format as fmt
-from designer.report.blocks import Column, Fact, Facts, Row, Section, Statement, Table
+from designer.report.blocks import (
+    Block,
+    Box,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Row,
+    Section,
+    Statement,
+    Table,
+)
 from designer.report.design.source import Source
+from designer.report.pictures import scene
 from designer.study import Study
 
 
@@ -20,14 +32,33 @@ def section(source: Source) -> Section | None:
     checks = _checks(source.analysis)
     if not checks or found is None or found.chosen is None or study.selection is None:
         return None
-    pose = governing_pose(found.chosen, study.selection.safety_factor)
+    pose = source.governing
+    shown: tuple[Block | None, ...] = ()
+    if pose is not None:
+        picture = _picture(pose) if source.draws_scenes else None
+        shown = (Box.of("keep", _facts(pose), picture), _cables(pose), _forces(pose))
     return Section.of(
         "checks",
         "Checks and the governing pose",
         _table(checks),
         _not_checked(study, checks),
-        *(() if pose is None else (_facts(pose), _cables(pose), _forces(pose))),
+        *shown,
     )
+
+
+def _picture(pose: GoverningPose) -> Picture | None:
+    """Return the robot there, with the cable that governs marked."""
+    from designer.report.figures.scenes import robot_scene
+
+    statics = pose.alone
+    most = int(statics.cable_tension_N.argmax())
+    caption = (
+        f"The governing pose, its cables in their true shape, each with its tension at the exit "
+        f"point; cable {pose.cables[most].cable}, which governs, is marked. Arrows are the loads "
+        "on the platform."
+    )
+    drawn = robot_scene(statics, most, pose.loads)
+    return scene(caption, "The robot in the governing pose, in space", drawn, kind="space")
 
 
 def failing_checks(analysis: Analysis) -> Iterator[Statement]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.findings import OtherPolicy
+from designer.analysis.rope_maps import Rope
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
@@ -27,29 +30,75 @@ from designer.report.blocks import (
 )
 from designer.report.design.scope import orientation_fact
 from designer.report.design.source import Source
-from designer.report.design.workspace_figures import workspace_figures
+from designer.report.design.workspace_figures import rope_figures, workspace_figures
 from designer.report.pictures import chart
 from designer.study import HangsBelow, Study, Workspace
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 
 def section(source: Source) -> Section | None:
-    """Return what is known of all poses; None if the study has no workspace."""
+    """Return what is known of all poses; None if the study has no workspace.
+
+    Of the ropes of the answer where there are any, else of the configured family.
+    """
     study, found = source.analysis.study, source.analysis.workspace
     if study.workspace is None or found is None:
         return None
-    other = source.findings.other_policy
+    if source.rope is None:
+        return Section.of("workspace", "The workspace", *_of_family(source, study, found))
     return Section.of(
         "workspace",
-        "The workspace",
-        _statement(found),
+        "The workspace with the chosen rope",
+        _served(source.rope, source.analysis),
         _facts(study, study.workspace, found),
-        _extremes(study.workspace.region, found),
-        Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census)),
-        Subheading("hanging", "Cables below the platform"),
-        _hanging(source.analysis.built.robot, study.workspace, found, other),
-        _policies(study.workspace, found, other) if other is not None else None,
-        *_figures(source),
+        *(rope_figures(source.rope_maps, source.rope) if source.rope_maps is not None else ()),
+        _hanging_share(source),
+    )
+
+
+def family(source: Source) -> Section | None:
+    """Return what all poses ask of the configured family, where a rope is the answer."""
+    study, found = source.analysis.study, source.analysis.workspace
+    if study.workspace is None or found is None or source.rope is None:
+        return None
+    return Section.of("family", "The configured cable family", *_of_family(source, study, found))
+
+
+def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Block | None]:
+    assert study.workspace is not None
+    other = source.findings.other_policy
+    yield _statement(found)
+    if source.rope is None:
+        yield _facts(study, study.workspace, found)
+    yield _extremes(study.workspace.region, found)
+    yield Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census))
+    hanging = _hanging(source.analysis.built.robot, study.workspace, found, other)
+    yield Box.of("keep", Subheading("hanging", "Cables below the platform"), hanging)
+    yield _policies(study.workspace, found, other) if other is not None else None
+    yield from _figures(source)
+
+
+def _served(rope: Rope, analysis: Analysis) -> Statement:
+    """Return to how much the ropes are used at most, and where."""
+    used = float(rope.used(rope.statics(rope.place)))
+    text = (
+        f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
+        f"'{rope.load_case}' at {fmt.position(rope.place)}."
+    )
+    fine = used <= 1.0 and analysis.is_positive
+    return Statement("Every pose is held", text, "good" if fine else "doubt")
+
+
+def _hanging_share(source: Source) -> str:
+    share, study = source.findings.hanging, source.analysis.study
+    assert study.workspace is not None
+    if share is None:
+        return ""
+    if share == 0.0:
+        return "In no sample does a cable hang below the platform with it."
+    return (
+        f"With it a cable hangs below the platform in {fmt.percent(share)} of the samples; these "
+        f"{'count' if study.workspace.hangs_below == 'include' else 'are left out'}."
     )
 
 
@@ -84,7 +133,8 @@ def _statement(found: WorkspaceMap) -> Statement:
         text = (
             f"A cable of {fmt.millimetres(found.sagging.diameter_m)} of the configured family "
             "serves every pose that counts. The worst is at "
-            f"{fmt.position(found.sagging.place)}."
+            f"{fmt.position(found.sagging.place)}; its self-weight ratio there is "
+            f"{fmt.percent(found.limit_ratio)}."
         )
         return Statement("The workspace is served", text, "good")
     text = "There is no diameter of the configured family that serves every pose."
@@ -107,10 +157,6 @@ def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
         facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
-    if found.sagging is not None:
-        ratio = fmt.percent(found.limit_ratio)
-        end = "at 100 % no finite cable is left"
-        facts.append(Fact("Limit ratio at the worst pose", ratio, end))
     return Facts(tuple(facts))
 
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from designer.analysis.field import Field
 from designer.analysis.maps import Served, WorkspaceMaps
+from designer.analysis.rope_maps import Rope
 from designer.report import format as fmt
 from designer.report.blocks import Picture
-from designer.report.figures.colours import DIAMETER, RATIO, tension_of
+from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
 from designer.report.pictures import chart, scene
 
 _LITTLE = 0.02
@@ -55,11 +56,37 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
     yield chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
 
 
-def cover_picture(maps: WorkspaceMaps) -> Picture | None:
-    """Return the region in space for the first page."""
+def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
+    """Yield the maps of the ropes of the answer."""
+    from designer.report.figures.sections import slice_panels
+
+    change = _largest_change(maps)
+    other = RATIO if change > _LITTLE else tension_of(maps.section)
+    view = "plane" if maps.is_upright else "plan"
+    drawn = slice_panels(maps, (UTILISATION, other))
+    loads = f"in the load case '{rope.load_case}', {_place_of(maps)}"
+    what = "its ratio to that of straight weightless cables" if other is RATIO else "the tension"
+    caption = (
+        f"{rope.name}: largest tension over allowable tension, and {what}, {loads}. The effect of "
+        f"rope weight on the tension is {fmt.percent(change, 2)} there at most."
+    )
+    found = chart(caption, f"Two maps in {view}", drawn)
+    if found is not None:
+        yield found
+
+
+def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture | None:
+    """Return the region in space for the first page: of the ropes, else of the family."""
     from designer.report.figures.scenes import cover_scene
 
-    return scene(cover_caption(maps), _IN_SPACE, cover_scene(maps), kind="robot")
+    if rope is None:
+        return scene(cover_caption(maps), _IN_SPACE, cover_scene(maps), kind="robot")
+    caption = (
+        f"How much of what is allowed {rope.name} uses over {_extent(maps)}, in the load case "
+        f"'{rope.load_case}'; the cables hang at the worst pose."
+    )
+    drawn = cover_scene(maps, UTILISATION)
+    return scene(caption, "The region in space, coloured by utilisation", drawn, kind="robot")
 
 
 def scene_caption(maps: WorkspaceMaps) -> str:
@@ -71,10 +98,14 @@ def scene_caption(maps: WorkspaceMaps) -> str:
 
 def cover_caption(maps: WorkspaceMaps) -> str:
     """Return the caption of the workspace on the first page."""
+    shown = _span(_shown(maps))
+    return f"Needed diameter of the configured cable family over {_extent(maps)}.{shown}"
+
+
+def _extent(maps: WorkspaceMaps) -> str:
     size = np.ptp(maps.region.bounds_m, axis=0)
     extent = " × ".join(fmt.trimmed(float(edge), 3) for edge in size if edge > 0.0)
-    region = f"the region, {extent}\u00a0m" if maps.has_area else "the points"
-    return f"Needed diameter of the configured cable family over {region}.{_span(_shown(maps))}"
+    return f"the region, {extent}\u00a0m" if maps.has_area else "the points"
 
 
 def _shown(maps: WorkspaceMaps) -> Iterable[Field]:
