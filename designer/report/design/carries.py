@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def section(source: Source) -> Section | None:
         Box.of("keep", _slopes(found, moves), _chart(slopes, moves) if source.draws else None),
         slopes.why_not,
         _sizes(found.sizes),
-        _way_out(found),
+        *_way_out(found),
     )
 
 
@@ -113,7 +114,7 @@ def _slopes(found: Carries, moves: list[tuple[str, float]]) -> Table:
         Row((name, values[key], "1\u00a0%", _points(0.01 * used * slopes.of(key).elasticity)))
         for key, name in _NAMES.items()
     ]
-    step = fmt.millimetres(_MOVE_M)
+    step = f"{fmt.trimmed(1e3 * _MOVE_M)}\u00a0mm"
     rows += [Row((name, "", step, _points(_MOVE_M * slope))) for name, slope in moves]
     how = "by differences of solved states" if slopes.method == "differences" else (
         "by the slopes of the solved equations, the pose held, since it is the worst"
@@ -124,7 +125,7 @@ def _slopes(found: Carries, moves: list[tuple[str, float]]) -> Table:
     )
     columns: Heads = (
         *("Input", Column("Now"), Column("More by")),
-        Column("Used", "percentage points"),
+        Column("Utilisation", "percentage points"),
     )
     return Table.of(caption, columns, *rows)
 
@@ -132,7 +133,7 @@ def _slopes(found: Carries, moves: list[tuple[str, float]]) -> Table:
 def _points(change: float) -> str:
     if math.isnan(change):
         return fmt.MISSING
-    text = fmt.fixed(100.0 * change, 4)
+    text = fmt.fixed(100.0 * change, 3)
     return text if text.startswith("−") else f"+{text}"
 
 
@@ -144,7 +145,7 @@ def _chart(slopes: Sensitivities, moves: list[tuple[str, float]]) -> Picture | N
     shares = [(name, used * value) for name, value in each if math.isfinite(value)]
     if not shares or not moves:
         return None
-    step = fmt.millimetres(_MOVE_M)
+    step = f"{fmt.trimmed(1e3 * _MOVE_M)} mm"
     drawn = carries_chart(shares, [(n, 100.0 * _MOVE_M * slope) for n, slope in moves], step)
     return chart("The same as bars.", "Bars to the left and right of zero", drawn)
 
@@ -179,11 +180,11 @@ def _sizes(sizes: tuple[SizeBeside, ...]) -> Table | None:
     return Table.of(caption, columns, *rows)
 
 
-def _way_out(found: Carries) -> Block | None:
-    """Return how far out of the region the first pose lies that is not held."""
+def _way_out(found: Carries) -> Iterator[Block]:
+    """Yield how far out of the region the first pose lies that is not held."""
     failures, nearest = found.failures, found.nearest
     if not failures:
-        return None
+        return
     reach = fmt.metres(failures[0].reach_m)
     far = f"over {reach}"
     cells = [fmt.fixed(f.distance_m, 2) if f.distance_m >= 0.0 else far for f in failures]
@@ -194,13 +195,14 @@ def _way_out(found: Carries) -> Block | None:
             f"The nearest pose that the rope does not hold lies {fmt.metres(nearest.distance_m)} "
             f"outside the region, {fmt.printed(nearest.name)}, at {where}: {_why(nearest.why)}."
         )
+    yield Statement("Outside the region", text)
     caption = (
-        f"{text} Distance from the region to the first failure in each direction, in the load case "
+        "Distance from the region to the first failure in each direction, in the load case "
         f"'{found.governing.case.name}' and turned as at the governing pose, on ways from corners, "
         "edges and sides straight outward."
     )
     heads: Heads = ("", *(Column(_signed(one.name), "m") for one in failures))
-    return Table.of(caption, heads, ("First failure", *cells))
+    yield Table.of(caption, heads, ("First failure", *cells))
 
 
 def _why(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.checks import Check, checks_of
@@ -36,7 +36,7 @@ def section(source: Source) -> Section | None:
     shown: tuple[Block | None, ...] = ()
     if pose is not None:
         picture = _picture(pose) if source.draws_scenes else None
-        shown = (Box.of("keep", _facts(pose), picture), _cables(pose), _forces(pose))
+        shown = (Box.of("lead keep", picture, _facts(pose)), _cables(pose), _forces(pose))
     return Section.of(
         "checks",
         "Checks and the governing pose",
@@ -156,13 +156,13 @@ def _cables(pose: GoverningPose) -> Table:
         *(Column("Angle"), Column("Sag"), Column("Stretch"), Column("Safety factor")),
         Column("As a string"),
     )
+    write = _alike(one.exit_tension_N for one in pose.cables)
     rows = [
         Row(
             (
                 str(one.cable),
-                f"{fmt.fixed(one.length_m, 3)}\u00a0m",
-                f"{fmt.fixed(one.exit_tension_N, 1)}\u00a0N",
-                f"{fmt.fixed(one.platform_tension_N, 1)}\u00a0N",
+                f"{fmt.number(one.length_m, 5)}\u00a0m",
+                *write(one.exit_tension_N, one.platform_tension_N),
                 f"{fmt.fixed(math.degrees(one.angle_rad), 1)}°",
                 fmt.millimetres(one.sag_m),
                 fmt.millimetres(one.stretch_m),
@@ -182,10 +182,20 @@ def _cables(pose: GoverningPose) -> Table:
 
 def _forces(pose: GoverningPose) -> Table:
     named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
-    rows = [
-        Row((fmt.capital(name), *(f"{fmt.fixed(float(x), 1)}\u00a0N" for x in force)))
-        for name, force in (*named, *pose.loads)
-    ]
-    left = [f"{fmt.fixed(float(x) + 0.0, 1)}\u00a0N" for x in pose.left_N.round(6)]
+    write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
+    rows = [Row((fmt.capital(name), *write(*force))) for name, force in (*named, *pose.loads)]
+    left = write(*(pose.left_N.round(6) + 0.0))
     columns = ("Force on the platform", Column("x"), Column("y"), Column("z"))
-    return Table.of("The forces there add up to nothing.", columns, *rows, Row(("Sum", *left)))
+    return Table.of(
+        "The forces there add up to nothing, but for rounding.", columns, *rows, Row(("Sum", *left))
+    )
+
+
+def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
+    """Return what writes forces in one unit, the largest of these with five digits."""
+    largest_N = max((abs(float(x)) for x in forces_N), default=0.0)
+    unit, scale = fmt.force_unit(largest_N)
+    places = max(4 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
+    return lambda *values: tuple(
+        f"{fmt.fixed(float(x) / scale, places)}\u00a0{unit}" for x in values
+    )

@@ -28,6 +28,7 @@ from designer.report.blocks import (
     Subheading,
     Table,
 )
+from designer.report.design.comparison import compared
 from designer.report.design.scope import orientation_fact
 from designer.report.design.source import Source
 from designer.report.design.workspace_figures import rope_figures, workspace_figures
@@ -61,7 +62,13 @@ def family(source: Source) -> Section | None:
     study, found = source.analysis.study, source.analysis.workspace
     if study.workspace is None or found is None or source.rope is None:
         return None
-    return Section.of("family", "The configured cable family", *_of_family(source, study, found))
+    outcome = source.findings.chosen_outcome
+    return Section.of(
+        "family",
+        "The configured cable family",
+        *_of_family(source, study, found),
+        *(compared(source.analysis, outcome) if outcome else ()),
+    )
 
 
 def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Block | None]:
@@ -73,7 +80,8 @@ def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Bl
     yield _extremes(study.workspace.region, found)
     yield Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census))
     hanging = _hanging(source.analysis.built.robot, study.workspace, found, other)
-    yield Box.of("keep", Subheading("hanging", "Cables below the platform"), hanging)
+    heading = Subheading("hanging", "Cables below the platform") if other is not None else None
+    yield Box.of("keep", heading, hanging)
     yield _policies(study.workspace, found, other) if other is not None else None
     yield from _figures(source)
 
@@ -136,7 +144,7 @@ def _statement(found: WorkspaceMap) -> Statement:
             f"{fmt.position(found.sagging.place)}; its self-weight ratio there is "
             f"{fmt.percent(found.limit_ratio)}."
         )
-        return Statement("The workspace is served", text, "good")
+        return Statement("The workspace is feasible", text, "good")
     text = "There is no diameter of the configured family that serves every pose."
     if found.infeasible_pose is not None:
         text += (
@@ -145,7 +153,7 @@ def _statement(found: WorkspaceMap) -> Statement:
             " Toward such poses the needed diameter grows without bound, so the worst sample "
             "below depends on where samples happen to lie and is no design value."
         )
-    return Statement("The workspace is not served", text, "bad")
+    return Statement("The workspace is not feasible", text, "bad")
 
 
 def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
@@ -165,9 +173,9 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
     return Table.of(
         "The thinnest diameter of the configured cable family that was found.",
         ("Case", "Position", Column("Diameter"), Column("Largest tension")),
-        _extreme(f"Worst pose with sag{how}", found.sagging, is_answer=True),
-        _extreme("Worst sample with sag", found.sampled),
-        _extreme("Worst pose without sag", found.massless),
+        _extreme(f"Worst pose{how}", found.sagging, is_answer=True),
+        _extreme("Worst sample", found.sampled),
+        _extreme("Worst pose, rope weight ignored", found.massless),
     )
 
 
@@ -183,7 +191,7 @@ def _extreme(name: str, extreme: Extreme | None, *, is_answer: bool = False) -> 
     return Row(cells, "good" if is_answer else "")
 
 
-def _census(census: Census) -> Table:
+def _census(census: Census) -> Table | str:
     names = {verdict: verdict.label.replace("_", " ") for verdict in Verdict}
     met = [verdict for verdict in Verdict if census.statuses[verdict.label] > 0]
     others = [name for verdict, name in names.items() if verdict not in met]
@@ -192,6 +200,8 @@ def _census(census: Census) -> Table:
         for verdict in met
         for amount in [census.statuses[verdict.label]]
     )
+    if len(met) == 1:
+        return f"All {fmt.count(census.samples)} samples: {names[met[0]]}. {met[0].sentence}"
     rest = f" No sample met another: {fmt.listing(others, 'or')}." if others else ""
     columns = ("Verdict", Column("Samples"), Column("Share"), "Meaning")
     return Table.of(f"Verdicts of all samples.{rest}", columns, *rows)
@@ -203,7 +213,7 @@ def _hanging(
     census = found.census
     if census.hangs_below == 0:
         text = "In no solved sample does a cable hang below the platform."
-        return Statement("There are none", text)
+        return Statement("No cable below the platform", text)
     text = (
         f"In {fmt.share(census.hangs_below, census.samples)} of the samples a cable hangs below "
         "the platform: it may touch the ground or what stands on it."

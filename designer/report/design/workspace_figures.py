@@ -44,8 +44,8 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
         yield chart(caption, f"A map in {view}", slice_chart(maps))
     else:
         caption = (
-            f"Needed diameter and largest tension {place}. Sag changes the tension by at most "
-            f"{fmt.percent(change, 2)} there."
+            f"Needed diameter and largest tension {place}. The effect of rope weight on the "
+            f"tension is {fmt.percent(change, 2)} there at most."
         )
         yield chart(caption, f"Two maps in {view}", slice_panels(maps, (DIAMETER, tension)))
     yield chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
@@ -65,10 +65,10 @@ def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
     view = "plane" if maps.is_upright else "plan"
     drawn = slice_panels(maps, (UTILISATION, other))
     loads = f"in the load case '{rope.load_case}', {_place_of(maps)}"
-    what = "its ratio to that of straight weightless cables" if other is RATIO else "the tension"
+    what = "tension over that of straight weightless cables" if other is RATIO else "the tension"
     caption = (
-        f"{rope.name}: largest tension over allowable tension, and {what}, {loads}. The effect of "
-        f"rope weight on the tension is {fmt.percent(change, 2)} there at most."
+        f"{rope.name}: utilisation (largest over allowable tension), and {what}, {loads}. The "
+        f"effect of rope weight on the tension is {fmt.percent(change, 2)} there at most."
     )
     found = chart(caption, f"Two maps in {view}", drawn)
     if found is not None:
@@ -82,7 +82,7 @@ def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture | None:
     if rope is None:
         return scene(cover_caption(maps), _IN_SPACE, cover_scene(maps), kind="robot")
     caption = (
-        f"How much of what is allowed {rope.name} uses over {_extent(maps)}, in the load case "
+        f"Utilisation of {rope.name} over {_extent(maps)}, in the load case "
         f"'{rope.load_case}'; the cables hang at the worst pose."
     )
     drawn = cover_scene(maps, UTILISATION)
@@ -133,13 +133,12 @@ def _place_of(maps: WorkspaceMaps) -> str:
 
 def panels_caption(maps: WorkspaceMaps) -> str:
     """Return the caption of the maps of tension and of its ratio to the one without sag."""
-    shown = f"Largest tension, and its ratio to the tension without sag, {_place_of(maps)}."
+    shown = f"Largest tension, and its ratio to that of weightless cables, {_place_of(maps)}."
     ratio = RATIO.of(maps.section)
     if not np.isfinite(ratio).any():
         return shown
-    return (
-        f"{shown} Who ignores sag misses a factor of up to {fmt.factor(float(np.nanmax(ratio)))}."
-    )
+    most = fmt.factor(float(np.nanmax(ratio)))
+    return f"{shown} Who ignores the rope weight misses a factor of up to {most}."
 
 
 def _largest_change(maps: WorkspaceMaps) -> float:

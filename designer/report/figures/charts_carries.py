@@ -19,10 +19,10 @@ Bars = Sequence[tuple[str, float]]
 def carries_chart(shares: Bars, moves: Bars, move: str) -> str:
     """Return bars for 1 % more of each input and for a ``move`` of each point, as SVG."""
     with canvas.drawing():
-        figure = canvas.sheet(16.0 + 4.6 * max(len(shares), len(moves)))
+        figure = canvas.sheet(14.0 + 4.2 * max(len(shares), len(moves)))
         left, right = figure.subplots(1, 2)
-        _bars(left, shares, "for 1 % more [percentage points]")
-        _bars(right, moves, f"for {move} [percentage points]")
+        _bars(left, shares, "for 1 % more [points of percent]")
+        _bars(right, moves, f"for {move} [points of percent]")
         return canvas.svg(figure, "carries", "Change of the utilisation with each input")
 
 

@@ -151,8 +151,8 @@ def _label_robot(
     clear = overlay.obstacles(view, [*curves, *body_lines_m(statics), *others])
     overlay.write_exits(axes, view, statics.robot.exit_points_m, clear)
     body = statics.poses.position_m
-    x, y, z = (fmt.trimmed(float(v), 6) for v in body)
-    text = f"{fmt.trimmed(statics.robot.platform.mass_kg, 6)} kg at ({x}, {y}, {z}) m"
+    x, y, z = (fmt.trimmed(round(float(v), 2), 5) for v in body)
+    text = f"{fmt.trimmed(statics.robot.platform.mass_kg, 5)} kg at ({x}, {y}, {z}) m"
     overlay.write_clear(axes, view, body, text, clear, fontweight="bold")
     if not statics.is_solved:
         text = f"No equilibrium in this pose.\n{Verdict(int(statics.verdict)).sentence}"
