@@ -14,7 +14,6 @@ from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.blocks import (
     Block,
-    Box,
     Column,
     Heads,
     Picture,
@@ -48,7 +47,8 @@ def section(source: Source) -> Section | None:
         "carries",
         "What carries the result",
         _reserves(found, mass),
-        Box.of("keep", _slopes(found, moves), _chart(slopes, moves) if source.draws else None),
+        _slopes(found, moves),
+        _chart(slopes, moves) if source.draws else None,
         slopes.why_not,
         _sizes(found.sizes),
         *_way_out(found),
