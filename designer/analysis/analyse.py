@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from designer import __version__
+from designer.analysis.carries import Carries, carries_of
 from designer.analysis.verification import SecondAnswer, verify, verify_cables
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
@@ -152,6 +153,8 @@ class Analysis:
         declared effects leave it a family, see `designer.workspace.section` [m].
     verification : tuple of SecondAnswer
         The governing poses, solved again by other methods.
+    carries : Carries or None
+        What carries the choice of a rope for all cables.
     scratch : Scratch or None
         Folder that goes with this value, where no other was given for the samples.
     """
@@ -166,6 +169,7 @@ class Analysis:
     qualities: Qualities | None = None
     section_m: float | None = None
     verification: tuple[SecondAnswer, ...] = ()
+    carries: Carries | None = None
     scratch: Scratch | None = field(default=None, repr=False)
 
     @property
@@ -342,6 +346,7 @@ def analyse(
         qualities,
         built.section_m,
         _second_answers(study, built, pose, workspace, chosen),
+        None if groups is not None else carries_of(study, chosen),
         scratch,
     )
 

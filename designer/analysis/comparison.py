@@ -31,7 +31,7 @@ _ANSWERS = {
     "workspace.sagging.max_tension_N": "largest tension, worst pose",
     "workspace.sagging.pose": "worst position",
     "workspace.massless.diameter_m": "needed diameter without sag",
-    "workspace.limit_ratio": "limit ratio",
+    "workspace.limit_ratio": "self-weight ratio",
     "workspace.statuses.solved": "samples solved",
     "workspace.samples": "samples",
     "workspace.stiffness.largest_displacement_m_per_N": "largest displacement by a force",

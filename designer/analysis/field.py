@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +38,8 @@ class Field:
         One `Verdict` a position.
     is_left_out : array (...) of bool
         Whether the study leaves the position out.
+    utilisation : array (...) or None
+        Of a given rope; the diameters are NaN then.
     """
 
     position_m: FloatArray
@@ -47,6 +50,7 @@ class Field:
     uplift: FloatArray
     verdict: VerdictArray
     is_left_out: BoolArray
+    utilisation: FloatArray | None = None
 
     @property
     def is_solved(self) -> BoolArray:
@@ -80,7 +84,12 @@ class Field:
         """Return every second point along both axes of a grid, its rim kept."""
         rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in self.position_m.shape[:2])
         chosen = np.ix_(rows, columns)
-        return Field(*(getattr(self, item.name)[chosen] for item in fields(self)))
+        kept: dict[str, Any] = {
+            item.name: None if value is None else value[chosen]
+            for item in fields(self)
+            for value in [getattr(self, item.name)]
+        }
+        return Field(**kept)
 
 
 def field_at(study: Study, position_m: FloatArray) -> Field:

@@ -84,6 +84,11 @@ class GoverningPose:
         return np.asarray(np.sum([*pulls, *(force for _, force in self.loads)], axis=0))
 
     @property
+    def alone(self) -> Statics:
+        """The equilibrium without its leading axis."""
+        return _only(self.statics)
+
+    @property
     def closure_residual_m(self) -> float:
         """Largest distance of a cable's end from its attachment [m]."""
         return float(self.statics.closure_residual_m().max())

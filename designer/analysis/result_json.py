@@ -10,6 +10,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis, PoseAnalysis
+from designer.analysis.carries_json import carries_dict
 from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.arrays import FloatArray
@@ -50,6 +51,7 @@ def result_dict(analysis: Analysis) -> Json:
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
+        **carries_dict(analysis.carries),
         "verification": [
             {
                 "method": one.method,

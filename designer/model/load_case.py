@@ -127,6 +127,10 @@ class Loaded:
         turned = along / np.linalg.norm(along)
         return self.case.under(*self.bare, self.wind, turned, self.lost_cable)
 
+    def on(self, robot: Robot, cable: Cable) -> Loaded:
+        """Return the same case in the same directions on another robot or cable."""
+        return self.case.under(robot, cable, self.wind, self.inertia, self.lost_cable)
+
     @property
     def words(self) -> str:
         """Its direction or lost cable, for the reader of a report; empty where there is neither."""

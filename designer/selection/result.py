@@ -130,7 +130,7 @@ class GradeOutcome:
         if self.best is None and self.fails_in:
             return f"has no size that holds in the load case '{self.fails_in}'"
         if self.best is None:
-            return f"ends at {self.grade.thickest.id}, {need}"
+            return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
         return f"{self.best.size.id} holds everywhere, {need}"
 
 

@@ -115,7 +115,7 @@ def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
             moment = np.cross(geometry.lever_m, direction)
             columns.append(np.concatenate([direction, moment], axis=-1))
     pairs = np.stack(columns, axis=-2)  # (..., n_cables, 2, dof)
-    flat = pairs.reshape(*pairs.shape[:-3], -1, pairs.shape[-1])
+    flat = pairs.reshape(*pairs.shape[:-3], 2 * pairs.shape[-3], pairs.shape[-1])
     return np.asarray(np.swapaxes(flat, -1, -2)[..., robot.balance_rows, :])
 
 

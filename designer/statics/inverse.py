@@ -144,7 +144,8 @@ class Statics:
         """What is left of the platform's balance, eq. (9), (..., degrees of freedom) [N, N·m]."""
         matrix = structure_matrix(self.robot, self.geometry())
         forces = np.stack([self.force_x_N, self.force_z_N], axis=-1)
-        held = np.einsum("...ij,...j->...i", matrix, forces.reshape(*self.verdict.shape, -1))
+        flat = forces.reshape(*self.verdict.shape, matrix.shape[-1])
+        held = np.einsum("...ij,...j->...i", matrix, flat)
         return np.asarray(held - load_wrench_N(self.robot, self.poses, self.force_N))
 
     def geometry(self) -> CableGeometry:

@@ -47,7 +47,7 @@ def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         swing = np.where(is_vertical, plane[..., 0, 0], statics.force_x_N / X)
     outward = np.where(is_vertical[..., None], [1.0, 0.0], chord.outward)
-    return _in_space(plane, swing, outward)
+    return in_space(plane, swing, outward)
 
 
 def platform_stiffness(statics: Statics) -> FloatArray:
@@ -73,14 +73,14 @@ def upright_stiffness(statics: Statics) -> FloatArray:
     if robot.is_point_mass:
         return _balanced(robot, K.sum(axis=-3))
     lever = statics.geometry().lever_m
-    B = _cross_matrix(lever)
+    B = cross_matrix(lever)
     plan = statics.force_x_N[..., None] * statics.geometry().outward
-    F = _cross_matrix(np.concatenate([plan, statics.force_z_N[..., None]], axis=-1))
+    F = cross_matrix(np.concatenate([plan, statics.force_z_N[..., None]], axis=-1))
     turn = -K @ B
     moment = B @ K
     arm = centre_of_mass_arm_m(robot, statics.poses)
-    weight = _cross_matrix(-robot.centre_pull_N)
-    turning = (B @ turn + F @ B).sum(axis=-3) - weight @ _cross_matrix(arm)
+    weight = cross_matrix(-robot.centre_pull_N)
+    turning = (B @ turn + F @ B).sum(axis=-3) - weight @ cross_matrix(arm)
     left = np.concatenate([K.sum(axis=-3), moment.sum(axis=-3)], axis=-2)
     right = np.concatenate([turn.sum(axis=-3), turning], axis=-2)
     return _balanced(robot, np.concatenate([left, right], axis=-1))
@@ -135,7 +135,7 @@ def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     return np.where(good, largest, np.nan)
 
 
-def _in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
+def in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
     """Turn stiffness in the vertical plane and across it into three dimensions."""
     out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
     up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
@@ -145,7 +145,7 @@ def _in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> Floa
     return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
 
 
-def _cross_matrix(vector: FloatArray) -> FloatArray:
+def cross_matrix(vector: FloatArray) -> FloatArray:
     """Return the matrices of ``vector ×`` (..., 3, 3)."""
     x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
     zero = np.zeros_like(x)

@@ -262,7 +262,7 @@ class TestCandidates:
         check(svg)
         assert selection.chosen is not None
         mass = f"{selection.chosen.total_mass_kg:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
-        assert {f"20.5 mm, {mass} kg", "ends at 3/8 in", "ends at 20 mm"} <= texts(svg)
+        assert {f"20.5 mm, {mass} kg", "3/8 in insufficient", "20 mm insufficient"} <= texts(svg)
 
     def test_many_grades(self, selection: SelectionResult) -> None:
         copies = tuple(

@@ -321,7 +321,7 @@ class TestPictures:
     def test_robot_shows_its_cables(self, name: str) -> None:
         pose = solved(name)[0].pose
         assert pose is not None
-        image = robot_scene(pose)
+        image = robot_scene(pose.sizing.statics)
         assert image.shape == (HEIGHT_PX, WIDTH_PX, 3)
         assert count(image, palette.SAG) > 500
         assert count(image, palette.WARNING) == 0
@@ -329,7 +329,7 @@ class TestPictures:
     def test_robot_without_equilibrium_says_so(self) -> None:
         pose = analyse_pose(pose_at("served", [250.0, -20.0, -50.0]))
         assert pose is not None
-        image = robot_scene(pose)
+        image = robot_scene(pose.sizing.statics)
         assert count(image, palette.SAG) == 0
         assert count(image, palette.WARNING) > 100
 
@@ -337,7 +337,7 @@ class TestPictures:
         """Below an exit point one cable would hold it alone, which counts as no equilibrium."""
         pose = analyse_pose(pose_at("served", [1e-9, 0.0, -50.0]))
         assert pose is not None
-        image = robot_scene(pose)
+        image = robot_scene(pose.sizing.statics)
         assert image.shape == (HEIGHT_PX, WIDTH_PX, 3)
         assert (image[0, 0] == 255).all()
         assert count(image, palette.WARNING) > 1_000

@@ -77,7 +77,7 @@ def test_grade_ends_too_thin(analyses: dict[str, Analysis]) -> None:
     assert page.card is not None
     assert page.card.size == "51.2\u00a0mm"
     text = said(page)
-    assert "unirope-7x19-galvanised, which ends at 3/8 in" in text
+    assert "unirope-7x19-galvanised, which is insufficient in its largest size sold, 3/8 in" in text
     assert analysis.selection is not None
     fitting = [outcome.best for outcome in analysis.selection.alternatives]
     lightest = min((c for c in fitting if c is not None), key=lambda c: c.total_mass_kg)

@@ -120,7 +120,7 @@ def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
     if not failing:
         return None
     failing.sort(key=_shortfall)
-    columns = ("Grade", "Thickest size", Column("Needed", "mm"), "Why not")
+    columns = ("Grade", "Largest size", Column("Needed", "mm"), "Why not")
     caption = "Grades of which no size holds, the nearest first."
     if len(failing) > MOST_ROWS:
         caption += f" {_more(len(failing) - MOST_ROWS, 'grade')}"
@@ -219,7 +219,11 @@ def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:
 
 def _thin(outcome: GradeOutcome) -> tuple[str, ...]:
     needed = outcome.continuous_diameter_m
-    why = "ends too thin" if math.isfinite(needed) else "its own weight is too much"
+    why = (
+        "largest size sold is insufficient"
+        if math.isfinite(needed)
+        else "its own weight is too much"
+    )
     return outcome.grade.id, outcome.grade.thickest.id, _known(1e3 * needed, 1), why
 
 

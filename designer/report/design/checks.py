@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.checks import Check, checks_of
-from designer.analysis.governing import GoverningPose, governing_pose
+from designer.analysis.governing import GoverningPose
 from designer.report import format as fmt
-from designer.report.blocks import Column, Fact, Facts, Row, Section, Statement, Table
+from designer.report.blocks import (
+    Block,
+    Box,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Row,
+    Section,
+    Statement,
+    Table,
+)
 from designer.report.design.source import Source
+from designer.report.pictures import scene
 from designer.study import Study
 
 
@@ -20,14 +32,33 @@ def section(source: Source) -> Section | None:
     checks = _checks(source.analysis)
     if not checks or found is None or found.chosen is None or study.selection is None:
         return None
-    pose = governing_pose(found.chosen, study.selection.safety_factor)
+    pose = source.governing
+    shown: tuple[Block | None, ...] = ()
+    if pose is not None:
+        picture = _picture(pose) if source.draws_scenes else None
+        shown = (Box.of("lead keep", picture, _facts(pose)), _cables(pose), _forces(pose))
     return Section.of(
         "checks",
         "Checks and the governing pose",
         _table(checks),
         _not_checked(study, checks),
-        *(() if pose is None else (_facts(pose), _cables(pose), _forces(pose))),
+        *shown,
     )
+
+
+def _picture(pose: GoverningPose) -> Picture | None:
+    """Return the robot there, with the cable that governs marked."""
+    from designer.report.figures.scenes import robot_scene
+
+    statics = pose.alone
+    most = int(statics.cable_tension_N.argmax())
+    caption = (
+        f"The governing pose, its cables in their true shape, each with its tension at the exit "
+        f"point; cable {pose.cables[most].cable}, which governs, is marked. Arrows are the loads "
+        "on the platform."
+    )
+    drawn = robot_scene(statics, most, pose.loads)
+    return scene(caption, "The robot in the governing pose, in space", drawn, kind="space")
 
 
 def failing_checks(analysis: Analysis) -> Iterator[Statement]:
@@ -125,13 +156,13 @@ def _cables(pose: GoverningPose) -> Table:
         *(Column("Angle"), Column("Sag"), Column("Stretch"), Column("Safety factor")),
         Column("As a string"),
     )
+    write = _alike(one.exit_tension_N for one in pose.cables)
     rows = [
         Row(
             (
                 str(one.cable),
-                f"{fmt.fixed(one.length_m, 3)}\u00a0m",
-                f"{fmt.fixed(one.exit_tension_N, 1)}\u00a0N",
-                f"{fmt.fixed(one.platform_tension_N, 1)}\u00a0N",
+                f"{fmt.number(one.length_m, 5)}\u00a0m",
+                *write(one.exit_tension_N, one.platform_tension_N),
                 f"{fmt.fixed(math.degrees(one.angle_rad), 1)}°",
                 fmt.millimetres(one.sag_m),
                 fmt.millimetres(one.stretch_m),
@@ -151,10 +182,20 @@ def _cables(pose: GoverningPose) -> Table:
 
 def _forces(pose: GoverningPose) -> Table:
     named = [(f"cable {one.cable}", one.pull_N) for one in pose.cables]
-    rows = [
-        Row((fmt.capital(name), *(f"{fmt.fixed(float(x), 1)}\u00a0N" for x in force)))
-        for name, force in (*named, *pose.loads)
-    ]
-    left = [f"{fmt.fixed(float(x) + 0.0, 1)}\u00a0N" for x in pose.left_N.round(6)]
+    write = _alike(float(x) for _, force in (*named, *pose.loads) for x in force)
+    rows = [Row((fmt.capital(name), *write(*force))) for name, force in (*named, *pose.loads)]
+    left = write(*(pose.left_N.round(6) + 0.0))
     columns = ("Force on the platform", Column("x"), Column("y"), Column("z"))
-    return Table.of("The forces there add up to nothing.", columns, *rows, Row(("Sum", *left)))
+    return Table.of(
+        "The forces there add up to nothing, but for rounding.", columns, *rows, Row(("Sum", *left))
+    )
+
+
+def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
+    """Return what writes forces in one unit, the largest of these with five digits."""
+    largest_N = max((abs(float(x)) for x in forces_N), default=0.0)
+    unit, scale = fmt.force_unit(largest_N)
+    places = max(4 - math.floor(math.log10(max(largest_N / scale, 1.0))), 0)
+    return lambda *values: tuple(
+        f"{fmt.fixed(float(x) / scale, places)}\u00a0{unit}" for x in values
+    )

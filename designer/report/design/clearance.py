@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from designer.report import format as fmt
-from designer.report.blocks import Column, Fact, Facts, Picture, Row, Section, Statement, Table
+from designer.report.blocks import Box, Column, Fact, Facts, Picture, Row, Section, Statement, Table
 from designer.report.design.scope import in_first_orientation
 from designer.report.design.source import Source
 from designer.report.pictures import chart
@@ -21,13 +21,13 @@ def section(source: Source) -> Section | None:
         Fact("Cable", qualities.cable.name),
         Fact("Samples", fmt.count(found.samples), "and a search between them"),
     )
+    drawn = _map(source) if source.draws else None
     return Section.of(
         "clearance",
         "Clearance",
         clearance_statement(found),
-        Facts(facts),
+        Facts(facts) if drawn is None else Box.of("lead keep", drawn, Facts(facts)),
         _table(found),
-        _map(source) if source.draws else None,
         "Cables are taken in their true shape. Two cables that share an exit point or an "
         "attachment are not compared: there they part. Near its own attachment a cable is meant to "
         "be near the platform, so its last piece, a quarter of the platform's extent long, does "

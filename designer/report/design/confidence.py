@@ -85,11 +85,8 @@ def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         ratio, place = pose.limit_ratio, "configured"
     else:
         return
-    other = ""
-    if rope is not None and workspace is not None and workspace.sagging is not None:
-        other = f" (configured family {fmt.percent(workspace.limit_ratio)})"
     text = (
-        f"At the {place} pose the limit ratio of {whose} is {fmt.percent(ratio)}{other}: the "
+        f"At the {place} pose the self-weight ratio of {whose} is {fmt.percent(ratio)}: the "
         "share of the allowable stress that a cable of unlimited thickness spends on its own "
         "weight. At 100\u00a0% no finite cable is left."
     )
@@ -104,6 +101,16 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
     assert analysis.study.workspace is not None
     if analysis.study.workspace.region.is_discrete:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
+        return
+    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    if chosen is not None and not analysis.has_groups:
+        most = chosen.governing
+        text = (
+            f"The worst of {fmt.plural(most.sampled.samples, 'sample')} uses the rope to "
+            f"{fmt.fixed(100.0 * most.sampled.utilisation, 2)}\u00a0%, a search between them found "
+            f"{fmt.fixed(100.0 * most.utilisation, 2)}\u00a0%, which counts."
+        )
+        yield Statement("Sampled and searched maximum", text)
         return
     best = f"the worst of {fmt.count(workspace.census.samples)} samples"
     sampled, searched = fmt.newtons_alike(

@@ -59,7 +59,7 @@ class FirstPage:
     actions : tuple of str
         What could be done about it.
     sag : tuple of Block
-        What ignoring sag would have cost; empty where there is nothing to compare.
+        The effect of rope weight; empty where there is nothing to compare.
     groups : Statement or None
         What ropes for groups of cables save; None if the study has no groups.
     confidence : tuple of Statement
@@ -86,7 +86,7 @@ def first_page(source: Source) -> FirstPage:
         card=_card(analysis),
         reasons=tuple(reasons(analysis, findings)),
         actions=tuple(actions(analysis, findings)),
-        sag=sag_cost(analysis, findings),
+        sag=sag_cost(source),
         groups=groups_statement(analysis.groups) if analysis.groups else None,
         confidence=tuple(confidence(analysis, findings)),
         picture=_picture(source),
@@ -95,7 +95,7 @@ def first_page(source: Source) -> FirstPage:
 
 def _picture(source: Source) -> Picture | None:
     if source.draws_scenes and source.maps is not None:
-        return cover_picture(source.maps)
+        return cover_picture(source.rope_maps or source.maps, source.rope)
     return replace(source.robot, kind="robot") if source.robot else None
 
 

@@ -10,6 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.report import format as fmt
 from designer.report.blocks import Section, Table
 from designer.report.design.source import Source
+from designer.study import Entry
 
 
 def section(source: Source) -> Section:
@@ -22,12 +23,7 @@ def section(source: Source) -> Section:
     return Section.of(
         "inputs",
         "Inputs",
-        Table.of(
-            "Fields given in the configuration file.",
-            ("Field", "As given", "In SI units"),
-            *((e.field, e.given, fmt.shorter(e.value_SI)) for e in given),
-            kind="inputs long",
-        ),
+        _halves("Fields given in the configuration file.", [(e.field, _shown(e)) for e in given]),
         see if defaults_table(source.analysis) is not None else None,
     )
 
@@ -38,11 +34,22 @@ def defaults_table(analysis: Analysis) -> Table | None:
     cells = [(e.field, e.value_SI) for e in defaults if not e.field.startswith("document.")]
     if not cells:
         return None
+    return _halves("Fields that the configuration file leaves out.", cells)
+
+
+def _shown(entry: Entry) -> str:
+    """Return a value as the file gives it, where that has its unit, else in SI units."""
+    has_unit = entry.given[:1] not in "[{" and any(c.isalpha() for c in entry.given)
+    return entry.given if has_unit else fmt.shorter(entry.value_SI)
+
+
+def _halves(caption: str, cells: list[tuple[str, str]]) -> Table:
+    """Return fields and values, the first half on the left."""
     half = (len(cells) + 1) // 2
     pairs = zip_longest(cells[:half], cells[half:], fillvalue=("", ""))
     return Table.of(
-        "Fields that the configuration file leaves out, in SI units.",
-        ("Field", "Value used", "Field", "Value used"),
+        caption,
+        ("Field", "Value", "Field", "Value"),
         *((*left, *right) for left, right in pairs),
         kind="inputs halves long",
     )

@@ -18,13 +18,13 @@ def section(source: Source) -> Section | None:
         return None
     kinds = [*_not_allowed(analysis, selection), *_by_name_only(analysis, selection)]
     problems = analysis.left_out
+    loaded = "Every plugin, grade file and effect could be loaded."
+    if problems:
+        loaded = "These could not be loaded:"
     return Section.of(
         "left-out",
         "Grades left out",
-        *(kinds or ["Every grade of the catalogue was considered."]),
-        "These could not be loaded:"
-        if problems
-        else "Every plugin, grade file and effect could be loaded.",
+        " ".join((*(kinds or ["Every grade of the catalogue was considered."]), loaded)),
         Bullets(problems) if problems else None,
     )
 

@@ -12,6 +12,7 @@ from designer.analysis.analyse import PoseAnalysis
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.blocks import (
+    Block,
     Box,
     Column,
     Fact,
@@ -31,6 +32,8 @@ from designer.sizing.loop import LoopSizing
 
 _MOST_TURNS = 8
 _LAST_TURNS = 3
+_FAR = 100.0
+"""Tension over that of the first turn from where on a diverging iteration has no figures."""
 _NEGLIGIBLE, _LITTLE = 0.005, 0.02
 """Shares by which sag may change a tension: not worth a word, not worth a figure."""
 
@@ -45,21 +48,21 @@ def section(source: Source) -> Section | None:
         "The configured pose",
         _statement(pose),
         next(pose_statement(source.analysis), None),
-        _facts(pose),
+        Box.of("lead keep", replace(source.robot, kind="space"), _facts(pose))
+        if source.robot
+        else _facts(pose),
         _methods(pose),
-        replace(source.robot, kind="space") if source.robot else None,
         _cables(pose) if pose.sizing.statics.is_solved else None,
         *(
             (
                 Box.of(
                     "keep",
-                    Subheading("loop", "The loop, turn by turn"),
+                    Subheading("loop", "The fixed-point iteration, turn by turn"),
                     "Each turn solves the pose with the last diameter, takes the largest tension, "
                     "and asks for the diameter that carries it at the allowable stress. A thicker "
                     "cable is heavier, so the tension rises from turn to turn.",
-                    _loop_chart(pose) if source.draws else None,
+                    _turns(pose, draws=source.draws),
                 ),
-                turns_table(pose.loop),
             )
             if pose.loop.iterates
             else ()
@@ -94,7 +97,7 @@ def _facts(pose: PoseAnalysis) -> Facts:
             "stress of a cable of unlimited thickness over the allowable stress; "
             "at 100 % no finite cable is left"
         )
-        facts.append(Fact("Limit ratio", fmt.percent(pose.limit_ratio), meaning))
+        facts.append(Fact("Self-weight ratio", fmt.percent(pose.limit_ratio), meaning))
     if pose.rest is not None:
         facts.append(Fact("Forward statics", pose.rest.sentence))
     if statics.is_solved:
@@ -113,14 +116,14 @@ def _methods(pose: PoseAnalysis) -> Table | None:
     rows = []
     if np.isfinite(massless.largest_tension_N):
         found = sizing.massless_diameter_m, massless.largest_tension_N
-        rows.append(_way("Straight weightless cables", *found, "sag ignored"))
+        rows.append(_way("Straight weightless cables", *found, "rope weight ignored"))
     if loop.iterates:
         last = loop.iterates[-1]
         ends = (math.nan, math.nan) if loop.has_diverged else (last.diameter_m, last.max_tension_N)
-        rows.append(_way("Loop of section IV-B", *ends, loop.outcome))
+        rows.append(_way("Fixed-point iteration, section IV-B", *ends, loop.outcome))
     if sizing.statics.is_solved:
         found = sizing.diameter_m, sizing.statics.largest_tension_N
-        rows.append(_way("Optimum of section IV-C", *found, "Newton's method", "good"))
+        rows.append(_way("Optimum, section IV-C", *found, "Newton's method", "good"))
     columns = ("Way", Column("Diameter"), Column("Largest tension"), "Remark")
     caption = "The diameter of this pose by each way; sections are those of Riehl et al. (2010)."
     return Table.of(caption, columns, *rows) if rows else None
@@ -145,7 +148,7 @@ def _cables(pose: PoseAnalysis) -> Table:
         *(Column("Cable"), Column("Straight distance", "m"), Column("Unstrained length", "m")),
         *(Column("Horizontal force", unit), Column("Vertical force", unit)),
         *(Column("Tension at platform", unit), Column("Tension at exit", unit)),
-        Column("Tension without sag", unit),
+        Column("Tension without weight", unit),
     )
     metres = zip(statics.geometry().chord_m, statics.length_m, strict=True)
     forces = zip(
@@ -171,6 +174,12 @@ def _cables(pose: PoseAnalysis) -> Table:
     return Table.of(caption, columns, *rows)
 
 
+def _turns(pose: PoseAnalysis, *, draws: bool) -> Block:
+    """Return the turns, beside their curves where these are worth a figure."""
+    drawn, table = _loop_chart(pose) if draws else None, turns_table(pose.loop)
+    return table if drawn is None else Box.of("lead", drawn, table)
+
+
 def _loop_chart(pose: PoseAnalysis) -> Picture | None:
     """Return the turns as curves; None where they would be flat, as the loop ends at its start."""
     from designer.report.figures.charts_pose import loop_chart
@@ -179,14 +188,14 @@ def _loop_chart(pose: PoseAnalysis) -> Picture | None:
     more, is_solved = float(end / start) - 1.0, pose.sizing.statics.is_solved
     if is_solved and pose.loop.has_converged and abs(more) < _LITTLE:
         return None
-    caption = "Largest tension and diameter over the turns of the loop"
+    caption = "Largest tension and diameter over the turns"
     if not (is_solved and np.isfinite(start)):
         caption += "."
     elif abs(more) < _NEGLIGIBLE:
-        caption += ". In this pose sag hardly matters."
+        caption += ". In this pose the rope weight hardly matters."
     else:
         caption += (
-            ", and the optimum. Sag changes the tension of this pose by "
+            ", and the optimum. The effect of rope weight on the tension of this pose is "
             f"{fmt.signed_percent(more)}."
         )
     return chart(caption, "Two curves that rise from the massless start", loop_chart(pose))
@@ -199,16 +208,19 @@ def turns_table(loop: LoopSizing) -> Table:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
     typical = loop.iterates[0 if loop.has_diverged else -1]
     unit, scale = fmt.force_unit(typical.max_tension_N)
-    force_places = fmt.decimals([typical.max_tension_N / scale], 5)
+    force_places = fmt.decimals([typical.max_tension_N / scale], 4)
     places = fmt.decimals([1e3 * typical.diameter_m], 4)
     rows: list[Row] = []
     for turn, iterate in numbered:
         if rows and turn > int(rows[-1].cells[0]) + 1:
             rows.append(Row(("…", "…", "…"), "muted"))
         tension = fmt.fixed(iterate.max_tension_N / scale, force_places)
-        rows.append(Row((str(turn), tension, fmt.fixed(1e3 * iterate.diameter_m, places))))
+        diameter = fmt.fixed(1e3 * iterate.diameter_m, places)
+        if loop.has_diverged and iterate.max_tension_N > _FAR * typical.max_tension_N:
+            tension = diameter = "diverges"
+        rows.append(Row((str(turn), tension, diameter)))
     columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
-    caption = "Turns of the loop; turn 0 is the massless start."
+    caption = "Turns; turn 0 is the massless start."
     if loop.has_diverged:
         caption += " It diverges: each turn asks for more than the one before."
     return Table.of(caption, columns, *rows, kind="narrow turns")

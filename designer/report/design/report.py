@@ -8,6 +8,7 @@ from designer.report.blocks import Report, Section
 from designer.report.control import control_of
 from designer.report.design import (
     assumptions,
+    carries,
     checks,
     clearance,
     groups,
@@ -27,15 +28,17 @@ from designer.report.design.source import Source, source_of
 
 SECTIONS = (
     inputs.section,
-    pose.section,
+    checks.section,
+    carries.section,
+    load_cases.section,
     workspace.section,
     selection.section,
-    load_cases.section,
-    checks.section,
     groups.section,
     stiffness.section,
     clearance.section,
     workshop.section,
+    pose.section,
+    workspace.family,
     verification.section,
     left_out.section,
     assumptions.section,

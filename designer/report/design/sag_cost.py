@@ -1,21 +1,29 @@
-"""What ignoring sag would have cost."""
+"""The effect of the weight of the cables, and what ignoring it would have cost."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings, MasslessChoice
+from designer.analysis.findings import MasslessChoice
+from designer.analysis.rope_maps import Rope
+from designer.model.robot import Poses
 from designer.report import format as fmt
 from designer.report.blocks import Block, Column, Table
+from designer.report.design.source import Source
+from designer.statics.inverse import solve_massless
 
 
-def sag_cost(analysis: Analysis, findings: Findings) -> tuple[Block, ...]:
-    """Compare with and without sag at the worst pose, or at the configured pose.
+def sag_cost(source: Source) -> tuple[Block, ...]:
+    """Compare with and without the weight of the cables: of the chosen ropes at their worst pose.
 
-    Also what a design without sag would have bought, and how it would fare; empty where there is
-    nothing to compare.
+    Also what a design without it would have bought, and how it would fare. Without a rope of the
+    configured family at the worst pose, or the configured one; empty where nothing compares.
     """
+    analysis, choice = source.analysis, source.findings.massless_choice
+    if source.rope is not None:
+        said = (_consequence(analysis, choice),) if choice and not analysis.has_groups else ()
+        return (*_of_rope(source.rope), *said)
     found = _at_the_worst_poses(analysis) or _at_the_configured_pose(analysis)
     if found is None:
         return ()
@@ -24,13 +32,35 @@ def sag_cost(analysis: Analysis, findings: Findings) -> tuple[Block, ...]:
     tensions = fmt.newtons_alike(massless_tension_N, tension_N)
     table = Table.of(
         f"Configured cable family, {place}.",
-        ("", Column("Without sag"), Column("With sag"), Column("Factor")),
+        _HEADS,
         ("Diameter", *diameters, fmt.factor(diameter_m / massless_diameter_m)),
         ("Tension", *tensions, fmt.factor(tension_N / massless_tension_N)),
         kind="small",
     )
-    choice = findings.massless_choice
-    return (table, _consequence(analysis, choice)) if choice else (table,)
+    return (table,)
+
+
+_HEADS = ("", Column("Without"), Column("With"), Column("Factor"))
+
+
+def _of_rope(rope: Rope) -> tuple[Block, ...]:
+    """Return tension and utilisation without and with the weight of the ropes."""
+    statics = rope.statics(rope.place)
+    straight = solve_massless(rope.robot, Poses.at(rope.place)).tension_N
+    if not statics.is_solved or not (straight >= 0.0).all():
+        return ("Straight weightless cables cannot hold the worst pose at all.",)
+    without = float((straight / rope.cable.allowable_tension_N).max())
+    used = float(rope.used(statics))
+    tensions = float(straight.max()), float(statics.largest_tension_N)
+    return (
+        Table.of(
+            f"{rope.name} at its worst pose.",
+            _HEADS,
+            ("Tension", *fmt.newtons_alike(*tensions), fmt.factor(tensions[1] / tensions[0])),
+            ("Used", fmt.utilisation(without), fmt.utilisation(used), fmt.factor(used / without)),
+            kind="small",
+        ),
+    )
 
 
 _Found = tuple[str, float, float, float, float]
@@ -63,13 +93,13 @@ def _consequence(analysis: Analysis, choice: MasslessChoice) -> str:
     assert analysis.selection.chosen is not None
     assert analysis.study.selection is not None
     if choice.size == analysis.selection.chosen.size:
-        return f"For the chosen grade the size would have been the same, {choice.size.id}."
+        return f"Without it the size would have been the same, {choice.size.id}."
     found = choice.verification
-    start = f"Without sag, {choice.size.id} of the chosen grade would have been bought."
+    start = f"Without it, {choice.size.id} of the chosen grade would have been bought."
     if not np.isfinite(found.max_tension_N):
-        return f"{start} With sag it cannot hold the whole workspace at all."
+        return f"{start} With it this cannot hold the whole workspace at all."
     required = fmt.trimmed(analysis.study.selection.safety_factor)
     return (
-        f"{start} With sag its safety factor is {fmt.fixed(choice.safety_factor, 2)} instead of "
+        f"{start} With it its safety factor is {fmt.fixed(choice.safety_factor, 2)} instead of "
         f"{required}."
     )

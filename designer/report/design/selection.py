@@ -29,7 +29,6 @@ from designer.report.design.candidates import (
     pareto_table,
     thin_table,
 )
-from designer.report.design.comparison import compared
 from designer.report.design.source import Source
 from designer.report.pictures import chart, scene
 from designer.selection.objectives import MEANINGS
@@ -42,8 +41,7 @@ def section(source: Source) -> Section | None:
     selection = source.analysis.selection
     if selection is None:
         return None
-    chosen, outcome = selection.chosen, source.findings.chosen_outcome
-    seen = {outcome.grade.trust for outcome in selection.outcomes}
+    chosen = selection.chosen
     alternatives = alternatives_table(selection)
     grades = _grades_chart(selection) if source.draws else None
     return Section.of(
@@ -51,23 +49,25 @@ def section(source: Source) -> Section | None:
         "The choice of a rope",
         _statement(selection),
         Box.of("loose", sources(chosen.grade)) if chosen else None,
-        _tried(selection),
+        " ".join((_tried(selection), *_trusts(selection))),
         *(_front(selection, draws=source.draws) if selection.front else ()),
         Box.of("keep", Subheading("fallen", "Why the others fell out"), fallen_table(selection)),
         main_dominators(selection),
         thin_table(selection.outcomes),
         Box.of("keep", Subheading("candidates", "Grades"), grades) if grades else None,
         best_table(selection) if selection.front else None,
-        *(
-            Statement(f"Trust {letter}", f"{fmt.capital(meaning)}.")
-            for letter, meaning in TRUST_MEANING.items()
-            if letter in seen
-        ),
         *(_usable(source, selection, selection.usable) if selection.usable else ()),
-        *(compared(source.analysis, outcome) if outcome else ()),
         Subheading("alternatives", "Grades that would hold") if alternatives else None,
         alternatives,
     )
+
+
+def _trusts(selection: SelectionResult) -> Iterator[str]:
+    """Yield what the trust letters of the tables mean."""
+    seen = {outcome.grade.trust for outcome in selection.outcomes}
+    for letter, meaning in TRUST_MEANING.items():
+        if letter in seen:
+            yield f"Trust {letter}: {meaning}."
 
 
 def product_name(grade: Grade) -> str:
@@ -148,8 +148,8 @@ def _tried(selection: SelectionResult) -> str:
 
 
 def _front(selection: SelectionResult, *, draws: bool) -> tuple[Block, ...]:
-    heading = Subheading("pareto", "The sizes that no other beats")
-    picture = _pareto_chart(selection) if draws else None
+    heading = Subheading("pareto", "Pareto-optimal sizes")
+    picture = _pareto_chart(selection) if draws and len(selection.front) > 1 else None
     return Box.of("keep", heading, front_sentence(selection), picture), pareto_table(selection)
 
 
@@ -185,12 +185,17 @@ def _usable(source: Source, selection: SelectionResult, found: Usable) -> tuple[
     """Return where each size of one grade may go: as a curve if sizes differ, and in space."""
     if not found.sizes:
         return ()
+    heading, layers, table = (
+        Subheading("usable", "Where each size may go"),
+        None,
+        usable_table(found),
+    )
+    if found.differs:
+        layers = _layers(source, found)
+    if layers is not None:
+        return (Box.of("keep", heading, Box.of("lead", layers, table)),)
     curve = _usable_chart(selection, found) if source.draws and found.differs else None
-    table = usable_table(found, kind="long" if curve else "")
-    heading = Subheading("usable", "Where each size may go")
-    layers = _layers(source, found)
-    shown = (Box.of("keep", heading, curve or table), layers, table if curve else None)
-    return tuple(block for block in shown if block)
+    return Box.of("keep", heading, curve or table), *((table,) if curve else ())
 
 
 def _usable_chart(selection: SelectionResult, found: Usable) -> Picture | None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, find
+from designer.analysis.governing import GoverningPose, governing_pose
+from designer.analysis.rope_maps import Rope, rope_maps, rope_of
 from designer.report.blocks import Picture
 from designer.report.pictures import scene
 
@@ -51,6 +53,18 @@ class Source:
         return workspace_maps(self.analysis)
 
     @cached_property
+    def rope(self) -> Rope | None:
+        """The ropes of the answer as loaded where they are used most; None without any."""
+        return rope_of(self.analysis)
+
+    @cached_property
+    def rope_maps(self) -> WorkspaceMaps | None:
+        """What the maps of these ropes show; None without them."""
+        if self.maps is None or self.rope is None:
+            return None
+        return rope_maps(self.maps, self.rope)
+
+    @cached_property
     def robot(self) -> Picture | None:
         """The robot in the configured pose, in space; None without such pictures."""
         pose = self.analysis.pose
@@ -61,7 +75,19 @@ class Source:
         caption = "The robot in the configured pose"
         if pose.sizing.statics.is_solved:
             caption += ", its cables in their true shape, each with its tension at the exit point"
-        return scene(f"{caption}.", "The robot with its cables, in space", robot_scene(pose))
+        statics = pose.sizing.statics
+        body, up = statics.robot.platform, statics.robot.level[2]
+        loads = [("weight", -statics.robot.weight_N * up), ("load", body.wrench_N[:3])]
+        drawn = robot_scene(statics, loads=loads)
+        return scene(f"{caption}.", "The robot with its cables, in space", drawn)
+
+    @cached_property
+    def governing(self) -> GoverningPose | None:
+        """The pose at which the chosen rope for all cables is used most; None without one."""
+        study, found = self.analysis.study, self.analysis.selection
+        if found is None or found.chosen is None or study.selection is None:
+            return None
+        return governing_pose(found.chosen, study.selection.safety_factor)
 
 
 def source_of(analysis: Analysis, *, draws: bool = True) -> Source:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from designer.report import format as fmt
-from designer.report.blocks import Fact, Facts, Picture, Section, Statement
+from designer.report.blocks import Box, Fact, Facts, Picture, Section, Statement
 from designer.report.design.scope import in_first_orientation
 from designer.report.design.source import Source
 from designer.report.pictures import chart
@@ -17,15 +17,16 @@ def section(source: Source) -> Section | None:
     found = source.analysis.qualities
     if found is None or found.stiffness is None:
         return None
+    drawn = _map(source) if source.draws else None
+    facts = _facts(found.stiffness, found.cable.name)
     return Section.of(
         "stiffness",
         "Stiffness",
         stiffness_statement(found.stiffness),
-        _facts(found.stiffness, found.cable.name),
+        Box.of("lead keep", drawn, facts) if drawn is not None else facts,
         "Each cable answers with the tangent of its catenary at fixed unstrained length, so sag "
         "counts as well as stretch; the forces in the cables and the weight add their own part as "
         "the platform turns. Winches, frame and platform are taken as rigid.",
-        _map(source) if source.draws else None,
     )
 
 

@@ -50,4 +50,4 @@ def _row(one: SecondAnswer) -> Row:
 
 def _millimetres(value_m: float) -> str:
     value = 1e3 * value_m
-    return fmt.trimmed(value, 7) if value == 0.0 or value > 1e-3 else fmt.power_of_ten(value)
+    return fmt.trimmed(value, 5) if value == 0.0 or value > 1e-3 else fmt.power_of_ten(value)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.findings import OtherPolicy
+from designer.analysis.rope_maps import Rope
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
@@ -25,31 +28,85 @@ from designer.report.blocks import (
     Subheading,
     Table,
 )
+from designer.report.design.comparison import compared
 from designer.report.design.scope import orientation_fact
 from designer.report.design.source import Source
-from designer.report.design.workspace_figures import workspace_figures
+from designer.report.design.workspace_figures import rope_figures, workspace_figures
 from designer.report.pictures import chart
 from designer.study import HangsBelow, Study, Workspace
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 
 def section(source: Source) -> Section | None:
-    """Return what is known of all poses; None if the study has no workspace."""
+    """Return what is known of all poses; None if the study has no workspace.
+
+    Of the ropes of the answer where there are any, else of the configured family.
+    """
     study, found = source.analysis.study, source.analysis.workspace
     if study.workspace is None or found is None:
         return None
-    other = source.findings.other_policy
+    if source.rope is None:
+        return Section.of("workspace", "The workspace", *_of_family(source, study, found))
     return Section.of(
         "workspace",
-        "The workspace",
-        _statement(found),
+        "The workspace with the chosen rope",
+        _served(source.rope, source.analysis),
         _facts(study, study.workspace, found),
-        _extremes(study.workspace.region, found),
-        Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census)),
-        Subheading("hanging", "Cables below the platform"),
-        _hanging(source.analysis.built.robot, study.workspace, found, other),
-        _policies(study.workspace, found, other) if other is not None else None,
-        *_figures(source),
+        *(rope_figures(source.rope_maps, source.rope) if source.rope_maps is not None else ()),
+        _hanging_share(source),
+    )
+
+
+def family(source: Source) -> Section | None:
+    """Return what all poses ask of the configured family, where a rope is the answer."""
+    study, found = source.analysis.study, source.analysis.workspace
+    if study.workspace is None or found is None or source.rope is None:
+        return None
+    outcome = source.findings.chosen_outcome
+    return Section.of(
+        "family",
+        "The configured cable family",
+        *_of_family(source, study, found),
+        *(compared(source.analysis, outcome) if outcome else ()),
+    )
+
+
+def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Block | None]:
+    assert study.workspace is not None
+    other = source.findings.other_policy
+    yield _statement(found)
+    if source.rope is None:
+        yield _facts(study, study.workspace, found)
+    yield _extremes(study.workspace.region, found)
+    yield Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census))
+    hanging = _hanging(source.analysis.built.robot, study.workspace, found, other)
+    heading = Subheading("hanging", "Cables below the platform") if other is not None else None
+    yield Box.of("keep", heading, hanging)
+    yield _policies(study.workspace, found, other) if other is not None else None
+    yield from _figures(source)
+
+
+def _served(rope: Rope, analysis: Analysis) -> Statement:
+    """Return to how much the ropes are used at most, and where."""
+    used = float(rope.used(rope.statics(rope.place)))
+    text = (
+        f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
+        f"'{rope.load_case}' at {fmt.position(rope.place)}."
+    )
+    fine = used <= 1.0 and analysis.is_positive
+    return Statement("Every pose is held", text, "good" if fine else "doubt")
+
+
+def _hanging_share(source: Source) -> str:
+    share, study = source.findings.hanging, source.analysis.study
+    assert study.workspace is not None
+    if share is None:
+        return ""
+    if share == 0.0:
+        return "In no sample does a cable hang below the platform with it."
+    return (
+        f"With it a cable hangs below the platform in {fmt.percent(share)} of the samples; these "
+        f"{'count' if study.workspace.hangs_below == 'include' else 'are left out'}."
     )
 
 
@@ -84,9 +141,10 @@ def _statement(found: WorkspaceMap) -> Statement:
         text = (
             f"A cable of {fmt.millimetres(found.sagging.diameter_m)} of the configured family "
             "serves every pose that counts. The worst is at "
-            f"{fmt.position(found.sagging.place)}."
+            f"{fmt.position(found.sagging.place)}; its self-weight ratio there is "
+            f"{fmt.percent(found.limit_ratio)}."
         )
-        return Statement("The workspace is served", text, "good")
+        return Statement("The workspace is feasible", text, "good")
     text = "There is no diameter of the configured family that serves every pose."
     if found.infeasible_pose is not None:
         text += (
@@ -95,7 +153,7 @@ def _statement(found: WorkspaceMap) -> Statement:
             " Toward such poses the needed diameter grows without bound, so the worst sample "
             "below depends on where samples happen to lie and is no design value."
         )
-    return Statement("The workspace is not served", text, "bad")
+    return Statement("The workspace is not feasible", text, "bad")
 
 
 def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
@@ -107,10 +165,6 @@ def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
         spread = workspace.sampling.replace("_", " ")
         seed = f", seed {workspace.seed}" if workspace.sampling == "low_discrepancy" else ""
         facts.append(Fact("Samples", fmt.count(found.census.samples), f"{spread}{seed}"))
-    if found.sagging is not None:
-        ratio = fmt.percent(found.limit_ratio)
-        end = "at 100 % no finite cable is left"
-        facts.append(Fact("Limit ratio at the worst pose", ratio, end))
     return Facts(tuple(facts))
 
 
@@ -119,9 +173,9 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
     return Table.of(
         "The thinnest diameter of the configured cable family that was found.",
         ("Case", "Position", Column("Diameter"), Column("Largest tension")),
-        _extreme(f"Worst pose with sag{how}", found.sagging, is_answer=True),
-        _extreme("Worst sample with sag", found.sampled),
-        _extreme("Worst pose without sag", found.massless),
+        _extreme(f"Worst pose{how}", found.sagging, is_answer=True),
+        _extreme("Worst sample", found.sampled),
+        _extreme("Worst pose, rope weight ignored", found.massless),
     )
 
 
@@ -137,7 +191,7 @@ def _extreme(name: str, extreme: Extreme | None, *, is_answer: bool = False) -> 
     return Row(cells, "good" if is_answer else "")
 
 
-def _census(census: Census) -> Table:
+def _census(census: Census) -> Table | str:
     names = {verdict: verdict.label.replace("_", " ") for verdict in Verdict}
     met = [verdict for verdict in Verdict if census.statuses[verdict.label] > 0]
     others = [name for verdict, name in names.items() if verdict not in met]
@@ -146,6 +200,8 @@ def _census(census: Census) -> Table:
         for verdict in met
         for amount in [census.statuses[verdict.label]]
     )
+    if len(met) == 1:
+        return f"All {fmt.count(census.samples)} samples: {names[met[0]]}. {met[0].sentence}"
     rest = f" No sample met another: {fmt.listing(others, 'or')}." if others else ""
     columns = ("Verdict", Column("Samples"), Column("Share"), "Meaning")
     return Table.of(f"Verdicts of all samples.{rest}", columns, *rows)
@@ -157,7 +213,7 @@ def _hanging(
     census = found.census
     if census.hangs_below == 0:
         text = "In no solved sample does a cable hang below the platform."
-        return Statement("There are none", text)
+        return Statement("No cable below the platform", text)
     text = (
         f"In {fmt.share(census.hangs_below, census.samples)} of the samples a cable hangs below "
         "the platform: it may touch the ground or what stands on it."

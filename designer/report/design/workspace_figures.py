@@ -8,9 +8,10 @@ import numpy as np
 
 from designer.analysis.field import Field
 from designer.analysis.maps import Served, WorkspaceMaps
+from designer.analysis.rope_maps import Rope
 from designer.report import format as fmt
 from designer.report.blocks import Picture
-from designer.report.figures.colours import DIAMETER, RATIO, tension_of
+from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
 from designer.report.pictures import chart, scene
 
 _LITTLE = 0.02
@@ -43,8 +44,8 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
         yield chart(caption, f"A map in {view}", slice_chart(maps))
     else:
         caption = (
-            f"Needed diameter and largest tension {place}. Sag changes the tension by at most "
-            f"{fmt.percent(change, 2)} there."
+            f"Needed diameter and largest tension {place}. The effect of rope weight on the "
+            f"tension is {fmt.percent(change, 2)} there at most."
         )
         yield chart(caption, f"Two maps in {view}", slice_panels(maps, (DIAMETER, tension)))
     yield chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
@@ -55,11 +56,37 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
     yield chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
 
 
-def cover_picture(maps: WorkspaceMaps) -> Picture | None:
-    """Return the region in space for the first page."""
+def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
+    """Yield the maps of the ropes of the answer."""
+    from designer.report.figures.sections import slice_panels
+
+    change = _largest_change(maps)
+    other = RATIO if change > _LITTLE else tension_of(maps.section)
+    view = "plane" if maps.is_upright else "plan"
+    drawn = slice_panels(maps, (UTILISATION, other))
+    loads = f"in the load case '{rope.load_case}', {_place_of(maps)}"
+    what = "tension over that of straight weightless cables" if other is RATIO else "the tension"
+    caption = (
+        f"{rope.name}: utilisation (largest over allowable tension), and {what}, {loads}. The "
+        f"effect of rope weight on the tension is {fmt.percent(change, 2)} there at most."
+    )
+    found = chart(caption, f"Two maps in {view}", drawn)
+    if found is not None:
+        yield found
+
+
+def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture | None:
+    """Return the region in space for the first page: of the ropes, else of the family."""
     from designer.report.figures.scenes import cover_scene
 
-    return scene(cover_caption(maps), _IN_SPACE, cover_scene(maps), kind="robot")
+    if rope is None:
+        return scene(cover_caption(maps), _IN_SPACE, cover_scene(maps), kind="robot")
+    caption = (
+        f"Utilisation of {rope.name} over {_extent(maps)}, in the load case "
+        f"'{rope.load_case}'; the cables hang at the worst pose."
+    )
+    drawn = cover_scene(maps, UTILISATION)
+    return scene(caption, "The region in space, coloured by utilisation", drawn, kind="robot")
 
 
 def scene_caption(maps: WorkspaceMaps) -> str:
@@ -71,10 +98,14 @@ def scene_caption(maps: WorkspaceMaps) -> str:
 
 def cover_caption(maps: WorkspaceMaps) -> str:
     """Return the caption of the workspace on the first page."""
+    shown = _span(_shown(maps))
+    return f"Needed diameter of the configured cable family over {_extent(maps)}.{shown}"
+
+
+def _extent(maps: WorkspaceMaps) -> str:
     size = np.ptp(maps.region.bounds_m, axis=0)
     extent = " × ".join(fmt.trimmed(float(edge), 3) for edge in size if edge > 0.0)
-    region = f"the region, {extent}\u00a0m" if maps.has_area else "the points"
-    return f"Needed diameter of the configured cable family over {region}.{_span(_shown(maps))}"
+    return f"the region, {extent}\u00a0m" if maps.has_area else "the points"
 
 
 def _shown(maps: WorkspaceMaps) -> Iterable[Field]:
@@ -102,13 +133,12 @@ def _place_of(maps: WorkspaceMaps) -> str:
 
 def panels_caption(maps: WorkspaceMaps) -> str:
     """Return the caption of the maps of tension and of its ratio to the one without sag."""
-    shown = f"Largest tension, and its ratio to the tension without sag, {_place_of(maps)}."
+    shown = f"Largest tension, and its ratio to that of weightless cables, {_place_of(maps)}."
     ratio = RATIO.of(maps.section)
     if not np.isfinite(ratio).any():
         return shown
-    return (
-        f"{shown} Who ignores sag misses a factor of up to {fmt.factor(float(np.nanmax(ratio)))}."
-    )
+    most = fmt.factor(float(np.nanmax(ratio)))
+    return f"{shown} Who ignores the rope weight misses a factor of up to {most}."
 
 
 def _largest_change(maps: WorkspaceMaps) -> float:

@@ -28,7 +28,7 @@ def loop_chart(pose: PoseAnalysis) -> str:
     diameter = np.array([turn.diameter_m for turn in turns]) * 1e3
     title = "Largest tension and diameter over the turns of the loop"
     with canvas.drawing():
-        figure = canvas.sheet(62.0 if turns else 14.0)
+        figure = canvas.sheet(50.0 if turns else 14.0)
         warning: Style = {"color": palette.WARNING}
         if turns:
             left, right = figure.subplots(1, 2)

@@ -130,7 +130,7 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
         mass = canvas.significant(mass_kg, 3)
         text = f"{outcome.best.size.id}, {mass} kg"
     elif np.isfinite(outcome.continuous_diameter_m):
-        text = f"ends at {outcome.grade.thickest.id}"
+        text = f"{outcome.grade.thickest.id} insufficient"
     else:
         text = "no section holds"
     canvas.note(
@@ -184,7 +184,7 @@ def pareto_chart(selection: SelectionResult) -> str | None:
         return None
     up = _Along.of(first, selection)
     with canvas.drawing():
-        figure = canvas.sheet(82.0)
+        figure = canvas.sheet(60.0)
         panels = figure.subplots(1, len(others), sharey=True, squeeze=False)[0]
         for axes, other in zip(panels, others, strict=True):
             _panel(axes, selection, _Along.of(other, selection), up)

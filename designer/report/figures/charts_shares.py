@@ -28,7 +28,7 @@ def served_chart(served: Served) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     title = "Share of the workspace that a cable serves, over its diameter"
     with canvas.drawing():
-        figure = canvas.sheet(64.0)
+        figure = canvas.sheet(46.0)
         axes = figure.subplots()
         axes.set(ylim=(0.0, 104.0), xlim=_served_range(served))
         sag, straight = (palette.SAG, 1), (palette.MASSLESS, -1)
@@ -97,7 +97,7 @@ def _unserved(axes: Axes, served: Served) -> None:
 def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
     """Return the share of the workspace over the diameter of the sizes, as SVG."""
     with canvas.drawing():
-        figure = canvas.sheet(62.0)
+        figure = canvas.sheet(52.0)
         axes = figure.subplots()
         x = 1e3 * np.array([one.size.diameter_m for one in usable.sizes])
         y = 100.0 * np.array([one.fraction for one in usable.sizes])

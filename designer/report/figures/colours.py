@@ -50,7 +50,9 @@ class MapQuantity:
             "diameter": field.diameter_m,
             "tension": field.tension_N,
             "ratio": field.tension_N / field.massless_tension_N,
+            "utilisation": field.utilisation,
         }[self.key]
+        assert values is not None
         return np.asarray(values * self.scale)
 
     def text_of(self, focus: Focus) -> str:
@@ -64,6 +66,7 @@ class MapQuantity:
 
 DIAMETER = MapQuantity("diameter", "needed diameter", "mm", 1e3)
 TENSION = MapQuantity("tension", "largest tension", "kN", 1e-3)
+UTILISATION = MapQuantity("utilisation", "utilisation", "%", 100.0)
 RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
 
 

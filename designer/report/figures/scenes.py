@@ -5,13 +5,13 @@ The workspace is coloured by what its poses need, as in Riehl et al., ICRA 2010,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from designer.analysis import grids
-from designer.analysis.analyse import PoseAnalysis
 from designer.analysis.field import body_lines_m, cable_curves_m, chords_m, largest_sag
 from designer.analysis.layers import Layers, layers_of
 from designer.analysis.maps import WorkspaceMaps
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ROBOT_ELEVATION_RAD = float(np.radians(25.0))
+_ARROW, _SMALL_LOAD = 0.22, 0.02
+"""Length of the largest load's arrow over half the picture; a load too small to be drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +56,14 @@ _PAGE = _Look((0.085, 0.85, 0.11, 0.93), (0.895, 0.2, 0.016, 0.6))
 _COVER = _Look((0.03, 0.78, 0.06, 0.90), (0.83, 0.12, 0.028, 0.7), 1.9)
 
 
-def robot_scene(pose: PoseAnalysis) -> Image:
-    """Return a picture of the robot in the configured pose, with its cables sagging.
+def robot_scene(
+    statics: Statics, most_used: int | None = None, loads: Sequence[tuple[str, FloatArray]] = ()
+) -> Image:
+    """Return a picture of the robot in one pose (no axes), with its cables sagging.
 
-    In a pose that cannot be held the cables are drawn straight.
+    In a pose that cannot be held the cables are drawn straight. The cable ``most_used``, from 0,
+    is marked, and ``loads`` (3,) on the platform are drawn as arrows [N].
     """
-    statics = pose.sizing.statics
     robot, body = statics.robot, statics.poses.position_m[None]
     curves = cable_curves_m(statics) if statics.is_solved else chords_m(statics)
     points = np.concatenate([curves.reshape(-1, 3), robot.exit_points_m])
@@ -75,6 +79,8 @@ def robot_scene(pose: PoseAnalysis) -> Image:
     stage.lines(chords_m(statics), palette.MASSLESS, 1.5)  # for comparison
     if statics.is_solved:
         stage.lines(curves, palette.SAG, 7.0, 2.0)
+    if most_used is not None:
+        stage.lines(curves[most_used][None], palette.WARNING, 10.0, 3.0)
     stage.lines([base], palette.FAINT, 2.5)
     stage.posts(tops, bounds[0, 2], 1.5)
     size = float(np.ptp(tops, axis=0).max())
@@ -84,8 +90,33 @@ def robot_scene(pose: PoseAnalysis) -> Image:
     stage.hull(statics.poses.attachment_points_m(robot), palette.MASSLESS)
     with canvas.drawing():
         figure, axes = _taken(stage, bounds)
-        _label_robot(axes, stage.view, statics, curves)
+        _label_robot(
+            axes, stage.view, statics, curves, _draw_loads(axes, stage.view, body[0], loads)
+        )
         return overlay.finished(figure)
+
+
+def _draw_loads(
+    axes: Axes, view: View, at_m: FloatArray, loads: Sequence[tuple[str, FloatArray]]
+) -> list[FloatArray]:
+    """Draw forces as arrows from a point, the largest of one length; return the lines [m]."""
+    largest = max((float(np.linalg.norm(force)) for _, force in loads), default=0.0)
+    lines = []
+    for name, force in loads:
+        size = float(np.linalg.norm(force))
+        if size < _SMALL_LOAD * largest or largest == 0.0:
+            continue
+        way = force / largest * _ARROW * view.half_height_m
+        tip = at_m + way
+        start, end = view.pixels(np.stack([at_m, tip]))
+        arrow: Style = {"arrowstyle": "-|>", "color": palette.INK, "linewidth": 1.3}
+        axes.annotate("", end, start, arrowprops=arrow | {"shrinkA": 0.0, "shrinkB": 0.0})
+        axes.annotate(
+            f"{name} {fmt.newtons(size)}", end, (4, -4), textcoords="offset points", va="top",
+            fontsize=palette.FONT_POINTS - 0.5, path_effects=canvas.halo(),
+        )  # fmt: skip
+        lines.append(np.linspace(at_m, tip, 12))
+    return lines
 
 
 def _taken(stage: Stage, bounds: FloatArray, letters: float = 1.0) -> tuple[Figure, Axes]:
@@ -113,13 +144,15 @@ def base_outline_m(robot: Robot) -> FloatArray:
     return np.asarray(points[[*corners, corners[0]]])
 
 
-def _label_robot(axes: Axes, view: View, statics: Statics, curves: FloatArray) -> None:
+def _label_robot(
+    axes: Axes, view: View, statics: Statics, curves: FloatArray, others: Sequence[FloatArray] = ()
+) -> None:
     """Write mass, largest sag and tensions at the exit points beside what they belong to."""
-    clear = overlay.obstacles(view, [*curves, *body_lines_m(statics)])
+    clear = overlay.obstacles(view, [*curves, *body_lines_m(statics), *others])
     overlay.write_exits(axes, view, statics.robot.exit_points_m, clear)
     body = statics.poses.position_m
-    x, y, z = (fmt.trimmed(float(v), 6) for v in body)
-    text = f"{fmt.trimmed(statics.robot.platform.mass_kg, 6)} kg at ({x}, {y}, {z}) m"
+    x, y, z = (fmt.trimmed(round(float(v), 2), 5) for v in body)
+    text = f"{fmt.trimmed(statics.robot.platform.mass_kg, 5)} kg at ({x}, {y}, {z}) m"
     overlay.write_clear(axes, view, body, text, clear, fontweight="bold")
     if not statics.is_solved:
         text = f"No equilibrium in this pose.\n{Verdict(int(statics.verdict)).sentence}"
@@ -162,9 +195,9 @@ def workspace_scene(
         return overlay.finished(figure)
 
 
-def cover_scene(maps: WorkspaceMaps) -> Image:
+def cover_scene(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> Image:
     """Return the same for the first page: small in print, so with large letters and no axes."""
-    return workspace_scene(maps, look=_COVER)
+    return workspace_scene(maps, quantity, _COVER)
 
 
 def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WIDE_MM = 120.0
+_NARROW_MM = 112.0
+"""Of the sheet of a map that has a list beside it."""
+_ZOOM = 0.6
+"""Of the extent with the exit points: a smaller region is shown alone."""
 _HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
 _GREY: Style = {"facecolor": palette.LEFT_OUT}
 
@@ -104,8 +108,9 @@ def section_map(
     has_limit = limit is not None and len(finite) > 0 and finite.min() < limit < finite.max()
     values, steps = np.ma.masked_invalid(shown.values), steps_over_decades(shown.values)
     with canvas.drawing():
-        height_mm = 20.0 + min(_WIDE_MM * _height_over_width(flat, corners), 64.0)
+        height_mm = 20.0 + min(80.0 * _height_over_width(flat, corners), 56.0)
         figure = canvas.sheet(height_mm, keeps_aspect=True)
+        figure.set_figwidth(_NARROW_MM / 25.4)
         axes = figure.subplots()
         _paint(axes, flat, values, shown.is_bad, steps)
         if has_limit:
@@ -135,7 +140,7 @@ def _slice_sheet(maps: WorkspaceMaps, frame_mm: float, wide_mm: float) -> Figure
     corners = maps.flat_m(maps.study.robot.exit_points_m)
     proportions = _height_over_width(maps.flat_m(maps.section.position_m), corners)
     looks = _slice_looks(maps.section)
-    height_mm = frame_mm + (6.0 if looks else 0.0) + min(wide_mm * proportions, 70.0)
+    height_mm = frame_mm + (6.0 if looks else 0.0) + min(wide_mm * proportions, 56.0)
     figure = canvas.sheet(height_mm, keeps_aspect=True)
     canvas.legend(figure, looks, "outside lower center", ncols=3)
     return figure
@@ -283,7 +288,7 @@ def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatAr
     flat = points.reshape(-1, 2)
     everything = np.concatenate([flat, corners])
     wide = np.ptp(everything, axis=0).max()
-    shows_corners = bool(np.ptp(flat, axis=0).max() > 0.2 * wide or len(flat) == 1)
+    shows_corners = bool(np.ptp(flat, axis=0).max() > _ZOOM * wide or len(flat) == 1)
     shown = everything if shows_corners else flat
     low, high = shown.min(axis=0), shown.max(axis=0)
     half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)

@@ -1,0 +1,125 @@
+"""How far the platform may leave its region in each direction, until a pose is not held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.model.load_case import Loaded
+from designer.model.region import PointList, Region
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import Verdict
+from designer.selection.cases import CaseFound
+from designer.statics.inverse import solve_sagging
+
+_PER_EDGE, _PER_FACE = 2, 6
+_TURNS = 24
+"""Steps from the region to the reach, shorter near the region."""
+_HALVES = 30
+_OUT = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FirstFailure:
+    """The first pose on the way out of the region that a rope does not hold.
+
+    Parameters
+    ----------
+    name : str
+        Of the direction, such as ``+x`` or ``up``.
+    direction : array (3,)
+        Unit vector.
+    distance_m : float
+        From where the way leaves the region [m]; NaN where all poses up to the reach are held.
+    position_m : array (3,)
+        Where it fails [m].
+    why : str
+        ``overloaded``, or the label of the verdict.
+    reach_m : float
+        How far it was looked [m].
+    """
+
+    name: str
+    direction: FloatArray
+    distance_m: float
+    position_m: FloatArray
+    why: str
+    reach_m: float
+
+
+def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:
+    """Return the first failure in each direction, in a load case, as turned at its worst pose.
+
+    Ways lead from corners, edges and sides of the region straight outward. Empty for a list of
+    points, and where a cable is lost.
+    """
+    region, one = found.workspace.region, found.loaded
+    if isinstance(region, PointList) or one.lost_cable is not None:
+        return ()
+    turn = found.verification.worst_position_m[3:]
+    return tuple(_along(region, one, turn, name, way) for name, way in _directions(region, one))
+
+
+def _directions(region: Region, one: Loaded) -> list[tuple[str, FloatArray]]:
+    robot = one.bare[0]
+    up = robot.level[2]
+    if robot.is_planar or region.is_upright:
+        across = np.append(region.along, 0.0) if region.is_upright else robot.level[0]
+        level = {"outward": across, "outward, other side": -across}
+    else:
+        x, y = np.eye(3)[:2]
+        level = {"+x": x, "+x +y": x + y, "+y": y, "-x +y": y - x}
+        level |= {"-x": -x, "-x -y": -x - y, "-y": -y, "+x -y": x - y}
+    each = {**level, "up": up, "down": -up}
+    return [(name, way / np.linalg.norm(way)) for name, way in each.items()]
+
+
+def _along(
+    region: Region, one: Loaded, turn_rad: FloatArray, name: str, way: FloatArray
+) -> FirstFailure:
+    """March out from the border until the first pose fails, and halve the last step."""
+    robot = one.bare[0]
+    reach = float(np.ptp(robot.exit_points_m, axis=0).max())
+    border = region.border()
+    starts = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
+    starts = np.concatenate([border.landmarks_m(), starts])
+    starts = starts[~region.contains(starts + _OUT * reach * way)]
+
+    def fails(start_m: FloatArray, distance_m: FloatArray) -> BoolArray:
+        return _failure(robot, one, start_m + distance_m[:, None] * way, turn_rad)[0]
+
+    before = 0.0
+    for far in reach * (np.arange(1, _TURNS + 1) / _TURNS) ** 2:
+        hit = fails(starts, np.full(len(starts), far))
+        if hit.any():
+            starts = starts[hit]
+            break
+        before = far
+    else:
+        return FirstFailure(name, way, np.nan, np.full(3, np.nan), "", reach)
+    low, high = np.full(len(starts), before), np.full(len(starts), far)
+    for _ in range(_HALVES):
+        middle = 0.5 * (low + high)
+        hit = fails(starts, middle)
+        low, high = np.where(hit, low, middle), np.where(hit, middle, high)
+        near = low <= high.min()  # what fails farther out for sure is not the first
+        starts, low, high = starts[near], low[near], high[near]
+    first = int(high.argmin())
+    place = starts[first] + high[first] * way
+    why = _failure(robot, one, place[None], turn_rad)[1][0]
+    return FirstFailure(name, way, float(high[first]), place, why, reach)
+
+
+def _failure(
+    robot: Robot, one: Loaded, position_m: FloatArray, turn_rad: FloatArray
+) -> tuple[BoolArray, list[str]]:
+    """Tell which positions fail (n,), and why the first of them does, or the last does not."""
+    turned = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))
+    places = np.hstack([position_m, turned])
+    statics = solve_sagging(one.robot, Poses.at(places), one.cable, seeks_better=False)
+    over = statics.largest_tension_N > one.cable.allowable_tension_N
+    why = ["overloaded" if s else Verdict(int(v)).label for s, v in
+           zip(statics.is_solved, statics.verdict, strict=True)]  # fmt: skip
+    return np.asarray(~statics.is_solved | over), why

@@ -1,0 +1,196 @@
+"""How much more a rope could take: payload or region, until it is used to 100 %.
+
+Each reserve is a root of the largest utilisation over the region. The worst poses that are known
+are carried along: the root for these is found, the region searched there, and what is worse joins
+them, until the search finds nothing above 100 %.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.analysis.sensitivities import outward, with_payload
+from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
+from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.selection.cases import CaseFound
+from designer.study import HangsBelow, Workspace
+from designer.workspace.demand import loss_demand, rope_demand
+from designer.workspace.refine import LIGHT, Demand, refine_over_branches
+
+_FULL = 1e-5
+"""Above 100 %: what is not worth another turn."""
+_NEAR = 0.8
+"""Utilisation at the root from where on a load case is searched there."""
+_MOST_TURNS = 12
+_MOST_PAYLOAD, _MOST_MARGIN = 100.0, 3.0
+"""As a factor, and over the extent of the exit points."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reserve:
+    """Where the reserve in one quantity ends.
+
+    Parameters
+    ----------
+    value : float
+        Payload factor, or metres by which the sides of the region may move outward; NaN where no
+        end was found.
+    utilisation : float
+        The largest there that the search finds.
+    load_case : str
+        Which case is at its end there.
+    place : array (n_coordinates,)
+        Where [m, rad].
+    is_held : bool
+        Whether the rope is used up there; False where beyond it a pose is not held at all.
+    """
+
+    value: float
+    utilisation: float
+    load_case: str
+    place: FloatArray
+    is_held: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Carried:
+    """A load case, and a pose of it that moves with the quantity."""
+
+    case: CaseFound
+    place: FloatArray
+    at: float
+    way: FloatArray
+
+    def place_at(self, value: float) -> FloatArray:
+        return np.asarray(self.place + (value - self.at) * self.way)
+
+
+_Changed = Callable[[CaseFound, float], tuple[Loaded, Workspace]]
+
+
+def payload_reserve(cases: Sequence[CaseFound]) -> Reserve | None:
+    """Return by which factor weight and loads of the platform may grow; None where none was found.
+
+    Wind on the platform stays.
+    """
+
+    def heavier(case: CaseFound, factor: float) -> tuple[Loaded, Workspace]:
+        return with_payload(case.loaded, factor), case.workspace
+
+    return _end(cases, heavier, (1.0, _MOST_PAYLOAD, 0.1), is_moving=False)
+
+
+def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None:
+    """Return by how much the sides of the region may move outward; None where none was found.
+
+    Heights stay. Load cases with a region of their own do not count; a list of points has no sides.
+    """
+    moving = [case for case in cases if case.case.region is None]
+    if isinstance(region, PointList) or not moving:
+        return None
+
+    def wider(case: CaseFound, margin_m: float) -> tuple[Loaded, Workspace]:
+        return case.loaded, replace(case.workspace, region=widened(region, margin_m))
+
+    size = float(np.ptp(moving[0].loaded.robot.exit_points_m, axis=0).max())
+    return _end(moving, wider, (0.0, _MOST_MARGIN * size, 0.02 * size), is_moving=True)
+
+
+def widened(region: Prism | Rectangle, margin_m: float) -> Prism | Rectangle:
+    """Return the region with its sides moved outward, its heights kept."""
+    if isinstance(region, Rectangle):
+        return Rectangle.over(region.ends_m, -margin_m, region.z_m)
+    return Prism.over(region.polygon_m, -margin_m, region.z_m)
+
+
+def _end(
+    cases: Sequence[CaseFound],
+    change: _Changed,
+    span: tuple[float, float, float],
+    *,
+    is_moving: bool,
+) -> Reserve | None:
+    """Find where the worst of the cases is used to 100 %: from, to, and first step of a bracket."""
+
+    def carried(case: CaseFound, place: FloatArray, at: float) -> _Carried:
+        way = np.zeros_like(place)
+        if is_moving:
+            way[:3] = outward(change(case, at)[1].region, place[:3])
+        return _Carried(case, place, at, way)
+
+    def used(one: _Carried, value: float) -> float:
+        loaded, workspace = change(one.case, value)
+        demand = _tension(loaded, workspace.hangs_below)(one.place_at(value)[None])
+        return float(demand[0]) / loaded.cable.allowable_tension_N
+
+    known = [carried(one, one.verification.worst_position_m, span[0]) for one in cases]
+
+    def worst(value: float) -> float:
+        return max(used(one, value) for one in known)
+
+    for _ in range(_MOST_TURNS):
+        value = _root(worst, *span)
+        if value is None:
+            return None
+        most = max(known, key=lambda one: used(one, value))
+        found = [
+            carried(case, *_searched(case, change, value, [o for o in known if o.case is case]))
+            for case in {id(o.case): o.case for o in known if used(o, value) > _NEAR}.values()
+        ]
+        worse = [one for one in found if used(one, value) > 1.0 + _FULL]
+        if not worse:
+            top = max(used(one, value) for one in (*known, *found))
+            beyond = used(most, value + 1e-6 * max(abs(value), span[2]))
+            name = most.case.case.name
+            return Reserve(value, top, name, most.place_at(value), math.isfinite(beyond))
+        known += worse
+    return None
+
+
+def _root(of: Callable[[float], float], start: float, most: float, step: float) -> float | None:
+    """Return the last value at which the utilisation is within 100 %; None up to the most."""
+    from scipy.optimize import brentq
+
+    def beyond(value: float) -> float:
+        return min(max(of(value), 0.0), 2.0) - 1.0
+
+    low, high = start, start + step
+    if beyond(low) >= 0.0:
+        return low
+    while beyond(high) < 0.0:
+        low, step = high, 1.6 * step
+        high = low + step
+        if high > most:
+            return None
+    tolerance = 1e-9 * max(high, step)
+    root = float(brentq(beyond, low, high, xtol=tolerance, rtol=1e-12))
+    return root if beyond(root) <= _FULL else max(root - 4.0 * tolerance, low)
+
+
+def _searched(
+    case: CaseFound, change: _Changed, value: float, known: Sequence[_Carried]
+) -> tuple[FloatArray, float]:
+    """Return the worst pose of a case that a search from the known ones finds, with the value."""
+    loaded, workspace = change(case, value)
+    starts = np.array([one.place_at(value) for one in known])
+    if loaded.lost_cable is not None:
+        return starts[0], value
+
+    def demand_with(*, seeks_better: bool = True) -> Demand:
+        return _tension(loaded, workspace.hangs_below, seeks_better=seeks_better)
+
+    (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    return worst.place, value
+
+
+def _tension(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
+    """Return the demand for tension [N]."""
+    if one.lost_cable is not None:
+        return loss_demand(one.robot, one.cable, one.lost_cable, seeks_better=seeks_better)
+    all_of_it = rope_demand(one.robot, one.cable, hangs_below, seeks_better=seeks_better)
+    return lambda places: all_of_it(places)[:, 0]

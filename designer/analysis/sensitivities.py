@@ -1,0 +1,242 @@
+"""What the utilisation at the governing pose answers to, by the slopes of the solved state.
+
+The governing pose is the worst of its region, so it may be held: what it gains by moving is of
+second order (the envelope theorem). Only where it lies on a side of the region does it move, with
+that side. After the loss of a cable, when the platform rests elsewhere, slopes are differences of
+solved states.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
+from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.selection.cases import CaseFound
+from designer.statics.geometry import load_wrench_N
+from designer.statics.slopes import Slopes, utilisation_slopes
+
+_STEP = 1e-4
+_ON_A_SIDE = 1e-6
+_ALIKE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """How the utilisation answers to one input.
+
+    Parameters
+    ----------
+    input : str
+        Its name in result files.
+    value : float
+        What it is now [unit].
+    unit : str
+        SI; empty for a factor.
+    derivative : float
+        Slope of the utilisation in it [1/unit]; NaN where there is none.
+    elasticity : float
+        Relative change over relative change; NaN also for an input without a scale of its own.
+    """
+
+    input: str
+    value: float
+    unit: str
+    derivative: float
+    elasticity: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sensitivities:
+    """What the utilisation answers to.
+
+    Parameters
+    ----------
+    each : tuple of Sensitivity
+        Payload (a factor on weight and loads of the platform, with its inertia), breaking load,
+        efficiency, modulus, mass of the rope, and region (metres by which its sides move outward).
+    exit_points_per_m : array (n_cables, 3)
+        Slope in each exit point, base frame [1/m]; NaN where there is none.
+    method : str
+        ``adjoint`` or ``differences``.
+    why_not : str
+        Why there are no slopes, or not all, for the reader of a report; empty where there are.
+    """
+
+    each: tuple[Sensitivity, ...]
+    exit_points_per_m: FloatArray
+    method: str
+    why_not: str = ""
+
+    def of(self, name: str) -> Sensitivity:
+        """Return one of them by its name."""
+        return next(one for one in self.each if one.input == name)
+
+
+def sensitivities(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
+    """Return the slopes at the worst pose of a load case, of a rope with these figures."""
+    if found.loaded.lost_cable is not None:
+        return _by_differences(found, efficiency, breaking_load_N)
+    statics = found.statics()
+    solved = statics is not None and bool(statics.is_solved[0])
+    ties: tuple[Slopes, ...] = ()
+    if statics is not None and solved:
+        ties = utilisation_slopes(statics, found.loaded.cable.allowable_tension_N)
+    n_cables = found.loaded.robot.n_cables
+    if not ties:
+        nothing = dict.fromkeys(("payload", "modulus", "linear_mass", "region"), math.nan)
+        why = (
+            "The internal forces that are best here are at a corner at which several choices are "
+            "as good, so that the utilisation has no slope."
+        )
+        each = _named(found, efficiency, breaking_load_N, nothing)
+        return Sensitivities(each, np.full((n_cables, 3), np.nan), "adjoint", why)
+    rows = [_adjoint(found, slopes) for slopes in ties]
+    own = {name: _agreed([row[name] for row in rows]) for name in rows[0]}
+    exits = np.stack([slopes.exit_points_per_m for slopes in ties])
+    same = np.ptp(exits, axis=0) <= _ALIKE * np.abs(exits).max()
+    why = ""
+    if len(ties) > 1:
+        cables = " and ".join(str(slopes.cable) for slopes in ties)
+        why = f"Cables {cables} are used alike: where only one of them gains, there is no slope."
+    each = _named(found, efficiency, breaking_load_N, own)
+    return Sensitivities(each, np.where(same, exits[0], np.nan), "adjoint", why)
+
+
+def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
+    """Return slopes in the logarithms of payload, modulus and mass, and in the region [1/m]."""
+    one = found.loaded
+    heavier = load_wrench_N(with_payload(one, 2.0).robot, found.pose)[0]
+    more = heavier - load_wrench_N(one.robot, found.pose)[0]
+    load = _cable_load(with_density(one, 2.0)) - _cable_load(one)
+    side = outward(found.workspace.region, found.pose.position_m[0])
+    return {
+        "payload": float(slopes.load @ more),
+        "modulus": float(slopes.stiffness.sum()),
+        "linear_mass": float(slopes.cable_load_m_per_N.sum(axis=0) @ load),
+        "region": float(slopes.position_per_m @ side),
+    }
+
+
+def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
+    one, place = found.loaded, found.verification.worst_position_m
+    side = np.zeros_like(place)
+    side[:3] = outward(found.workspace.region, place[:3])
+
+    def slope(changed: Callable[[float], Loaded], step: float = _STEP) -> float:
+        ends = [found.tension_N(changed(sign * step)) for sign in (1.0, -1.0)]
+        return (ends[0] - ends[1]) / (2.0 * step * one.cable.allowable_tension_N)
+
+    def shifted(by: float) -> float:
+        met = replace(found.verification, worst_position_m=place + by * side)
+        return replace(found, verification=met).tension_N(one) / one.cable.allowable_tension_N
+
+    own = {
+        "payload": slope(lambda by: with_payload(one, 1.0 + by)),
+        "modulus": slope(lambda by: with_stiffness(one, 1.0 + by)),
+        "linear_mass": slope(lambda by: with_density(one, 1.0 + by)),
+        "region": (shifted(_STEP) - shifted(-_STEP)) / (2.0 * _STEP) if side.any() else 0.0,
+    }
+    exits = np.full((one.robot.n_cables, 3), np.nan)
+    for cable, axis in np.ndindex(exits.shape):
+        exits[cable, axis] = slope(partial(with_exit_moved, one, cable, axis))
+    finite = np.isfinite([*own.values(), *exits.ravel()]).all()
+    why = "" if finite else "Near this pose the platform finds no rest after the loss."
+    each = _named(found, efficiency, breaking_load_N, own)
+    return Sensitivities(each, np.where(np.isfinite(exits), exits, np.nan), "differences", why)
+
+
+def _named(
+    found: CaseFound, efficiency: float, breaking_load_N: float, own: dict[str, float]
+) -> tuple[Sensitivity, ...]:
+    used, cable = found.utilisation, found.loaded.bare[1]
+
+    def relative(name: str, value: float, unit: str, slope: float) -> Sensitivity:
+        return Sensitivity(name, value, unit, slope / value, slope / used)
+
+    return (
+        relative("payload", 1.0, "", own["payload"]),
+        relative("breaking_load", breaking_load_N, "N", -used),
+        relative("efficiency", efficiency, "", -used),
+        relative("modulus", cable.axial_stiffness_N, "N", own["modulus"]),
+        relative("linear_mass", cable.linear_density_kg_per_m, "kg/m", own["linear_mass"]),
+        Sensitivity("region", 0.0, "m", own["region"], math.nan),
+    )
+
+
+def _agreed(values: list[float]) -> float:
+    """Return the slope that all ties have; NaN where they differ."""
+    same = max(values) - min(values) <= _ALIKE * max(map(abs, values), default=0.0)
+    return values[0] if same else math.nan
+
+
+def _cable_load(one: Loaded) -> FloatArray:
+    """Return the load per unstrained length of a cable (3,), base frame [N/m]."""
+    return np.asarray(-one.cable.weight_N_per_m * one.robot.upright[2])
+
+
+def with_payload(one: Loaded, factor: float) -> Loaded:
+    """Return the same with weight, inertia and loads of the platform so many times as large.
+
+    Wind on the platform stays.
+    """
+    (robot, cable), case = one.bare, one.case
+    mass = robot.platform.mass_kg if case.mass_kg is None else case.mass_kg
+    wrench = robot.platform.wrench_N if case.wrench_N is None else case.wrench_N
+    case = replace(case, mass_kg=factor * mass, wrench_N=factor * wrench)
+    return replace(one, case=case).on(robot, cable)
+
+
+def with_density(one: Loaded, factor: float) -> Loaded:
+    """Return the same with a rope so many times as heavy."""
+    robot, cable = one.bare
+    heavier = replace(cable, linear_density_kg_per_m=factor * cable.linear_density_kg_per_m)
+    return one.on(robot, heavier)
+
+
+def with_stiffness(one: Loaded, factor: float) -> Loaded:
+    """Return the same with a rope so many times as stiff."""
+    robot, cable = one.bare
+    stiffer = replace(cable, axial_stiffness_N=factor * cable.axial_stiffness_N)
+    return one.on(robot, stiffer)
+
+
+def with_exit_moved(one: Loaded, cable: int, axis: int, by_m: float) -> Loaded:
+    """Return the same with one exit point moved along an axis, both from 0 [m]."""
+    robot, line = one.bare
+    exits = np.array(robot.exit_points_m)
+    exits[cable, axis] += by_m
+    moved = replace(robot, exit_points_m=exits)
+    return one.on(moved, line)
+
+
+def outward(region: Region, position_m: FloatArray) -> FloatArray:
+    """Return how a position moves as the sides of its region move outward by a metre (3,).
+
+    Zero within the region, and in a list of points; in a corner, along with both sides.
+    """
+    if isinstance(region, PointList):
+        return np.zeros(3)
+    if isinstance(region, Rectangle):
+        share = float(region.shares(position_m)[0])
+        way = np.append((region.ends_m[1] - region.ends_m[0]) / region.size_m[0], 0.0)
+        near = [abs(share - end) <= _ON_A_SIDE for end in (0.0, 1.0)]
+        return np.asarray((near[1] * 1.0 - near[0] * 1.0) * way)
+    return _out_of_prism(region, position_m)
+
+
+def _out_of_prism(region: Prism, position_m: FloatArray) -> FloatArray:
+    edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
+    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
+    gap = np.einsum("ek,ek->e", normal, region.polygon_m - position_m[:2])
+    sides = normal[gap <= _ON_A_SIDE * float(np.ptp(region.polygon_m, axis=0).max())]
+    if len(sides) == 0:
+        return np.zeros(3)
+    way, *_ = np.linalg.lstsq(sides, np.ones(len(sides)), rcond=None)
+    return np.append(way, 0.0)

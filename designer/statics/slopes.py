@@ -1,0 +1,269 @@
+r"""How the largest utilisation in a pose answers to small changes of cables, load and geometry.
+
+Each cable has a tangent stiffness K and a pull F on it that follow from its end, its length l, its
+EA and the load w on its length. The state is one in which the balance :math:`\sum W_i F_i = P`
+holds and, with more cables than degrees of freedom, the largest utilisation is as small as it can
+be above the least tension asked for. With multipliers μ of the balance, σ of the cables that are
+used most (their sum is 1) and ρ of those at their least tension τ,
+
+.. math::
+
+    h_i = σ_i \frac{∂T_i/∂F_i}{A_i} - ρ_i \frac{∂τ_i}{∂F_i} + W_i^\mathsf{T} μ, \qquad
+    h_i · \frac{∂F_i}{∂l_i} + \frac{σ_i}{A_i} \frac{∂T_i}{∂l_i} - ρ_i \frac{∂τ_i}{∂l_i} = 0
+
+which is linear in the multipliers. The slope of the utilisation in anything else is then that of
+the same sum with the lengths held: :math:`-K_i h_i` in an exit point, :math:`-μ` in the load. With
+as many cables as degrees of freedom this is the adjoint of the implicit function theorem; with more
+it is the envelope theorem, and μ, σ and ρ are the multipliers of the optimum.
+
+That F turns with everything else gives its slope in the load across the cable's plane:
+:math:`δF = δω × F - K (δω × e)`, e being the chord and δω the turn of the load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.model.robot import Robot
+from designer.physics import tangent
+from designer.statics.geometry import cable_geometry
+from designer.statics.inverse import Statics
+from designer.statics.stiffness import cross_matrix, in_space, per_reach
+
+_TIED, _ACTIVE = 1e-7, 1e-5
+"""Relative: tensions of the most used cables that are one, and what is at a limit of an optimum."""
+_RANK, _LEFT, _NEGATIVE = 1e-9, 1e-4, -1e-6
+"""Smallest singular value over the largest; what may be left of the conditions; no multiplier."""
+_VERTICAL = 1e-12
+"""Horizontal distance over the chord of a cable that hangs straight down."""
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slopes:
+    """Slopes of the utilisation at one pose, the pose itself held.
+
+    Parameters
+    ----------
+    cable : int
+        Whose utilisation it is, from 1; of an optimum one of those that are used alike.
+    utilisation : float
+        Largest tension over allowable tension of any cable.
+    load : array (dof,)
+        In the load wrench, upright frame [1/N, 1/(N·m)].
+    stiffness : array (n_cables,)
+        In the logarithm of each cable's EA.
+    cable_load_m_per_N : array (n_cables, 3)
+        In the load per unstrained length of each cable, base frame [m/N].
+    exit_points_per_m : array (n_cables, 3)
+        In the exit points, base frame [1/m].
+    """
+
+    cable: int
+    utilisation: float
+    load: FloatArray
+    stiffness: FloatArray
+    cable_load_m_per_N: FloatArray
+    exit_points_per_m: FloatArray
+
+    @property
+    def position_per_m(self) -> FloatArray:
+        """Slope in the position of the platform (3,), base frame [1/m]."""
+        return np.asarray(-self.exit_points_per_m.sum(axis=0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tension:
+    """A tension of each cable (n,) [N], with its slopes in pull, length and load per length."""
+
+    value: FloatArray
+    by_pull: FloatArray  # (n, 3)
+    by_length: FloatArray  # (n,) [N/m]
+    by_load: FloatArray  # (n, 3) [m]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cables:
+    """The cables of a pose in the upright frame: pull, chord, load, stiffness, and slopes of F."""
+
+    pull: FloatArray  # (n, 3) [N]
+    chord: FloatArray  # (n, 3) [m]
+    weight: FloatArray  # (n,), load per unstrained length, along -z [N/m]
+    length: FloatArray  # (n,), free of its pulley [m]
+    K: FloatArray  # (n, 3, 3), at fixed free length [N/m]
+    by_length: FloatArray  # (n, 3) [N/m]
+    by_stiffness: FloatArray  # (n, 3), in the logarithm of EA [N]
+    by_weight: FloatArray  # (n, 3), in the logarithm of w [N]
+    wrench: FloatArray  # (n, dof, 3), from a pull to its wrench
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Multipliers:
+    """Of the balance (dof,) [1/N, 1/(N·m)], of the most used cables and of the least tension."""
+
+    balance: FloatArray
+    top: FloatArray  # (n,) over the allowable tension [1/N]
+    low: FloatArray  # (n,) [1/N]
+
+
+def utilisation_slopes(statics: Statics, allowable_N: FloatArray | float) -> tuple[Slopes, ...]:
+    """Return the slopes at a solved pose (1,), one set for each cable that ties for the most.
+
+    Empty where the multipliers of an optimum are not unique, or do not fulfil its conditions: then
+    there is no slope. ``allowable_N`` is one for all cables or (n_cables,) [N].
+    """
+    robot = statics.robot
+    allowable = np.broadcast_to(np.asarray(allowable_N, dtype=np.float64), (robot.n_cables,))
+    cables = _cables(statics)
+    top, low = _top_tension(cables), _least_tension(cables)
+    used, least = top.value / allowable, robot.tension_min_N
+    most = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
+    slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
+    one_by_one = [np.arange(robot.n_cables) == k for k in np.flatnonzero(most)]
+    found = []
+    for tops in [most] if robot.is_redundant else one_by_one:
+        solved = _multipliers(robot, cables, (top, low), (tops, slack), allowable)
+        if solved is None:
+            return ()
+        found.append(_slopes(robot, cables, top, low, solved, used))
+    return tuple(found)
+
+
+def _multipliers(
+    robot: Robot,
+    cables: _Cables,
+    tensions: tuple[_Tension, _Tension],
+    active: tuple[BoolArray, BoolArray],
+    allowable_N: FloatArray,
+) -> _Multipliers | None:
+    """Solve the conditions of the lengths; None where they leave a choice, or cannot be met."""
+    n, dof, scale_N = robot.n_cables, robot.degrees_of_freedom, float(allowable_N.max())
+    tops = int(active[0].sum())
+    columns = [np.einsum("ndk,nk->nd", cables.wrench, cables.by_length) * per_reach(robot)]
+    sizes = scale_N / allowable_N, -np.ones(n)
+    for one, is_active, size in zip(tensions, active, sizes, strict=True):
+        growth = np.einsum("nk,nk->n", one.by_pull, cables.by_length) + one.by_length
+        columns.append(np.diag(size * growth)[:, is_active])
+    rows = np.hstack(columns) / np.linalg.norm(cables.by_length, axis=1, keepdims=True)
+    shares = np.zeros(rows.shape[1])
+    shares[dof : dof + tops] = 1.0
+    matrix, right = np.vstack([rows, shares]), np.append(np.zeros(n), 1.0)
+    solved, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=_RANK)
+    left = float(np.abs(matrix @ solved - right).max())
+    if rank < len(shares) or not left <= _LEFT or (solved[dof:] < _NEGATIVE).any():
+        return None
+    top, low = np.zeros((2, n))
+    top[active[0]], low[active[1]] = solved[dof : dof + tops], solved[dof + tops :]
+    balance = solved[:dof] * per_reach(robot)
+    return _Multipliers(balance / scale_N, top / allowable_N, low / scale_N)
+
+
+def _slopes(
+    robot: Robot,
+    cables: _Cables,
+    top: _Tension,
+    low: _Tension,
+    at: _Multipliers,
+    used: FloatArray,
+) -> Slopes:
+    """Put the multipliers into the slopes of everything else."""
+    own_top, own_low = at.top[:, None], at.low[:, None]
+    h = own_top * top.by_pull - own_low * low.by_pull
+    h = h + np.einsum("ndk,d->nk", cables.wrench, at.balance)
+    by_load = own_top * top.by_load - own_low * low.by_load
+    by_load[:, 2] -= np.einsum("nk,nk->n", h, cables.by_weight) / cables.weight
+    for axis in range(2):  # across the load the whole cable turns about its exit point
+        turn = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis]) / cables.weight[:, None]
+        moved = np.cross(turn, cables.pull)
+        moved -= np.einsum("nij,nj->ni", cables.K, np.cross(turn, cables.chord))
+        by_load[:, axis] += np.einsum("nk,nk->n", h, moved)
+    return Slopes(
+        cable=int(np.where(at.top > 0.0, used, 0.0).argmax()) + 1,
+        utilisation=float(used.max()),
+        load=-at.balance,
+        stiffness=np.einsum("nk,nk->n", h, cables.by_stiffness),
+        cable_load_m_per_N=by_load @ robot.upright,
+        exit_points_per_m=-np.einsum("nij,ni->nj", cables.K, h) @ robot.upright,
+    )
+
+
+def _cables(statics: Statics) -> _Cables:
+    """Return the cables of a pose (1,) with the slopes of their pulls."""
+    robot = statics.robot
+    length, F_x, F_z, EA, w = (
+        np.broadcast_to(v, (1, robot.n_cables))[0] for v in statics.catenaries
+    )
+    chord = cable_geometry(robot, statics.poses)
+    outward = np.where(chord.horizontal_distance_m[0, :, None] > 0.0, chord.outward[0], [1.0, 0.0])
+
+    def in_base(plane: FloatArray) -> FloatArray:
+        return np.column_stack([plane[:, :1] * outward, plane[:, 1]])
+
+    V_0 = F_z - w * length
+    T_0 = np.hypot(F_x, V_0)
+    along = np.stack([F_x, V_0], axis=-1) / T_0[:, None]
+    elastic = tangent.flexibility_m_per_N(length, F_x, F_z, EA, w)
+    stretch = -np.stack([F_x, F_z - 0.5 * w * length], axis=-1) * (length / EA)[:, None]
+    # The position does not change where forces, EA and weight all grow alike.
+    sag = -np.einsum("nij,nj->ni", elastic, np.stack([F_x, F_z], axis=-1)) - stretch
+    longer = (1.0 + T_0 / EA)[:, None] * along
+    K = tangent.stiffness_N_per_m(length, F_x, F_z, EA, w)
+    if robot.pulley_radius_m != 0.0:  # the point where the cable leaves its pulley moves along it
+        roll = robot.pulley_radius_m * along / T_0[:, None] ** 2
+        by_force = np.stack([V_0, -F_x], axis=-1)
+        K = np.linalg.inv(elastic + roll[:, :, None] * by_force[:, None, :])
+        longer, sag = longer + roll * (F_x * w)[:, None], sag + roll * (F_x * w * length)[:, None]
+    plan = np.where(chord.horizontal_distance_m[0] > _VERTICAL * chord.chord_m[0], 1.0, np.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        swing = F_x / (plan * chord.horizontal_distance_m[0])
+    by = [-in_base(np.einsum("nij,nj->ni", K, moved)) for moved in (longer, stretch, sag)]
+    turn = cross_matrix(statics.geometry().lever_m[0])
+    wrench = np.concatenate([np.broadcast_to(np.eye(3), turn.shape), turn], axis=1)
+    return _Cables(
+        pull=in_base(np.stack([F_x, F_z], axis=-1)),
+        chord=in_base(np.stack([chord.horizontal_distance_m[0], -chord.drop_m[0]], axis=-1)),
+        weight=w,
+        length=length,
+        K=in_space(K, np.where(np.isnan(swing), K[:, 0, 0], swing), outward),
+        by_length=by[0],
+        by_stiffness=by[1],
+        by_weight=by[2],
+        wrench=wrench[:, robot.balance_rows],
+    )
+
+
+def _top_tension(cables: _Cables) -> _Tension:
+    """Return the larger of the tensions at both ends of each cable."""
+    exit_pull = cables.pull - (cables.weight * cables.length)[:, None] * _UP
+    at_exit, at_platform = (np.linalg.norm(f, axis=1) for f in (exit_pull, cables.pull))
+    is_exit = at_exit >= at_platform
+    pull = np.where(is_exit[:, None], exit_pull, cables.pull)
+    value = np.maximum(at_exit, at_platform)
+    return _at_end(cables, pull / value[:, None], value, is_exit)
+
+
+def _least_tension(cables: _Cables) -> _Tension:
+    """Return the least tension: at the lower end, or where the cable hangs below both of them."""
+    exit_pull = cables.pull - (cables.weight * cables.length)[:, None] * _UP
+    is_exit = exit_pull[:, 2] >= 0.0
+    hangs = (cables.pull[:, 2] > 0.0) & (exit_pull[:, 2] < 0.0)
+    pull = np.where(is_exit[:, None], exit_pull, cables.pull)
+    pull[hangs, 2] = 0.0
+    value = np.linalg.norm(pull, axis=1)
+    found = _at_end(cables, pull / value[:, None], value, is_exit & ~hangs)
+    # The lowest point moves as the load turns: T² = F² - (F · w / |w|)².
+    leaning = cables.pull[:, 2] / cables.weight
+    found.by_load[hangs] = (leaning[:, None] * found.by_pull)[hangs]
+    return found
+
+
+def _at_end(
+    cables: _Cables, by_pull: FloatArray, value: FloatArray, is_exit: BoolArray
+) -> _Tension:
+    """Return a tension whose pull at the exit point has the load of the whole length in it."""
+    length = np.where(is_exit, cables.length, 0.0)
+    by_length = -np.where(is_exit, cables.weight, 0.0) * by_pull[:, 2]
+    return _Tension(value, by_pull, by_length, length[:, None] * by_pull)
