@@ -21,8 +21,6 @@ from designer.model.robot import Poses, Robot
 from designer.study import Study
 
 MOST_FAULTS = 100
-_SAME_PLACE_M = 1e-6
-_SAME_ROTATION = 1e-6
 
 
 def read_measured(study: Study) -> Measured:
@@ -49,7 +47,11 @@ def read_measured(study: Study) -> Measured:
         _refuse([*faults, *quaternion_faults(found, rows.kept)])
     if measurements.has_poses:
         poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
-        _refuse_one_pose(table, poses)
+        has_moved = np.ptp(poses.position_m, axis=0).max() > 1e-6
+        has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > 1e-6
+        if not has_moved and not has_turned:
+            problem = "all rows are at one pose, so nothing can be told apart"
+            raise InputError([Fault(table.name, None, "", problem, "different poses")])
     else:
         poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
@@ -99,14 +101,6 @@ def _stacked(found: Assigned, names: tuple[str, ...], kept: BoolArray) -> FloatA
     empty = np.full(found.table.n_rows, np.nan)
     columns = [found.ours[name].values if name in found.ours else empty for name in names]
     return np.stack(columns, axis=1)[kept]
-
-
-def _refuse_one_pose(table: Table, poses: Poses) -> None:
-    has_moved = np.ptp(poses.position_m, axis=0).max() > _SAME_PLACE_M
-    has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > _SAME_ROTATION
-    if not has_moved and not has_turned:
-        problem = "all rows are at one pose, so nothing can be told apart"
-        raise InputError([Fault(table.name, None, "", problem, "different poses")])
 
 
 def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Table) -> None:
