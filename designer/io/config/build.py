@@ -18,7 +18,6 @@ from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.schema import (
     BoxSection,
     CableSection,
-    DocumentSection,
     MeasurementsSection,
     PointsSection,
     PoseSection,
@@ -83,18 +82,14 @@ def build_study(
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
-        document=_control(section.document, folder),
-    )
-
-
-def _control(section: DocumentSection, folder: Path) -> DocumentControl:
-    return DocumentControl(
-        section.number or "",
-        section.revision or "",
-        section.author or "",
-        section.checker or "",
-        section.approver or "",
-        None if section.logo is None else folder / section.logo,
+        document=DocumentControl(
+            section.document.number or "",
+            section.document.revision or "",
+            section.document.author or "",
+            section.document.checker or "",
+            section.document.approver or "",
+            None if section.document.logo is None else folder / section.document.logo,
+        ),
     )
 
 
