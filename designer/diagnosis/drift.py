@@ -32,6 +32,8 @@ def drifting(
     The variation is √(gain of the change / gain of the effect), both linearised: for an effect of
     one parameter, its change over one standard deviation of the covariate, relative to its size.
     """
+    from scipy.stats import chi2
+
     keys = {effect.key for effect in found}
     limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
     unclipped = problem.residual(model.settings)
@@ -54,7 +56,10 @@ def drifting(
         size = np.sqrt(max(np.sum(beside(others, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., own] * z[..., None])[taken]
-            drift = _significant_gain(orthonormal, moved, left, model.variance)
+            further = _orthonormal(beside(orthonormal, moved))
+            gain = float(np.sum((further.T @ left) ** 2))
+            # With six covariates for each of up to five effects, the chance of any is below 0.001.
+            drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
             variation = float(np.sqrt(drift) / size)
             # What varies by less than a fifth of itself, over one standard deviation of a
             # covariate, counts as the constant that it is in the model; a twentieth will do where
@@ -89,18 +94,6 @@ def _weights(
 def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:
     seen = values[rows]
     return np.nan_to_num((values - np.nanmean(seen)) / (np.nanstd(seen) or 1.0))
-
-
-def _significant_gain(
-    orthonormal: FloatArray, moved: FloatArray, left: FloatArray, variance: float
-) -> float:
-    """Return what the further columns take off the sum of squares; 0 if that may be chance."""
-    from scipy.stats import chi2
-
-    further = _orthonormal(beside(orthonormal, moved))
-    gain = float(np.sum((further.T @ left) ** 2))
-    # With six covariates for each of up to five effects, the chance of any is still below 0.001.
-    return gain if chi2.sf(gain / variance, moved.shape[1]) < 1e-5 else 0.0
 
 
 def _orthonormal(columns: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ is made of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -142,7 +142,12 @@ def keep_what_helps(
             for effect in found:  # the others fitted anew without it
                 rest = outcome.searcher.fit(without(found, effect.key), model)
                 gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
-            gone = _unclear(gains)
+            least = min(
+                gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std, default=""
+            )
+            if not all(gain.is_clear for gain in gains.values()):
+                gain = gains[least]
+                gone = Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
         if gone is None:
             structure = structure_left(whole, model.settings, np.ones_like(heldout))
             # What begins at a time is no step if what is left goes with time all the same.
@@ -245,15 +250,6 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     if len(gains) >= 6:  # their scatter is known to a third then
         doubt = min(doubt, len(gains) * float(np.var(gains, ddof=1)))
     return Gain(share, float(np.sqrt(doubt)) / total)
-
-
-def _unclear(gains: Mapping[str, Gain]) -> Withdrawn | None:
-    """Return the least clear effect; None where all are clear."""
-    if all(gain.is_clear for gain in gains.values()):
-        return None
-    least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
-    gain = gains[least]
-    return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
 
 
 def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:

@@ -113,15 +113,6 @@ def _simplest(trials: Sequence[Trial]) -> Trial | None:
     return min(near, key=lambda t: len(t.effect.parameters), default=None)
 
 
-def _half_as_good(effect: Effect, steps: Sequence[Step]) -> set[str]:
-    """Return what predicted unseen rows at least half as well when an effect was added."""
-    added = [step for step in steps if step.added is not None and step.added.key == effect.key]
-    if not added:
-        return set()
-    gains = {t.effect.key: t.heldout_gain for t in added[-1].trials}
-    return {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
-
-
 def _chance(gain: float, effect: Effect, looks: int) -> float:
     """Return how probable a gain is by chance in any of so many candidates."""
     from scipy.stats import chi2
@@ -215,7 +206,20 @@ class Searcher:
             tried.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
         variance = _best_variance(tried)
         tried.sort(key=lambda trial: -trial.score(variance))
-        return self._validated_best(found, tried)
+        answer: list[Trial] = []
+        for trial in tried:  # cross-validated from the best down, until one earns its place
+            # Three are, whatever comes of it: a report shows them.
+            settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
+            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
+                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
+                return answer + tried[len(answer) :]
+            if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
+                answer.append(trial)
+                continue
+            gain = self._unseen_loss(found, trial.fit)
+            gain -= self._unseen_loss([*found, trial.effect], trial.fit)
+            answer.append(replace(trial, heldout_gain=gain / trial.fit.variance))
+        return answer
 
     def rivals(
         self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step] = ()
@@ -229,7 +233,9 @@ class Searcher:
         """
         rest = [e for e in found if e.key != effect.key]
         scale = present.variance * present.inflation[effect.key]
-        good = _half_as_good(effect, steps)
+        added = [step for step in steps if step.added is not None and step.added.key == effect.key]
+        gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
+        good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         answer = []
         for other in self._progress.each(f"rivals of {effect.key}", self._others(found)):
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
@@ -254,23 +260,6 @@ class Searcher:
     def _others(self, found: Sequence[Effect]) -> list[Effect]:
         taken = {effect.key for effect in (*found, *self._given)}
         return [effect for effect in self._candidates if effect.key not in taken]
-
-    def _validated_best(self, found: Sequence[Effect], tried: list[Trial]) -> list[Trial]:
-        """Cross-validate from the best down, the first few and then until one earns its place."""
-        answer: list[Trial] = []
-        for trial in tried:
-            # Three are cross-validated whatever comes of it: a report shows them.
-            settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
-            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
-                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
-                return answer + tried[len(answer) :]
-            if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
-                answer.append(trial)
-                continue
-            gain = self._unseen_loss(found, trial.fit)
-            gain -= self._unseen_loss([*found, trial.effect], trial.fit)
-            answer.append(replace(trial, heldout_gain=gain / trial.fit.variance))
-        return answer
 
     def _unseen_loss(self, found: Sequence[Effect], near: Fit) -> float:
         """Return the loss over each part of the rows, fitted to the other parts."""

@@ -47,7 +47,13 @@ def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         swing = np.where(is_vertical, plane[..., 0, 0], statics.force_x_N / X)
     outward = np.where(is_vertical[..., None], [1.0, 0.0], chord.outward)
-    return _in_space(plane, swing, outward)
+    # From the vertical plane, and across it, into space.
+    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
+    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
+    axes = np.stack([out, up], axis=-1)
+    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
+    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
+    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
 
 
 def platform_stiffness(statics: Statics) -> FloatArray:
@@ -133,16 +139,6 @@ def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     good = np.asarray(np.isfinite(C).all(axis=(-2, -1)))
     largest = np.linalg.norm(np.where(good[..., None, None], C, 0.0), ord=2, axis=(-2, -1))
     return np.where(good, largest, np.nan)
-
-
-def _in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
-    """Turn stiffness in the vertical plane and across it into three dimensions."""
-    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
-    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
-    axes = np.stack([out, up], axis=-1)
-    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
-    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
-    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
 
 
 def _cross_matrix(vector: FloatArray) -> FloatArray:

@@ -41,9 +41,6 @@ if TYPE_CHECKING:
 
 MOST_PROPOSALS = 100
 """Where to stop and report a gap."""
-_MOST_GUIDED = 30
-_MOST_BALANCES = 6
-_MOST_TRIALS_OF_A_BLOCK = 300
 _MOST_TRIALS = 100_000
 _EQUAL = 1e-9
 
@@ -185,7 +182,7 @@ class _Search:
 
     def run(self, most_proposals: int) -> None:
         """Propose with the linearisation while it leads to something better, then without."""
-        while len(self.proposals) < min(_MOST_GUIDED, most_proposals):
+        while len(self.proposals) < min(30, most_proposals):
             assignment = self.master.propose(self._guides)
             if assignment is None or not self._could_be_better(assignment):
                 break
@@ -252,7 +249,7 @@ class _Search:
             block = block_by_weight(self.trials, assignment, culprit)
             if block != _alone(assignment):
                 return block
-        room = min(_MOST_TRIALS_OF_A_BLOCK, _MOST_TRIALS - self.trials.count)
+        room = min(300, _MOST_TRIALS - self.trials.count)  # for one block
         return block_by_trial(self.trials, assignment, culprit, self._could_be_better, room)
 
     def _cut_beside(self, assignment: Assignment) -> int:
@@ -291,7 +288,7 @@ class _Search:
         self.trials.add_witnesses(some)
         for place in some[np.isfinite(some).all(axis=1)] if self.has_balances else ():
             balance = balance_at(self.robot, place, self.products, self.members)
-            if balance is not None and len(self.master.balances) < _MOST_BALANCES:
+            if balance is not None and len(self.master.balances) < 6:
                 self.master.balances.append(balance)
         return found
 
