@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.markup import escape
 
-from designer.cli.cases import case_rows, governing_words
 from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
+from designer.model.load_case import STATIC
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis, PoseAnalysis
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 _MOST_TURNS = 12
 """Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
-
 _MEASURED = (("length", 1e3, "mm"), ("tension", 1.0, "N"))
 """What is measured: its name, and the unit that its errors are shown in."""
 bad = "[bold red]{}[/]".format
@@ -112,9 +111,16 @@ def _summary_of_selection(
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
     terms = f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
-    terms = governing_words(chosen) or terms
+    case = chosen.governing.case
+    terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
-    yield from case_rows(chosen)
+    for one in chosen.cases:
+        if one.case is not STATIC:
+            met, cable = one.verification, one.most_used()
+            at = ", ".join(f"{x:.4g}" for x in met.worst_position_m[:3])
+            more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
+            used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"
+            yield f"  {escape(one.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 MOST_PROPOSALS = 100
 """Where to stop and report a gap."""
+_MOST_GUIDED = 30
+_MOST_BALANCES = 6
 _MOST_TRIALS = 100_000
 _EQUAL = 1e-9
 
@@ -182,7 +184,7 @@ class _Search:
 
     def run(self, most_proposals: int) -> None:
         """Propose with the linearisation while it leads to something better, then without."""
-        while len(self.proposals) < min(30, most_proposals):
+        while len(self.proposals) < min(_MOST_GUIDED, most_proposals):
             assignment = self.master.propose(self._guides)
             if assignment is None or not self._could_be_better(assignment):
                 break
@@ -288,7 +290,7 @@ class _Search:
         self.trials.add_witnesses(some)
         for place in some[np.isfinite(some).all(axis=1)] if self.has_balances else ():
             balance = balance_at(self.robot, place, self.products, self.members)
-            if balance is not None and len(self.master.balances) < 6:
+            if balance is not None and len(self.master.balances) < _MOST_BALANCES:
                 self.master.balances.append(balance)
         return found
 
