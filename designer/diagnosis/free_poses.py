@@ -86,7 +86,7 @@ class FreePredictor(Predictor):
         poses, slopes = start if start else (self._measured.poses, None)
         answer, left = self._left_at(poses, settings, noise)
         share = np.ones(len(left))
-        for _ in range(6):
+        for _ in range(6):  # turns at most
             slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes
             for _ in range(4):  # steps with these slopes: near the end two will do
                 step = share[:, None] * _step(slopes, left)
