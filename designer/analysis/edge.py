@@ -11,7 +11,7 @@ from designer.analysis import grids
 from designer.analysis.field import Field, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.region import Prism
-from designer.model.verdict import Verdict
+from designer.model.verdict import OPEN, Verdict
 from designer.study import Study
 
 
@@ -52,7 +52,7 @@ class EdgeProfile:
     @property
     def is_proved(self) -> bool:
         """Whether no cable can hold what is not held beyond the limit, instead of none found."""
-        return not np.isin(self._beyond, [Verdict.NOT_CONVERGED, Verdict.NOT_FOUND]).any()
+        return not np.isin(self._beyond, OPEN).any()
 
     @property
     def _beyond(self) -> VerdictArray:

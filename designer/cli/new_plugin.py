@@ -12,7 +12,6 @@ from designer.errors import Fault, InputError, OutputError
 from designer.io.output import output_folder
 from designer.resources import data_folder
 
-_NAME = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 _LONGEST_NAME = 60
 
 
@@ -40,27 +39,6 @@ def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
         raise InputError([Fault("NAME", None, "", problem, expected)])
     if folder.exists() or folder.is_symlink():
         raise OutputError(f"{folder}: exists already (expected a new folder)")
-    with output_folder(folder) as building:
-        for path, text in _files(name, effect).items():
-            target = building / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8")
-
-
-def _problem(name: str) -> str:
-    shown = repr(name[:_LONGEST_NAME])
-    if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
-        return f"{shown} cannot be the name of a plugin"
-    module = module_name(name)
-    if keyword.iskeyword(module) or keyword.issoftkeyword(module):
-        return f"{shown} is a word of Python's own"
-    if module in sys.stdlib_module_names or PathFinder.find_spec(module) is not None:
-        return f"there is a module {module!r} already"
-    return ""
-
-
-def _files(name: str, effect: bool) -> dict[str, str]:
-    """Return the text of each file of the project by its path."""
     import jinja2
 
     template = data_folder("plugins") / ("template-effect" if effect else "template")
@@ -71,8 +49,21 @@ def _files(name: str, effect: bool) -> dict[str, str]:
         autoescape=False,  # TOML, Python and YAML; the name is checked
     )
     names = {"name": name, "module": module_name(name)}
-    files = {}
-    for path in environment.list_templates(extensions=["j2"]):
-        renamed = path.replace("MODULE", names["module"]).replace("NAME", names["name"])
-        files[renamed.removesuffix(".j2")] = environment.get_template(path).render(names)
-    return files
+    with output_folder(folder) as building:
+        for path in environment.list_templates(extensions=["j2"]):
+            renamed = path.replace("MODULE", names["module"]).replace("NAME", names["name"])
+            target = building / renamed.removesuffix(".j2")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(environment.get_template(path).render(names), encoding="utf-8")
+
+
+def _problem(name: str) -> str:
+    shown = repr(name[:_LONGEST_NAME])
+    if not re.fullmatch(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*", name) or len(name) > _LONGEST_NAME:
+        return f"{shown} cannot be the name of a plugin"
+    module = module_name(name)
+    if keyword.iskeyword(module) or keyword.issoftkeyword(module):
+        return f"{shown} is a word of Python's own"
+    if module in sys.stdlib_module_names or PathFinder.find_spec(module) is not None:
+        return f"there is a module {module!r} already"
+    return ""

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.markup import escape
 
-from designer.cli.cases import case_rows, governing_words
 from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
+from designer.model.load_case import STATIC
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis, PoseAnalysis
@@ -22,12 +22,11 @@ if TYPE_CHECKING:
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
     from designer.workspace.interference import Interference
-    from designer.workspace.result import Census, Extreme, WorkspaceMap
+    from designer.workspace.result import WorkspaceMap
 
-_SMALLEST_SAVING_KG = 1e-6
+
 _MOST_TURNS = 12
 """Turns of the loop that are shown; near poses that no cable can hold it makes hundreds."""
-_WIDEST = 1e9
 _MEASURED = (("length", 1e3, "mm"), ("tension", 1.0, "N"))
 """What is measured: its name, and the unit that its errors are shown in."""
 bad = "[bold red]{}[/]".format
@@ -75,30 +74,23 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
 
 def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
     census = workspace.census
-    if not workspace.is_feasible:
-        yield "worst pose", bad(f"none: {_why_none(census)}")
+    if not workspace.is_feasible and census.excluded == census.samples:
+        yield "worst pose", bad("none: every pose is left out")
+    elif not workspace.is_feasible:
+        part = "all" if census.statuses["solved"] else "any"
+        yield "worst pose", bad(f"none: no cable serves {part} of it")
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
-            yield label, _placed(extreme)
+            at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
+            text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
+            turn_deg = np.degrees(extreme.rotation_vector_rad)
+            if turn_deg.any():
+                text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
+            yield label, text
     for name, count in census.statuses.items():
         if count > 0:
             text = f"{count} of {census.samples} ({census.fraction(name):.1%})"
             yield f"  {name.replace('_', ' ')}", text
-
-
-def _why_none(census: Census) -> str:
-    if census.excluded == census.samples:
-        return "every pose is left out"
-    return f"no cable serves {'all' if census.statuses['solved'] else 'any'} of it"
-
-
-def _placed(extreme: Extreme) -> str:
-    at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
-    text = f"{_extreme(extreme.diameter_m, extreme.max_tension_N)} at ({at}) m"
-    turn_deg = np.degrees(extreme.rotation_vector_rad)
-    if turn_deg.any():
-        text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
-    return text
 
 
 def _extreme(diameter_m: float, tension_N: float) -> str:
@@ -119,9 +111,16 @@ def _summary_of_selection(
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
     terms = f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
-    terms = governing_words(chosen) or terms
+    case = chosen.governing.case
+    terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
-    yield from case_rows(chosen)
+    for one in chosen.cases:
+        if one.case is not STATIC:
+            met, cable = one.verification, one.most_used()
+            at = ", ".join(f"{x:.4g}" for x in met.worst_position_m[:3])
+            more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
+            used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"
+            yield f"  {escape(one.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
@@ -147,16 +146,13 @@ def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
     yield "cables", f"[bold]{n_products} product{'' if n_products == 1 else 's'} for the groups[/]"
     for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
         yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
-    saving = "" if choice.saving_kg is None else _saving(choice.saving_kg)
+    saving = ""
+    if choice.saving_kg is not None and abs(choice.saving_kg) < 1e-6:
+        saving = ", as with one product for all"
+    elif choice.saving_kg is not None:
+        saving = f", {abs(choice.saving_kg):.4g} kg {'less' if choice.saving_kg > 0.0 else 'more'}"
     gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
     yield "  groups' mass", f"{choice.chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
-
-
-def _saving(saving_kg: float) -> str:
-    """Return what the groups save over one product for all, as it ends a sentence."""
-    if abs(saving_kg) < _SMALLEST_SAVING_KG:
-        return ", as with one product for all"
-    return f", {abs(saving_kg):.4g} kg {'less' if saving_kg > 0.0 else 'more'}"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:
@@ -172,7 +168,21 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
     if pose.loop.iterates and not pose.loop.has_converged:
         show(f"loop: {pose.loop.outcome}")
     if statics.is_solved:
-        _print_cables(pose)
+        statics = pose.sizing.statics
+        table = bare_table(
+            "cable", "length [m]", "F_x [N]", "F_z [N]", "tension at exit [N]", "at platform [N]",
+            title="Cables at the optimum",
+        )  # fmt: skip
+        columns = (
+            statics.length_m, statics.force_x_N, statics.force_z_N,
+            statics.exit_tension_N, statics.platform_tension_N,
+        )  # fmt: skip
+        for index, (length, *forces) in enumerate(zip(*columns, strict=True), 1):
+            table.add_row(str(index), figure(length, 8), *(figure(force, 3) for force in forces))
+        show(table)
+        closure = float(pose.sizing.closure_residual_m)
+        balance = float(pose.sizing.equilibrium_residual_N)
+        show(f"residuals: closure {closure:.1e} m, equilibrium {balance:.1e} N")
     outside = f"The configured pose {study.pose_outside}." if study.pose_outside else ""
     for remark in (outside, pose.caution, pose.rest.sentence if pose.rest else ""):
         if remark:
@@ -195,29 +205,11 @@ def _sizing_rows(pose: PoseAnalysis) -> Iterator[Row]:
     yield tuple(f"[bold]{text}[/]" for text in (name, *best))
 
 
-def _print_cables(pose: PoseAnalysis) -> None:
-    statics = pose.sizing.statics
-    table = bare_table(
-        "cable", "length [m]", "F_x [N]", "F_z [N]", "tension at exit [N]", "at platform [N]",
-        title="Cables at the optimum",
-    )  # fmt: skip
-    columns = (
-        statics.length_m, statics.force_x_N, statics.force_z_N,
-        statics.exit_tension_N, statics.platform_tension_N,
-    )  # fmt: skip
-    for index, (length, *forces) in enumerate(zip(*columns, strict=True), 1):
-        table.add_row(str(index), figure(length, 8), *(figure(force, 3) for force in forces))
-    show(table)
-    closure = float(pose.sizing.closure_residual_m)
-    balance = float(pose.sizing.equilibrium_residual_N)
-    show(f"residuals: closure {closure:.1e} m, equilibrium {balance:.1e} N")
-
-
 def figure(value: float, decimals: int) -> str:
     """Return a figure as wide as a column can take; "none" where there is none."""
     if not np.isfinite(value):
         return "none"
-    is_plain = value == 0.0 or 10.0**-decimals <= abs(value) < _WIDEST
+    is_plain = value == 0.0 or 10.0**-decimals <= abs(value) < 1e9
     return f"{value:.{decimals}f}" if is_plain else f"{value:.6g}"
 
 
@@ -318,26 +310,23 @@ def print_grades(grades: Sequence[Grade]) -> None:
         table.add_row(f"[bold]{escape(publisher)}[/]")
         for grade in grades:
             if grade.source.publisher == publisher:
-                table.add_row(*map(escape, _grade_cells(grade)))
+                n_doubtful = sum(size.doubt is not None for size in grade.sizes)
+                loads_kN = [1e-3 * size.minimum_breaking_load_N for size in grade.sizes]
+                cells = (
+                    f"  {grade.id}",
+                    _known(grade.construction, grade.core),
+                    _known(grade.material or "", grade.finish.removeprefix("stainless, ")),
+                    f"{len(grade.sizes)}" + (f" ({n_doubtful}?)" if n_doubtful else ""),
+                    _range(1e3 * grade.sizes[0].diameter_m, 1e3 * grade.thickest.diameter_m),
+                    _range(min(loads_kN), max(loads_kN)),
+                    grade.trust,
+                    grade.origin,
+                )
+                table.add_row(*map(escape, cells))
     show(table)
     show(
         "trust: A maker's or standard's table, B seller's transcript, C third hand; (n?) doubtful "
         "sizes; for document and address: designer catalog show GRADE"
-    )
-
-
-def _grade_cells(grade: Grade) -> Row:
-    n_doubtful = sum(size.doubt is not None for size in grade.sizes)
-    loads_kN = [1e-3 * size.minimum_breaking_load_N for size in grade.sizes]
-    return (
-        f"  {grade.id}",
-        _known(grade.construction, grade.core),
-        _known(grade.material or "", grade.finish.removeprefix("stainless, ")),
-        f"{len(grade.sizes)}" + (f" ({n_doubtful}?)" if n_doubtful else ""),
-        _range(1e3 * grade.sizes[0].diameter_m, 1e3 * grade.thickest.diameter_m),
-        _range(min(loads_kN), max(loads_kN)),
-        grade.trust,
-        grade.origin,
     )
 
 

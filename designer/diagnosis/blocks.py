@@ -6,12 +6,8 @@ import numpy as np
 
 from designer.arrays import BoolArray, IntArray
 
-_BLOCKS, _MANY_BLOCKS, _MANY_ROWS = 12, 24, 240
-"""Few blocks are long against what neighbours share; many make clear how much a gain scatters."""
 _HELD_OUT_EVERY = 4
 """A quarter of the rows: three blocks at least, and the fit keeps most."""
-_FOLDS = 5
-"""Of a cross-validation: each fit has four fifths of the rows, at five times the work."""
 
 
 def block_of(n_rows: int, n_blocks: int | None = None) -> IntArray:
@@ -20,7 +16,8 @@ def block_of(n_rows: int, n_blocks: int | None = None) -> IntArray:
     Twelve, or twice as many where each still has ten rows: what is held out is then spread more
     widely, and how clear a gain is shows better.
     """
-    blocks = n_blocks or (_BLOCKS if n_rows < _MANY_ROWS else _MANY_BLOCKS)
+    # Few blocks are long against what neighbours share; many show how much a gain scatters.
+    blocks = n_blocks or (12 if n_rows < 240 else 24)
     return (np.arange(n_rows) * min(blocks, n_rows)) // n_rows
 
 
@@ -38,7 +35,8 @@ def folds(fit_rows: BoolArray) -> list[BoolArray]:
         The rows of each part; together they are ``fit_rows``.
     """
     where = np.flatnonzero(fit_rows)
-    part = block_of(len(where), _FOLDS)
+    # With five parts each fit has four fifths of the rows, at five times the work.
+    part = block_of(len(where), 5)
     answer = []
     for k in range(int(part.max()) + 1):
         rows = np.zeros_like(fit_rows)

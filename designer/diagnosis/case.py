@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.arrays import FloatArray
 from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.free_poses import FreePredictor, first_poses
 from designer.diagnosis.predict import Predictor
@@ -98,7 +97,9 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
     recorded = _recorded(study, measured)
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
     shown = [e for e in effects if not skipped[e.key]]
-    idle = [s for s in fixed if not _acts(s.effect, recorded)]
+    # On the machine an effect acts unseen; only wind has to be told.
+    in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
+    idle = [s for s in in_sight if _missing(s.effect, recorded)]
     return Case(
         study,
         measurements,
@@ -110,12 +111,6 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
     )
-
-
-def _acts(effect: Effect, recorded: frozenset[str]) -> bool:
-    """Tell whether a declared effect acts on these rows; on the machine it does unseen."""
-    is_bodily = effect.on_machine is not None and "wind" not in effect.needs
-    return is_bodily or not _missing(effect, recorded)
 
 
 def _missing(effect: Effect, recorded: frozenset[str]) -> str:
@@ -134,13 +129,10 @@ def _too_few(effect: Effect, measured: Measured) -> str:
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
-    def has_any(readings: FloatArray) -> bool:
-        return not np.isnan(readings).all()
-
     found = {
         "motion": not measured.settled,
         "rotation": not study.robot.is_point_mass,
-        "length": has_any(measured.length_m),
-        "tension": has_any(measured.tension_N),
+        "length": not np.isnan(measured.length_m).all(),
+        "tension": not np.isnan(measured.tension_N).all(),
     }
     return measured.columns | {name for name, is_there in found.items() if is_there}

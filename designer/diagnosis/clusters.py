@@ -20,14 +20,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.diagnosis.blocks import block_of
 
-_LAGS = 8
-"""Rows back that a decay is taken from: farther back correlations are mostly chance."""
 _LONGEST = 0.98
 """Largest decay: what lasts over more than fifty rows is a drift, and tested as such."""
-_DISTINCT = 3.0
-"""Standard deviations of a correlation of independent rows from which on it is one."""
-_TURNS, _MOST_TAKEN = 10, 0.25
-"""Until what lasts, and what a mean takes of it, agree; no more is made up for than a quarter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +59,7 @@ def lasting(residual: FloatArray) -> Lasting:
     known = ~np.isnan(residual)
     mean = np.nan_to_num(residual).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     centred = np.where(known, residual - mean, 0.0)
-    lags = range(1, min(_LAGS, len(residual) - 2) + 1)
+    lags = range(1, min(8, len(residual) - 2) + 1)
     square = float(np.sum(centred**2)) / max(int(known.sum()), 1)
     if square == 0.0 or len(lags) < 2:
         return INDEPENDENT
@@ -76,24 +70,21 @@ def lasting(residual: FloatArray) -> Lasting:
     alike = centred.T @ centred
     channels = np.trace(alike) ** 2 / np.sum(alike**2)
     doubt = 1.0 / np.sqrt(max(pairs[0] / known.shape[1] * channels, 1.0))
-    if found[0] + doubt**2 < _DISTINCT * doubt:
+    # Correlations of independent rows seldom are three standard deviations from 0.
+    if found[0] + doubt**2 < 3.0 * doubt:
         return INDEPENDENT
     answer, n_rows = INDEPENDENT, int(known.any(axis=1).sum())
-    for _ in range(_TURNS):
-        # The mean that is taken from the rows holds that share of their variance.
-        taken = min(answer.rows / n_rows, _MOST_TAKEN)
-        answer = _decaying(found + (1.0 - found) * taken)
+    for _ in range(10):  # until what lasts, and what the mean takes of it, agree
+        # The mean holds that share of the rows' variance; no more than a quarter is made up for.
+        taken = min(answer.rows / n_rows, 0.25)
+        correlation = found + (1.0 - found) * taken
+        earlier, later = np.maximum(correlation[:-1], 0.0), np.maximum(correlation[1:], 0.0)
+        decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
+        powers = decay ** np.arange(1, len(correlation) + 1)
+        square = max(float(powers @ powers), 1e-12)
+        share = float(np.clip(powers @ correlation / square, 0.0, 1.0))
+        answer = Lasting(share, decay)
     return answer
-
-
-def _decaying(correlation: FloatArray) -> Lasting:
-    """Return the decay that suits correlations (n_lags,) from one row back on."""
-    earlier, later = np.maximum(correlation[:-1], 0.0), np.maximum(correlation[1:], 0.0)
-    decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
-    powers = decay ** np.arange(1, len(correlation) + 1)
-    square = max(float(powers @ powers), 1e-12)
-    share = float(np.clip(powers @ correlation / square, 0.0, 1.0))
-    return Lasting(share, decay)
 
 
 def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[FloatArray]:

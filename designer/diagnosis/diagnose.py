@@ -36,14 +36,8 @@ from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
 from designer.study import Study
 
-_NOISE_ROUNDS = 2
-"""Searches at most: the second has the noise that the first one's model leaves."""
-_NOISE_CHANGE = 0.15
-"""Relative change of the noise that is worth another search: losses go with its square."""
 _UNKNOWN = 10.0
 """How many times as far as a finding that which is declared unknown may be from the drawing."""
-_RIVALS_PARTED = 2
-"""Rivals of a finding for which a proposal is made, the best first."""
 
 
 def diagnose_study(
@@ -157,7 +151,7 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     measured, predict = case.measured, case.predictor()
     noise = first_noise(case.measurements, measured, predict, rows, case.given)
     outcome: Outcome | None = None
-    for _ in range(_NOISE_ROUNDS):
+    for _ in range(2):  # the second time with the noise that the first one's model leaves
         problem = Problem(measured, predict, noise)
         found = search_and_hold(problem, case.candidates, case.given, rows, progress)
         # A search that came to its end is better than a later one that did not.
@@ -171,7 +165,7 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
             abs(better.length_m / noise.length_m - 1), abs(better.tension_N / noise.tension_N - 1)
         )
         noise = better
-        if change < _NOISE_CHANGE:
+        if change < 0.15:  # not worth another search: losses go with its square
             break
         if progress.is_over:
             progress.leave_out("the search again, with the noise that the found effects leave")
@@ -248,7 +242,7 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
     for finding in findings:
         own = finding.effect.key
         rest = [effect for effect in search.found if effect.key != own]
-        for rival in finding.rivals[:_RIVALS_PARTED]:
+        for rival in finding.rivals[:2]:  # the best
             swapped = outcome.searcher.fit([*rest, by_key[rival]], search.fit)
             pair = (search.fit.settings, swapped.settings)
             answer.append(propose(problem, region, *pair, (own, rival)))

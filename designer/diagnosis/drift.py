@@ -13,15 +13,6 @@ from designer.diagnosis.result import Withdrawn
 from designer.diagnosis.structure import SIGNIFICANCE, Structure, beside, covariates_of
 from designer.effects.effect import Effect, Readings
 
-_CHANCE = 1e-5
-"""Of a drift by accident: with six covariates for each of up to five effects still below 0.001."""
-_VARIATION = 0.2
-"""Of an effect's own size, over one standard deviation of a covariate: what varies by less than a
-fifth counts as the constant that it is in the model."""
-_LEAST_VARIATION, _SHARE_OF_LEFT = 0.05, 0.5
-"""A smaller variation will do where it explains most of what is left."""
-_CLIP = 4.0
-"""Standard deviations at which the residual is clipped, so that no outlier makes a drift."""
 _MOST_CARRIERS = 4
 """Covariates that are tried: weaker ones go with these."""
 
@@ -41,9 +32,12 @@ def drifting(
     The variation is √(gain of the change / gain of the effect), both linearised: for an effect of
     one parameter, its change over one standard deviation of the covariate, relative to its size.
     """
+    from scipy.stats import chi2
+
     keys = {effect.key for effect in found}
-    limit = _CLIP * np.sqrt(model.variance)
-    residual = np.clip(problem.residual(model.settings), -limit, limit)
+    limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
+    unclipped = problem.residual(model.settings)
+    residual = np.clip(unclipped, -limit, limit)
     taken = rows[:, None] & ~np.isnan(residual)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
     orthonormal = _orthonormal(slopes[taken])
@@ -55,13 +49,22 @@ def drifting(
     for setting, own in with_places(model.settings):
         if setting.effect.key not in keys:
             continue
-        size = np.sqrt(_gain_of(problem, model, setting.effect, slopes, own, taken))
+        # What the effect takes off the sum of squares that the others, fitted anew, leave.
+        rest = [s for s in model.settings if s.effect.key != setting.effect.key]
+        change = problem.residual(rest)[taken] - unclipped[taken]
+        others = _orthonormal(np.delete(slopes, own, axis=-1)[taken])
+        size = np.sqrt(max(np.sum(beside(others, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
             moved = (slopes[..., own] * z[..., None])[taken]
-            drift = _significant_gain(orthonormal, moved, left, model.variance)
+            further = _orthonormal(beside(orthonormal, moved))
+            gain = float(np.sum((further.T @ left) ** 2))
+            # With six covariates for each of up to five effects, the chance of any is below 0.001.
+            drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
             variation = float(np.sqrt(drift) / size)
-            explains = drift > _SHARE_OF_LEFT * unexplained > 0.0
-            least = _LEAST_VARIATION if explains else _VARIATION
+            # What varies by less than a fifth of itself, over one standard deviation of a
+            # covariate, counts as the constant that it is in the model; a twentieth will do where
+            # it explains most of what is left.
+            least = 0.05 if drift > 0.5 * unexplained > 0.0 else 0.2
             if variation > max(least, worst.variation if worst else 0.0):
                 worst = Withdrawn(setting.effect.key, name, variation)
     return worst
@@ -91,32 +94,6 @@ def _weights(
 def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:
     seen = values[rows]
     return np.nan_to_num((values - np.nanmean(seen)) / (np.nanstd(seen) or 1.0))
-
-
-def _gain_of(
-    problem: Problem,
-    model: Fit,
-    effect: Effect,
-    slopes: FloatArray,
-    own: slice,
-    taken: BoolArray,
-) -> float:
-    """Return what the effect takes off the sum of squares that the others, fitted anew, leave."""
-    rest = [s for s in model.settings if s.effect.key != effect.key]
-    change = problem.residual(rest)[taken] - problem.residual(model.settings)[taken]
-    others = _orthonormal(np.delete(slopes, own, axis=-1)[taken])
-    return float(max(np.sum(beside(others, change) ** 2), model.variance))
-
-
-def _significant_gain(
-    orthonormal: FloatArray, moved: FloatArray, left: FloatArray, variance: float
-) -> float:
-    """Return what the further columns take off the sum of squares; 0 if that may be chance."""
-    from scipy.stats import chi2
-
-    further = _orthonormal(beside(orthonormal, moved))
-    gain = float(np.sum((further.T @ left) ** 2))
-    return gain if chi2.sf(gain / variance, moved.shape[1]) < _CHANCE else 0.0
 
 
 def _orthonormal(columns: FloatArray) -> FloatArray:

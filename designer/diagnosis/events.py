@@ -30,14 +30,6 @@ _FULL_SLOPE = (0.75, 1.25)
 it; a gain, even one of half, keeps below."""
 _KNEES = np.linspace(0.5, 0.95, 10)
 """Quantiles of the prediction at which a range may end: half of the readings count as sound."""
-_MOST_READINGS = 16
-"""Readings that are looked at, of eight cables, for the chance of a bend by accident."""
-_LEFT = 0.1
-"""Of the mean square, that exchanged readings may leave: they fit nearly as well as right ones."""
-_OFF = 3.0
-"""Standard deviations by which readings on wrong plugs are off at least."""
-_END = 0.25
-"""Share of the rows that is called an end of a covariate."""
 
 Common = tuple[float, float, str]
 """Chance by accident, share of the readings that stand off, what they have in common."""
@@ -103,7 +95,8 @@ def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
         fits = linear_sum_assignment(left)[1]
         for ring in _rings(fits):
             as_it_is, exchanged = left[ring, ring].sum(), left[ring, fits[ring]].sum()
-            if as_it_is > len(ring) * _OFF**2 and exchanged < _LEFT * as_it_is:
+            # On wrong plugs readings are far off; exchanged, they fit nearly as well as right ones.
+            if as_it_is > len(ring) * 3.0**2 and exchanged < 0.1 * as_it_is:
                 *others, last = (names[known[k]] for k in sorted(ring))
                 how = "with each other" if len(ring) == 2 else "in a ring"
                 texts.append(f"{', '.join(others)} and {last} exchanged {how}")
@@ -160,7 +153,11 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     if len(channels) < 4 * _LEAST_ROWS or not channels.size:
         return
     best = _step_in(channels)
-    if best.share < _smooth_share(channels[:, best.channel]):
+    # Of the variance a cubic over the rows explains that share: a drift is no step.
+    channel = channels[:, best.channel]
+    powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(channel)), 3)
+    rest = channel - powers @ np.linalg.lstsq(powers, channel, rcond=None)[0]
+    if best.share < float(1.0 - rest @ rest / (channel @ channel)):
         return
     late = np.arange(len(channels))[:, None] >= best.which
     means = [channels[side[:, 0]].mean(axis=0) for side in (~late, late)]
@@ -170,13 +167,6 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     by_accident = [_step_in(one).share for one in draws(channels, lasts, rng, _DRAWS)]
     (chance,) = chances_of(np.array([best.share]), by_accident)
     yield Event(f"a step at row {rows[best.which]}", best.share, float(chance))
-
-
-def _smooth_share(channel: FloatArray) -> float:
-    """Return the share of variance that a cubic over the rows explains: a drift is no step."""
-    powers = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, len(channel)), 3)
-    rest = channel - powers @ np.linalg.lstsq(powers, channel, rcond=None)[0]
-    return float(1.0 - rest @ rest / (channel @ channel))
 
 
 def _step_in(channels: FloatArray) -> _Best:
@@ -223,8 +213,9 @@ def _end_of(own: FloatArray, left: FloatArray, text: str) -> Event | None:
                 best, slope, at = along**2 / size, along / size, float(knee)
     if not _FULL_SLOPE[0] < -slope < _FULL_SLOPE[1] or not (own > at).any():
         return None
-    # Such a correlation is as probable by accident in any knee, end and reading.
-    looks = 2 * len(_KNEES) * _MOST_READINGS
+    # Such a correlation is as probable by accident in any knee, end and reading, 16 of them on
+    # eight cables.
+    looks = 2 * len(_KNEES) * 16
     chance = looks * beta.sf(best / variance, 0.5, 0.5 * (len(own) - 2))
     return Event(text, best / variance, float(min(1.0, chance)))
 
@@ -259,7 +250,7 @@ def _at_an_end(off: BoolArray, covariates: Mapping[str, FloatArray]) -> Iterator
     n = int(off.sum())
     for name, column in covariates.items():
         for sign, end in ((1.0, "lower"), (-1.0, "upper")):
-            is_there = sign * column <= np.nanquantile(sign * column, _END)
+            is_there = sign * column <= np.nanquantile(sign * column, 0.25)
             inside = int(np.sum(off & is_there))
             chance = float(_chance(inside, n, np.mean(is_there), 2 * len(covariates)))
             yield chance, inside / n, f"{inside} of {n} rows in the {end} quarter of {name}"

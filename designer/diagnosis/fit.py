@@ -14,14 +14,6 @@ from designer.effects.effect import Effect, Setting, Values
 
 HUBER = 3.0
 """Standard deviations up to which a residual counts by its square: noise exceeds it in 1 of 370."""
-_STEP = 1e-3
-"""Of a typical change: so short that one side will do, and far above the solver's residual."""
-_TRIAL_TURNS, _ALL_TURNS = 12, 80
-"""Evaluations of a fit from near its end, and from anywhere."""
-_MOST_JUDGED = 5
-"""Fits at most until the distrust of readings agrees with what the fit leaves."""
-_TRIAL_TOLERANCE, _TOLERANCE = 1e-5, 1e-8
-"""Relative: a trial is only compared with others, the final model is told."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,8 +132,10 @@ def fit(
         loss = float(huber(problem.residual(())[taken]).sum())
         return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(taken))
     anew = anew and any(effect.starts or effect.starts_from for effect in effects)
-    turns = _ALL_TURNS if thorough or anew or not known else _TRIAL_TURNS
-    tolerance = _TOLERANCE if thorough else _TRIAL_TOLERANCE
+    # Evaluations from anywhere, and from near the end.
+    turns = 80 if thorough or anew or not known else 12
+    # Relative: the final model is told, a trial is only compared with others.
+    tolerance = 1e-8 if thorough else 1e-5
     fits = [
         _fit_from(problem, effects, taken, start, turns, tolerance)
         for start in _starts(problem, effects, known, anew=anew)
@@ -175,22 +169,21 @@ def _starts_from(
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
     """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
-    return problem.predict.remembered_slopes(
-        (problem.noise, *(effect.key for effect in effects), vector.tobytes()),
-        lambda: _jacobian(problem, effects, vector),
-    )
 
+    def compute() -> FloatArray:
+        here = problem.residual(settings_at(effects, vector))
+        parameters = [p for effect in effects for p in effect.parameters]
+        slopes = np.empty((*here.shape, len(parameters)))
+        for k, p in enumerate(parameters):
+            moved = vector.copy()
+            # So short that one side will do, and far above the solver's residual.
+            moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
+            there = problem.residual(settings_at(effects, moved))
+            slopes[..., k] = (there - here) / (moved[k] - vector[k])
+        return slopes
 
-def _jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:
-    here = problem.residual(settings_at(effects, vector))
-    parameters = [p for effect in effects for p in effect.parameters]
-    slopes = np.empty((*here.shape, len(parameters)))
-    for k, p in enumerate(parameters):
-        moved = vector.copy()
-        moved[k] += _STEP * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
-        there = problem.residual(settings_at(effects, moved))
-        slopes[..., k] = (there - here) / (moved[k] - vector[k])
-    return slopes
+    key = (problem.noise, *(effect.key for effect in effects), vector.tobytes())
+    return problem.predict.remembered_slopes(key, compute)
 
 
 def _fit_from(
@@ -206,7 +199,7 @@ def _fit_from(
     parameters = [p for effect in effects for p in effect.parameters]
     low, high = np.array([p.bounds for p in parameters]).T
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
-    for _ in range(_MOST_JUDGED):
+    for _ in range(5):  # until the distrust of readings agrees with what the fit leaves
         answer = least_squares(
             lambda v: problem.residual(settings_at(effects, v))[taken],
             inside,

@@ -35,13 +35,9 @@ _CANDIDATES = 4000
 """Places to start from: neighbours are a sixteenth of the region's side apart."""
 _STEP = 1e-6
 """Over the frame's size: slopes to six digits, as the catenaries have ten."""
-_MOST_SLOPES, _CHORDS = 6, 4
-"""Turns at most, and steps that are taken with the slopes of each: near the end two will do."""
 _STILL = 1e-2
 """Of the noise, or of what is left where that is more: the rest of the way is straight, to a small
 share of this."""
-_RIDGE = 1e-13
-"""Over the trace: of the digits of a double, those that no slope has."""
 _UNHELD = 1e9
 """What is left of a reading where the model cannot hold the pose: worse than any error."""
 
@@ -90,12 +86,13 @@ class FreePredictor(Predictor):
         poses, slopes = start if start else (self._measured.poses, None)
         answer, left = self._left_at(poses, settings, noise)
         share = np.ones(len(left))
-        for _ in range(_MOST_SLOPES):
+        for _ in range(6):  # turns at most
             slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes
-            for _ in range(_CHORDS):
+            for _ in range(4):  # steps with these slopes: near the end two will do
                 step = share[:, None] * _step(slopes, left)
                 rest = np.einsum("rcp,rp->rc", slopes, step)
-                if np.all(np.abs(rest).max(axis=1) < _STILL * _at_least_noise(left)):
+                still = _STILL * np.maximum(1.0, np.abs(left).max(axis=1))
+                if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
                     return _further(answer, rest, noise)
                 trial = moved_poses(self._machine.robot, poses, step)
@@ -206,8 +203,8 @@ def _step(slopes: FloatArray, left: FloatArray) -> FloatArray:
     weighted = slopes * weight[..., None]
     square = np.einsum("rcp,rcq->rpq", weighted, slopes)
     pull = np.einsum("rcp,rc->rp", weighted, left)
-    # Nothing moves where nothing was read.
-    least = _RIDGE * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
+    # Nothing moves where nothing was read; no slope has the last digits of a double.
+    least = 1e-13 * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
     ridge = least[:, None, None] * np.eye(square.shape[-1])
     return np.asarray(np.linalg.solve(square + ridge, pull[..., None])[..., 0])
 
@@ -220,10 +217,6 @@ def _further(
     length, tension = np.hsplit(rest, 2)
     length, tension = noise.length_m * length, noise.tension_N * tension
     return true, Readings(shown.length_m + length, shown.tension_N + tension)
-
-
-def _at_least_noise(left: FloatArray) -> FloatArray:
-    return np.asarray(np.maximum(1.0, np.abs(left).max(axis=1)))
 
 
 def _loss(left: FloatArray) -> FloatArray:

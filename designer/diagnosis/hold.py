@@ -9,7 +9,7 @@ is made of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,8 +35,6 @@ _CLEAR = 2.0
 passed the search before."""
 _LEAST = 0.01
 """Share of the held-out mean square below which a gain is of no use to anyone."""
-_ENOUGH = 6
-"""Blocks whose scatter is a measure of doubt: it is known to a third then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,7 +100,10 @@ def search_and_hold(
         return Outcome(problem, searcher, Search((), unsearched, ()), (), structure)
     search = searcher.run()
     structure = structure_left(problem, search.fit.settings, rows)
-    outcome = Outcome(problem, searcher, search, tuple(_not_to_be_believed(search)), structure)
+    # The best of what would still earn its place, but with values that nobody would believe.
+    last = [t for t in (search.steps[-1].trials if search.steps else ()) if t.earns_its_place]
+    wild = [gone for t in last if (gone := implausible(t.fit, [t.effect]))][:1]
+    outcome = Outcome(problem, searcher, search, tuple(wild), structure)
     while gone := _loose(outcome, rows):
         outcome = outcome.without(gone, progress)
         structure = structure_left(problem, outcome.search.fit.settings, rows)
@@ -137,11 +138,22 @@ def keep_what_helps(
         gains, structure = dict[str, Gain](), outcome.structure
         gone = implausible(model, found) or _faint(model, found)
         if gone is None:
-            gains = _gains(outcome, whole, heldout)
-            gone = _unclear(gains)
+            left = whole.residual(model.settings)[heldout]
+            for effect in found:  # the others fitted anew without it
+                rest = outcome.searcher.fit(without(found, effect.key), model)
+                gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
+            least = min(
+                gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std, default=""
+            )
+            if not all(gain.is_clear for gain in gains.values()):
+                gain = gains[least]
+                gone = Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
         if gone is None:
             structure = structure_left(whole, model.settings, np.ones_like(heldout))
-            gone = _no_step(structure, found)
+            # What begins at a time is no step if what is left goes with time all the same.
+            steps = [effect.key for effect in found if effect.starts_from is not None]
+            if steps and any(carrier.is_order for carrier in structure.present):
+                gone = Withdrawn(steps[0], reason=Reason.NO_STEP)
         if gone is None:
             return replace(outcome, structure=structure), gains
         outcome = outcome.without(gone, progress)
@@ -189,15 +201,6 @@ def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
     return drifting(problem, model, found, structure, rows)
 
 
-def _not_to_be_believed(search: Search) -> list[Withdrawn]:
-    """Return the best of what would still earn its place, but with values that are not."""
-    for trial in search.steps[-1].trials if search.steps else ():
-        wild = implausible(trial.fit, [trial.effect]) if trial.earns_its_place else None
-        if wild is not None:
-            return [wild]
-    return []
-
-
 def implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
     """Return the first effect with a value that an engineer would not believe."""
     keys = {effect.key for effect in found}
@@ -224,17 +227,6 @@ def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
     return None
 
 
-def _gains(outcome: Outcome, whole: Problem, heldout: BoolArray) -> dict[str, Gain]:
-    """Return what each effect gains on held-out rows, the others fitted anew without it."""
-    found, model = outcome.search.found, outcome.search.fit
-    left = whole.residual(model.settings)[heldout]
-    gains = {}
-    for effect in found:
-        rest = outcome.searcher.fit(without(found, effect.key), model)
-        gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
-    return gains
-
-
 def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     """Return the gain between two residuals of held-out rows, readings that suit neither left out.
 
@@ -255,26 +247,9 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
         doubts.append(np.sum(sums**2) * len(sums) / max(len(sums) - 1, 1))
     share, doubt = 1.0 - float(np.sum(after**2)) / total, max(doubts)
     gains = np.array([np.sum((before**2 - after**2)[block == k]) for k in np.unique(block)])
-    if len(gains) >= _ENOUGH:
+    if len(gains) >= 6:  # their scatter is known to a third then
         doubt = min(doubt, len(gains) * float(np.var(gains, ddof=1)))
     return Gain(share, float(np.sqrt(doubt)) / total)
-
-
-def _unclear(gains: Mapping[str, Gain]) -> Withdrawn | None:
-    """Return the least clear effect; None where all are clear."""
-    if all(gain.is_clear for gain in gains.values()):
-        return None
-    least = min(gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std)
-    gain = gains[least]
-    return Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
-
-
-def _no_step(structure: Structure, found: Sequence[Effect]) -> Withdrawn | None:
-    """Return an effect that begins at a time, if what is left goes with time all the same."""
-    steps = [effect for effect in found if effect.starts_from is not None]
-    if steps and any(carrier.is_order for carrier in structure.present):
-        return Withdrawn(steps[0].key, reason=Reason.NO_STEP)
-    return None
 
 
 def without(effects: Sequence[Effect], *keys: str) -> list[Effect]:

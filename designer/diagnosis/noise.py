@@ -16,10 +16,6 @@ from designer.effects.effect import Effect
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
 
-_ROUGH_LENGTH, _ROUGH_TENSION = 0.01, 0.1
-"""What a model may be off by at first, over a typical reading: mostly their ratio counts, and
-tensions are foretold worse than lengths."""
-
 
 def first_noise(
     measurements: Measurements,
@@ -45,12 +41,17 @@ def first_noise(
     declared = (measurements.length_noise_m, measurements.tension_noise_N)
     if declared[0] is not None and declared[1] is not None:
         return Noise(declared[0], declared[1], "declared")
-    rough = Problem(measured, predict, _rough_noise(measured))
+    length, tension = (
+        float(np.nanmedian(np.abs(kind))) if np.isfinite(kind).any() else 1.0
+        for kind in (measured.length_m, measured.tension_N)
+    )
+    # By how much a model may be off at first: mostly their ratio counts, and tensions are foretold
+    # worse than lengths.
+    rough = Problem(measured, predict, Noise(0.01 * length, 0.1 * tension, "rough"))
     settings = fit(rough, given, rows).settings if given else ()
     kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
-    estimate = _neighbours if measured.settled else _second_differences
     found = [
-        estimate(kind, measured) if value is None else value
+        _fast_part(kind, measured) if value is None else value
         for value, kind in zip(declared, kinds, strict=True)
     ]
     missing = [
@@ -79,21 +80,11 @@ def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> 
     )
 
 
-def _rough_noise(measured: Measured) -> Noise:
-    length, tension = (
-        float(np.nanmedian(np.abs(kind))) if np.isfinite(kind).any() else 1.0
-        for kind in (measured.length_m, measured.tension_N)
-    )
-    return Noise(_ROUGH_LENGTH * length, _ROUGH_TENSION * tension, "rough")
-
-
-def _second_differences(kind: FloatArray, measured: Measured) -> float:
-    return _robust_std(np.diff(kind, n=2, axis=0)) / math.sqrt(6.0)  # 1² + 2² + 1² variances
-
-
-def _neighbours(kind: FloatArray, measured: Measured) -> float:
+def _fast_part(kind: FloatArray, measured: Measured) -> float:
     from scipy.spatial import cKDTree
 
+    if not measured.settled:
+        return _robust_std(np.diff(kind, n=2, axis=0)) / math.sqrt(6.0)  # 1² + 2² + 1² variances
     seen = ~np.isnan(kind).all(axis=1)
     if seen.sum() < 2:
         return 1.0

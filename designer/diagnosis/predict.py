@@ -16,11 +16,6 @@ from designer.effects.registry import SHIPPED
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 
-_SLOPES_KEPT = 8
-"""Slopes that are remembered: those of the parts of one validation, and a few more."""
-_MACHINES_KEPT = 64
-"""Readings that are remembered: more than the slopes of one fit ask for."""
-
 
 class Predictor:
     """Predicts readings of one data set; remembers the last few machines it solved.
@@ -120,7 +115,7 @@ class Predictor:
     ) -> tuple[Readings, Readings]:
         key = (noise, *((s.effect.key, *s.values.values()) for s in settings))
         if key not in self._known:
-            if len(self._known) > _MACHINES_KEPT:
+            if len(self._known) > 64:  # more than the slopes of one fit ask for
                 self._known.clear()
             self._known[key] = solve(settings, noise)
         return self._known[key]
@@ -130,7 +125,7 @@ class Predictor:
     ) -> FloatArray:
         """Return slopes that were computed lately: fits of parts of the rows start at one place."""
         if key not in self._slopes:
-            if len(self._slopes) >= _SLOPES_KEPT:
+            if len(self._slopes) >= 8:  # those of the parts of one validation, and a few more
                 del self._slopes[next(iter(self._slopes))]
             self._slopes[key] = compute()
         return self._slopes[key]

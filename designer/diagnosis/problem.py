@@ -12,10 +12,6 @@ from designer.diagnosis.predict import Predictor
 from designer.effects.effect import Readings, Setting
 from designer.model.measured_data import Measured, Noise
 
-_UNHELD, _TIMES_OFF = 1e3, 10.0
-"""Residual of a reading at a pose that the model cannot hold: in units of noise, and so many times
-the reading on top, so that no other error is worse."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
@@ -69,7 +65,8 @@ class Problem:
         residual = np.asarray((read - predicted) / sigma)
         unheld = np.isnan(predicted) & ~np.isnan(read)
         if unheld.any():
-            residual[unheld] = (_UNHELD + _TIMES_OFF * np.abs(read) / sigma)[unheld]
+            # No other error is worse than a pose that the model cannot hold.
+            residual[unheld] = (1e3 + 10.0 * np.abs(read) / sigma)[unheld]
         return residual
 
 

@@ -16,8 +16,6 @@ from designer.model.robot import Poses
 
 _CANDIDATES = 2000
 """Positions to look at: in a cube, neighbours are a twelfth of its side apart."""
-_POSES = 3
-"""One to decide, two in case that it cannot be reached."""
 _APART = 0.15
 """Share of the region between proposals: else all three would be one place."""
 
@@ -75,7 +73,7 @@ def propose(
         apart = [np.abs((positions[k] - positions[c]) / size).max() > _APART for c in chosen]
         if all(apart):
             chosen.append(int(k))
-        if len(chosen) == _POSES:
+        if len(chosen) == 3:  # one to decide, two in case that it cannot be reached
             break
     return Proposal(*names, positions[chosen], separation[chosen])
 

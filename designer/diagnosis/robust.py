@@ -8,8 +8,6 @@ from designer.arrays import BoolArray, FloatArray
 
 MAD_TO_STD = 1.4826
 """Standard deviation of normal noise over the median of its size."""
-_OUTLYING = 5.0
-"""Standard deviations: normal noise gets there once in two million readings."""
 
 
 def spread(values: FloatArray) -> float:
@@ -32,7 +30,8 @@ def without_outliers(residual: FloatArray) -> FloatArray:
     A residual (n_rows, n_channels) in units of noise; a spread below the noise counts as noise.
     """
     apart = np.abs(residual - _median(residual))
-    limit = _OUTLYING * np.maximum(MAD_TO_STD * _median(apart), 1.0)
+    # Normal noise gets there once in two million readings.
+    limit = 5.0 * np.maximum(MAD_TO_STD * _median(apart), 1.0)
     return np.where(apart > limit, np.nan, residual)
 
 

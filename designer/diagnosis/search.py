@@ -18,13 +18,6 @@ RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0
 """For each parameter, in units of the variance that is left: Akaike's information criterion."""
-_MOST_EFFECTS = 5
-"""More that a machine lacks at once are not to be told apart by one log."""
-_ALWAYS_VALIDATED = 3
-"""Candidates of a round that are cross-validated whatever comes of it: a report shows them."""
-_EXCHANGED = 8
-"""Best candidates of a round that may take the place of a member: what is worse alone is seldom
-better there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,15 +113,6 @@ def _simplest(trials: Sequence[Trial]) -> Trial | None:
     return min(near, key=lambda t: len(t.effect.parameters), default=None)
 
 
-def _half_as_good(effect: Effect, steps: Sequence[Step]) -> set[str]:
-    """Return what predicted unseen rows at least half as well when an effect was added."""
-    added = [step for step in steps if step.added is not None and step.added.key == effect.key]
-    if not added:
-        return set()
-    gains = {t.effect.key: t.heldout_gain for t in added[-1].trials}
-    return {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
-
-
 def _chance(gain: float, effect: Effect, looks: int) -> float:
     """Return how probable a gain is by chance in any of so many candidates."""
     from scipy.stats import chi2
@@ -184,10 +168,12 @@ class Searcher:
             best = None if is_over else _simplest(trials)
             if trials:
                 steps.append(Step(tuple(trials), best.effect if best else None, not is_over))
-            if best is None or len(found) == _MOST_EFFECTS:
+            # More that a machine lacks at once are not to be told apart by one log.
+            if best is None or len(found) == 5:
                 break
             self._progress(f"found {best.effect.key}")
-            outsiders = [t.effect for t in trials[:_EXCHANGED]]
+            # What is worse alone is seldom better in the place of a member.
+            outsiders = [t.effect for t in trials[:8]]
             found = self._exchanged([*found, best.effect], best.fit, outsiders)
             found = self._pruned(found)
             present = self.fit(found, best.fit)
@@ -212,13 +198,28 @@ class Searcher:
     ) -> list[Trial]:
         """Try every other candidate in addition, best first."""
         others = self._others(found)
-        tried = [
-            self._trial(found, present, effect, len(others))
-            for effect in self._progress.each(part, others)
-        ]
+        tried: list[Trial] = []
+        for effect in self._progress.each(part, others):
+            model = self.fit([*found, effect], present, anew=True)
+            gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
+            chance = _chance(gain, effect, len(others))
+            tried.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
         variance = _best_variance(tried)
         tried.sort(key=lambda trial: -trial.score(variance))
-        return self._validated_best(found, tried)
+        answer: list[Trial] = []
+        for trial in tried:  # cross-validated from the best down, until one earns its place
+            # Three are, whatever comes of it: a report shows them.
+            settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
+            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
+                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
+                return answer + tried[len(answer) :]
+            if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
+                answer.append(trial)
+                continue
+            gain = self._unseen_loss(found, trial.fit)
+            gain -= self._unseen_loss([*found, trial.effect], trial.fit)
+            answer.append(replace(trial, heldout_gain=gain / trial.fit.variance))
+        return answer
 
     def rivals(
         self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step] = ()
@@ -232,10 +233,16 @@ class Searcher:
         """
         rest = [e for e in found if e.key != effect.key]
         scale = present.variance * present.inflation[effect.key]
-        good = _half_as_good(effect, steps)
+        added = [step for step in steps if step.added is not None and step.added.key == effect.key]
+        gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
+        good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         answer = []
         for other in self._progress.each(f"rivals of {effect.key}", self._others(found)):
-            swapped = self._in_place([*rest, other], present, other, steps)
+            trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
+            fits = [self.fit([*rest, other], present, anew=True)]
+            last = dict.fromkeys([*trials[:1], *trials[-1:]])
+            fits += [self.fit([*rest, other], near) for near in last]
+            swapped = min(fits, key=lambda one: one.loss)
             if not swapped.is_plausible(other):
                 continue
             gaps = (
@@ -253,39 +260,6 @@ class Searcher:
     def _others(self, found: Sequence[Effect]) -> list[Effect]:
         taken = {effect.key for effect in (*found, *self._given)}
         return [effect for effect in self._candidates if effect.key not in taken]
-
-    def _in_place(
-        self, effects: Sequence[Effect], present: Fit, other: Effect, steps: Sequence[Step]
-    ) -> Fit:
-        """Return the best fit from the present model, and the first and last trial of ``other``."""
-        trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
-        fits = [self.fit(effects, present, anew=True)]
-        fits += [self.fit(effects, near) for near in dict.fromkeys([*trials[:1], *trials[-1:]])]
-        return min(fits, key=lambda one: one.loss)
-
-    def _trial(self, found: Sequence[Effect], present: Fit, effect: Effect, n_others: int) -> Trial:
-        model = self.fit([*found, effect], present, anew=True)
-        gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
-        return Trial(effect, model, gain, _chance(gain, effect, n_others), float("nan"))
-
-    def _validated_best(self, found: Sequence[Effect], tried: list[Trial]) -> list[Trial]:
-        """Cross-validate from the best down, the first few and then until one earns its place."""
-        answer: list[Trial] = []
-        for trial in tried:
-            settled = len(answer) >= _ALWAYS_VALIDATED and any(t.may_be_added for t in answer)
-            if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
-                self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
-                return answer + tried[len(answer) :]
-            answer.append(trial if settled else self._validated(found, trial))
-        return answer
-
-    def _validated(self, found: Sequence[Effect], trial: Trial) -> Trial:
-        """Cross-validate a candidate that may be significant; the others need no proof."""
-        if trial.chance >= SIGNIFICANCE:
-            return trial
-        gain = self._unseen_loss(found, trial.fit)
-        gain -= self._unseen_loss([*found, trial.effect], trial.fit)
-        return replace(trial, heldout_gain=gain / trial.fit.variance)
 
     def _unseen_loss(self, found: Sequence[Effect], near: Fit) -> float:
         """Return the loss over each part of the rows, fitted to the other parts."""

@@ -19,10 +19,6 @@ ORDER = ("time_s", "row")
 """Covariates that tell the order of the rows."""
 _DRAWS = 999
 """As many as `SIGNIFICANCE` asks for to be counted."""
-_CUT = 4.0
-"""Standard deviations at which channels are clipped, so that no outlier makes structure."""
-_LARGE = 1.3
-"""Times the noise beyond which what lasts is a drift: by less, a declared noise may be wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +135,12 @@ def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArr
         for k, axis in enumerate("xyz"):
             found[f"wind_{axis}_m_per_s"] = measured.wind_m_per_s[:, k]
     found.update(measured.covariates)
-    return {name: column for name, column in found.items() if _varies(column)}
+    return {
+        name: column
+        for name, column in found.items()
+        if np.isfinite(column).any()
+        and np.nanstd(column) > 1e-12 * (1.0 + np.abs(np.nanmean(column)))
+    }
 
 
 def find_structure(
@@ -174,7 +175,8 @@ def find_structure(
         observed, [_largest_share(bases, one).max() for one in draws(channels, lasts, rng)]
     )
     excess = float(np.mean(channels**2))
-    if settled and lasts.share and excess > _LARGE**2:
+    # What lasts at such a multiple of the noise is a drift; by less, a declared noise may be wrong.
+    if settled and lasts.share and excess > 1.3**2:
         best = [_largest_share(bases, one).max() for one in draws(channels, INDEPENDENT, rng)]
         of_order = np.isin(list(covariates), ORDER)
         chances = np.where(of_order, chances_of(observed, best), chances)
@@ -227,7 +229,8 @@ def channels_of(residual: FloatArray) -> FloatArray:
             continue
         known = kind[:, ~np.isnan(kind).all(axis=0)]
         centred = known - np.nanmedian(known, axis=0)
-        limit = _CUT * np.maximum(MAD_TO_STD * np.nanmedian(np.abs(centred), axis=0), 1.0)
+        # So that no outlier makes structure.
+        limit = 4.0 * np.maximum(MAD_TO_STD * np.nanmedian(np.abs(centred), axis=0), 1.0)
         filled = np.clip(np.nan_to_num(centred, nan=0.0), -limit, limit)
         filled = filled - filled.mean(axis=0)
         mean = filled.sum(axis=1, keepdims=True) / np.sqrt(n)
@@ -259,8 +262,3 @@ def _largest_share(bases: FloatArray, channels: FloatArray) -> FloatArray:
     parts = bases.transpose(0, 2, 1).reshape(-1, rows) @ channels
     explained = np.sum(parts.reshape(count, width, -1) ** 2, axis=1)
     return np.asarray((explained / np.sum(channels**2, axis=0)).max(axis=1))
-
-
-def _varies(column: FloatArray) -> bool:
-    known = column[~np.isnan(column)]
-    return bool(known.size and np.std(known) > 1e-12 * (1.0 + np.abs(np.mean(known))))

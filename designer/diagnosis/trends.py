@@ -11,9 +11,6 @@ from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.robust import rms, spread, without_outliers
 
-_CLIP = 4.0
-"""Standard deviations beyond which a reading counts as one at this distance: noise reaches it once
-in 16 000 readings."""
 _MOST_ROWS = 6
 """As many as one looks up in a log."""
 
@@ -96,7 +93,8 @@ def _explained(column: FloatArray, covariate: FloatArray) -> float:
     known = np.isfinite(column) & np.isfinite(covariate)
     if known.sum() < 4:  # a parabola goes through three of anything
         return -1.0
-    middle, limit = np.nanmedian(column), _CLIP * spread(column)
+    # A reading farther off counts as one at this distance: noise reaches it once in 16 000.
+    middle, limit = np.nanmedian(column), 4.0 * spread(column)
     clipped = np.where(known, np.clip(column, middle - limit, middle + limit), np.nan)
     y = clipped[known] - clipped[known].mean()
     left = clipped[known] - _parabola(clipped, covariate)[known]

@@ -166,13 +166,23 @@ class _Composer:
         self._lines = text.splitlines()
         documents = 0
         try:
-            for event in _events(text):
+            loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is not everywhere
+            events: Iterator[yaml.Event] = yaml.parse(text, Loader=loader)
+            for event in events:
                 documents += isinstance(event, yaml.DocumentStartEvent)
                 if documents > 1:
                     _refuse(self._name, _line(event), "a second document starts here", "only one")
                 self._take(event)
         except yaml.YAMLError as error:
-            self._refuse_syntax(error)
+            mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+            reason = (
+                getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
+            )
+            line = None if mark is None else mark.line + 1
+            text = "" if line is None else "".join(self._lines[line - 1 : line])
+            if "\t" in text[: len(text) - len(text.lstrip())]:
+                _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
+            _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
         is_blank = self._root is not None and self._root.data() is None
         return None if is_blank else self._root
 
@@ -183,14 +193,24 @@ class _Composer:
             self._check_tag(event)
             self._add(Node(_line(event), event.value, event.implicit[0]), event.anchor)
         elif isinstance(event, yaml.AliasEvent):
-            self._add(self._aliased(event))
+            anchor = str(event.anchor)
+            alias, line = f"the alias *{printable(anchor)}", _line(event)
+            if any(opened.anchor == anchor for opened in self._open):
+                _refuse(self._name, line, f"{alias} contains itself")
+            if anchor not in self._anchors:
+                _refuse(self._name, line, f"{alias} has no anchor before it")
+            self._add(self._anchors[anchor])
         elif isinstance(event, yaml.CollectionStartEvent):
             self._check_tag(event)
             self._start(event, isinstance(event, yaml.MappingStartEvent))
         elif isinstance(event, yaml.CollectionEndEvent):
             opened = self._open.pop()
             node = opened.close()
-            self._check_extent(node)
+            if node.size > MOST_VALUES:
+                problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
+                _refuse(self._name, node.line, problem)
+            if node.height > DEEPEST_NESTING:
+                self._refuse_nesting(node.line)
             self._add(node, opened.anchor)
 
     def _start(self, event: yaml.CollectionStartEvent, is_mapping: bool) -> None:
@@ -223,22 +243,6 @@ class _Composer:
             parent.fields[parent.key] = replace(node, line=parent.key_line)
             parent.key = None
 
-    def _aliased(self, event: yaml.AliasEvent) -> Node:
-        anchor = str(event.anchor)
-        alias, line = f"the alias *{printable(anchor)}", _line(event)
-        if any(opened.anchor == anchor for opened in self._open):
-            _refuse(self._name, line, f"{alias} contains itself")
-        if anchor not in self._anchors:
-            _refuse(self._name, line, f"{alias} has no anchor before it")
-        return self._anchors[anchor]
-
-    def _check_extent(self, node: Node) -> None:
-        if node.size > MOST_VALUES:
-            problem = f"the aliases or lists here expand to more than {MOST_VALUES} values"
-            _refuse(self._name, node.line, problem)
-        if node.height > DEEPEST_NESTING:
-            self._refuse_nesting(node.line)
-
     def _refuse_nesting(self, line: int) -> NoReturn:
         problem = f"values are nested more than {DEEPEST_NESTING} levels deep"
         _refuse(self._name, line, problem)
@@ -247,23 +251,6 @@ class _Composer:
         if event.tag not in (None, "!"):
             shown = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
             _refuse(self._name, _line(event), f"the tag '{shown}' is not supported", "plain YAML")
-
-    def _refuse_syntax(self, error: yaml.YAMLError) -> NoReturn:
-        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-        reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
-        line = None if mark is None else mark.line + 1
-        text = "" if line is None else "".join(self._lines[line - 1 : line])
-        if "\t" in text[: len(text) - len(text.lstrip())]:
-            _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
-        _refuse(self._name, line, f"this is not valid YAML: {printable(str(reason))}")
-
-
-def _events(text: str) -> Iterator[yaml.Event]:
-    import yaml
-
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is not everywhere
-    events: Iterator[yaml.Event] = yaml.parse(text, Loader=loader)
-    return events
 
 
 def _line(event: yaml.Event) -> int:

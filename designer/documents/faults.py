@@ -29,7 +29,9 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
     misspelt. After the first hundred the rest are left out.
     """
     details = error.errors(include_url=False)[:MOST_FAULTS]
-    misspelt = set(_misspelt_fields(details, schema))
+    unknown = [one["loc"] for one in details if one["type"] in _UNKNOWN]
+    meant = [(loc, _nearest_field(loc, schema)) for loc in unknown]
+    misspelt = {(*loc[:-1], nearest) for loc, nearest in meant if nearest is not None}
     return [
         document.fault(_document_path(one, document), *_words(one, schema))
         for one in details
@@ -81,15 +83,6 @@ def _sections_in(kind: Any) -> Iterator[AnySection]:
             yield from _sections_in(part)
 
 
-def _misspelt_fields(
-    details: Sequence[ErrorDetails], schema: AnySection
-) -> Iterator[tuple[Key, ...]]:
-    for one in details:
-        nearest = _nearest_field(one["loc"], schema) if one["type"] in _UNKNOWN else None
-        if nearest is not None:
-            yield (*one["loc"][:-1], nearest)
-
-
 def _nearest_field(loc: Sequence[Key], schema: AnySection) -> str | None:
     names = difflib.get_close_matches(str(loc[-1]), known_fields(schema, loc[:-1]), n=1)
     return names[0] if names else None
@@ -118,7 +111,10 @@ def _words(detail: ErrorDetails, schema: AnySection) -> tuple[str, str]:
     if detail["type"] == "missing":
         return "is missing", known_fields(schema, loc[:-1])[str(loc[-1])].description or ""
     if detail["type"] in _UNKNOWN:
-        return _unknown_field(loc, schema)
+        nearest = _nearest_field(loc, schema)
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        expected = _one_of(known_fields(schema, loc[:-1]), "one of ") + hint
+        return f"unknown field '{printable(str(loc[-1]))}'", expected
     needed = _one_of(known_fields(schema, loc), "a mapping with ")
     verdict, expected = {
         "literal_error": ("is not known", context.get("expected", "")),
@@ -128,13 +124,6 @@ def _words(detail: ErrorDetails, schema: AnySection) -> tuple[str, str]:
         "dict_type": ("is not a mapping", "a mapping such as {}"),
     }.get(detail["type"], ("is not valid here", ""))
     return f"{describe(detail['input'])} {verdict}", expected
-
-
-def _unknown_field(loc: Sequence[Key], schema: AnySection) -> tuple[str, str]:
-    nearest = _nearest_field(loc, schema)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
-    expected = _one_of(known_fields(schema, loc[:-1]), "one of ") + hint
-    return f"unknown field '{printable(str(loc[-1]))}'", expected
 
 
 def _one_of(names: Collection[str], lead: str) -> str:

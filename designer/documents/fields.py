@@ -286,7 +286,6 @@ def bounded(name: str) -> QuantityField:
 
 _INTERVAL = "[lower, upper]"
 _DIRECTION = "a direction such as [0, 0, -1]"
-_POINT = "three lengths [x, y, z]"
 
 Text = Annotated[str, BeforeValidator(_text)]
 FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
@@ -329,7 +328,7 @@ Turn = Annotated[
     AfterValidator(partial(_rising, unit="rad")),
 ]
 Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]
-Point = Annotated[tuple[Length, Length, Length], list_of(3, 3, _POINT)]
+Point = Annotated[tuple[Length, Length, Length], list_of(3, 3, "three lengths [x, y, z]")]
 Rotation = Annotated[tuple[Angle, Angle, Angle], list_of(3, 3, "three angles [rx, ry, rz]")]
 Forces = Annotated[tuple[ForcePart, ForcePart, ForcePart], list_of(3, 3, "three forces [x, y, z]")]
 Moments = Annotated[

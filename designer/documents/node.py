@@ -50,7 +50,13 @@ class Node:
             return {key: child.data() for key, child in self.content.items()}
         if isinstance(self.content, tuple):
             return [child.data() for child in self.content]
-        return _scalar(self.content) if self.is_plain else self.content
+        if not self.is_plain:
+            return self.content
+        if self.content in _SPECIAL:
+            return _SPECIAL[self.content]
+        if _WHOLE.fullmatch(self.content):
+            return int(self.content)
+        return float(self.content) if _DECIMAL.fullmatch(self.content) else self.content
 
     def as_written(self) -> str:
         """Return the value on one line, numbers and units as the file has them."""
@@ -117,13 +123,3 @@ def printable(name: str) -> str:
     """Return a field name cut short, with control characters replaced."""
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)
     return shown if len(shown) <= 60 else shown[:60] + "…"
-
-
-def _scalar(text: str) -> Data:
-    if text in _SPECIAL:
-        return _SPECIAL[text]
-    if _WHOLE.fullmatch(text):
-        return int(text)
-    if _DECIMAL.fullmatch(text):
-        return float(text)
-    return text

@@ -9,18 +9,15 @@ from designer.effects.effect import Effect, Parameter, Size, Values
 from designer.model.machine import Machine
 from designer.units import FLEXURAL_RIGIDITY
 
-_LIGHTEST_KG_PER_M3 = 1000.0
-"""No rope is of a lighter material."""
-
 
 def _change(machine: Machine, values: Values) -> Machine:
     return replace(machine, flexural_rigidity_N_m2=values["flexural_rigidity_N_m2"])
 
 
 def _size(machine: Machine) -> Size:
-    """No rope is stiffer than a solid bar, EA · A/(4π), of the lightest material."""
+    """No rope is stiffer than a solid bar, EA · A/(4π), of the lightest material, 1000 kg/m³."""
     cable = machine.cable
-    area_m2 = cable.linear_density_kg_per_m / _LIGHTEST_KG_PER_M3
+    area_m2 = cable.linear_density_kg_per_m / 1000.0
     stiffest = cable.axial_stiffness_N * area_m2 / (4.0 * math.pi)
     return Size(10.0, bounds=(0.0, 1e6), plausible=(0.0, stiffest))
 

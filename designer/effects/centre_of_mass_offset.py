@@ -21,10 +21,6 @@ def _change(machine: Machine, values: Values) -> Machine:
     return replace(machine, robot=replace(machine.robot, platform=moved))
 
 
-def _has_body(machine: Machine) -> bool:
-    return not machine.robot.is_point_mass
-
-
 EFFECT = Effect(
     id="centre_of_mass_offset",
     summary="the centre of mass is not where the drawing has it",
@@ -35,6 +31,6 @@ EFFECT = Effect(
     ),
     on_machine=_change,
     needs=frozenset({"rotation"}),
-    can_have=_has_body,
+    can_have=lambda machine: not machine.robot.is_point_mass,
     reaches_design=True,
 )

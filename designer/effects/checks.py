@@ -18,7 +18,7 @@ RESERVED_IDS = frozenset({ALL_ANCHORS, POSES, "cable"})
 """Words of the config that stand where an id or a parameter may stand."""
 
 _ID = re.compile(r"[a-z][a-z0-9_]{0,59}")
-_PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,59}")
+
 _CABLE = Cable(0.01, 0.4, 6e6, 1e4)
 _CORNERS = [[0, 0, 9], [9, 0, 9], [9, 7, 9], [0, 7, 9], [5, 0, 9], [0, 4, 9]]
 _BODY = [[0.5, 0, 0], [0, 0.5, 0], [-0.5, 0, 0], [0, -0.5, 0], [0.4, 0, 0.5], [0, 0.4, 0.5]]
@@ -72,7 +72,7 @@ def _flaws_of_parameter(parameter: object) -> Iterator[str]:
         yield f"a parameter is {type(parameter).__name__}, not a Parameter"
         return
     plain = parameter.name.replace("{cable}", "1")
-    if not _PARAMETER.fullmatch(plain) or plain in RESERVED_IDS:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,59}", plain) or plain in RESERVED_IDS:
         yield f"{parameter.name!r} is no parameter name (expected letters, digits or '_')"
     if not isinstance(parameter.dimension, Dimension):
         yield f"the dimension of {parameter.name!r} is no Dimension"

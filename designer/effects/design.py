@@ -19,7 +19,6 @@ _PROBES_M = (1e-3, 7e-3, 0.05, 0.35)
 """Diameters at which a family is looked at, to tell whether an effect leaves it one."""
 _SAME = 1e-9
 """Relative: beyond rounding, below what any effect does."""
-_ANY_FAMILY = Material(6000.0, 1e11, 2e8)
 
 
 def _unchanged(cable: Cable) -> Cable:
@@ -107,7 +106,8 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
         changed = replace(machine, cable=cable)
         return as_built(changed, settings_of(changed))
 
-    thin, thick = (built(_ANY_FAMILY.cable(d)).robot for d in (_PROBES_M[0], _PROBES_M[-1]))
+    any_family = Material(6000.0, 1e11, 2e8)
+    thin, thick = (built(any_family.cable(d)).robot for d in (_PROBES_M[0], _PROBES_M[-1]))
     if not _is_same(thin, thick):
         names = sorted({s.effect.id for s in settings_of(machine) if s.effect.on_machine})
         raise EffectError(

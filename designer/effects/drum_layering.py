@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.arrays import FloatArray
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values, frame_size_m
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
@@ -14,22 +13,17 @@ from designer.units import LENGTH, PER_LENGTH
 
 
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
-    n = readings.length_m.shape[1]
-    reference = np.array([values[f"reference_{k}_m"] for k in range(1, n + 1)])
-    counted = _counted(readings.length_m, values["radius_gain_per_m"], reference)
-    return replace(readings, length_m=counted)
-
-
-def _counted(length_m: FloatArray, gain: float, reference_m: FloatArray) -> FloatArray:
-    """Return what a winch counts that is right at a reference length.
+    """Return what winches count that are right at a reference length.
 
     A turn pays out 1 + gain · (reference - length) times what is counted, so the counted length
     is the integral of its inverse.
     """
-    wound = reference_m - length_m
+    n, gain = readings.length_m.shape[1], values["radius_gain_per_m"]
     if abs(gain) < 1e-12:
-        return length_m
-    return np.asarray(reference_m - np.log(np.maximum(1.0 + gain * wound, 1e-6)) / gain)
+        return readings
+    reference_m = np.array([values[f"reference_{k}_m"] for k in range(1, n + 1)])
+    paid_out = np.maximum(1.0 + gain * (reference_m - readings.length_m), 1e-6)
+    return replace(readings, length_m=reference_m - np.log(paid_out) / gain)
 
 
 def _gain(machine: Machine) -> Size:

@@ -21,11 +21,8 @@ from designer.grades.proportions import proportion_flaws
 
 _ID = re.compile(r"[a-z0-9][a-z0-9._-]{0,79}")
 _LONGEST_TEXT = 1000
-_MODULUS_PA = (1e8, 2.5e11)  # a wet nylon rope; a single steel wire has 2.1e11
 _EA_OVER_MBL = (0.5, 1000.0)
-_CURRENCY = re.compile(r"[A-Z]{3}")
-_LARGEST_AREA_FACTOR = math.pi / 4.0
-_TEXTS = ("manufacturer", "product", "construction", "core", "finish")
+
 _FIGURES = {
     "diameter": ("diameter_m", BOUNDS["rope diameter"]),
     "minimum_breaking_load": ("minimum_breaking_load_N", BOUNDS["breaking load"]),
@@ -37,12 +34,13 @@ _FIGURES = {
 
 def find_flaws(grade: Grade) -> list[Flaw]:
     """Return everything that is wrong with a grade, in the order of its fields."""
-    flaws = [flaw for check in _CHECKS for flaw in check(grade)]
+    checks = (_identity, _choices, _elasticity, _extras, _figures)
+    flaws = [flaw for check in checks for flaw in check(grade)]
     return flaws or [*_areas(grade)] or [*proportion_flaws(grade)]
 
 
 def _identity(grade: Grade) -> Iterator[Flaw]:
-    for name in _TEXTS:
+    for name in ("manufacturer", "product", "construction", "core", "finish"):
         if not isinstance(getattr(grade, name), str):
             yield Flaw((name,), f"is {type(getattr(grade, name)).__name__}", "a text")
     if not _ID.fullmatch(grade.id):
@@ -94,7 +92,8 @@ def _elasticity(grade: Grade) -> Iterator[Flaw]:
             problem = f"is {grade.elasticity.uncertainty:g}"
             yield Flaw((name, "uncertainty"), problem, "a fraction from 0 to below 1")
     modulus = grade.modulus
-    if modulus is not None and not within(modulus.value_Pa, _MODULUS_PA):
+    # From a wet nylon rope on; a single steel wire has 2.1e11.
+    if modulus is not None and not within(modulus.value_Pa, (1e8, 2.5e11)):
         problem = f"{modulus.value_Pa / 1e9:.4g} GPa is no rope's"
         yield Flaw(("modulus", "value"), problem, "0.1 to 250 GPa")
     if grade.stiffness is None:
@@ -121,7 +120,7 @@ def _extras(grade: Grade) -> Iterator[Flaw]:
     if expansion is not None and not abs(expansion.coefficient_per_K) < 1e-3:
         problem = f"{expansion.coefficient_per_K:g} /K is no rope's"
         yield Flaw(("thermal_expansion", "value"), problem, "less than 1e-3 /K")
-    if factor is not None and not 0.0 < factor.value <= _LARGEST_AREA_FACTOR:
+    if factor is not None and not 0.0 < factor.value <= math.pi / 4.0:
         problem = f"{factor.value:g} is no share of d²"
         yield Flaw(("area_factor", "value"), problem, "more than 0, at most pi/4")
     limits = grade.limits
@@ -132,10 +131,7 @@ def _extras(grade: Grade) -> Iterator[Flaw]:
         if not -273.15 <= lowest < highest <= 2000.0:
             problem = f"is {lowest:g} to {highest:g}"
             yield Flaw(("limits", "temperature_C"), problem, "[lowest, highest] in °C")
-
-
-def _prices(grade: Grade) -> Iterator[Flaw]:
-    if grade.currency is not None and not _CURRENCY.fullmatch(grade.currency):
+    if grade.currency is not None and not re.fullmatch("[A-Z]{3}", grade.currency):
         yield Flaw(("currency",), f"{grade.currency!r} is no currency", "such as 'EUR'")
     for index, size in enumerate(grade.sizes):
         if size.price_per_m is not None and grade.currency is None:
@@ -160,9 +156,6 @@ def _figures(grade: Grade) -> Iterator[Flaw]:
                     ends = f"{1e3 * bound.least:g} mm to {1e3 * bound.most:g} mm"
                 problem = f"{value:g}{unit} is no rope's"
                 yield Flaw(("sizes", index, name), problem, f"{ends}; check the unit")
-
-
-def _order(grade: Grade) -> Iterator[Flaw]:
     seen: set[str] = set()
     for index, size in enumerate(grade.sizes):
         if size.id in seen:
@@ -185,14 +178,3 @@ def _areas(grade: Grade) -> Iterator[Flaw]:
         if not 0.2 <= share <= 1.0:
             problem = f"is {share:.3g} of the nominal circle"
             yield Flaw(("sizes", index, "metallic_area"), problem, "0.2 to 1 of it; check the unit")
-
-
-_CHECKS = (
-    _identity,
-    _choices,
-    _elasticity,
-    _extras,
-    _prices,
-    _figures,
-    _order,
-)

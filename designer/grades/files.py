@@ -22,7 +22,6 @@ from designer.grades.parts import Units
 
 MOST_FILES = 1000
 MOST_ENTRIES = 20_000
-_SUFFIXES = (".yaml", ".yml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +144,7 @@ def _entries(folder: Path) -> Iterator[Path]:
 
 def _is_grade_file(path: Path) -> bool:
     """Tell whether to read this; a link that leads nowhere is read, so that it is reported."""
-    if path.suffix.lower() not in _SUFFIXES or path.name.startswith("."):
+    if path.suffix.lower() not in (".yaml", ".yml") or path.name.startswith("."):
         return False
     try:
         return path.is_file() or not path.exists()

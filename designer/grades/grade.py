@@ -59,7 +59,6 @@ MOST_SIZES = 500
 TYPICAL_LOAD_FRACTION = 0.2
 """Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
 
-_SINGLE_STRAND = re.compile(r"1\s*[x×]\s*\d")
 
 TRUST_MEANING = {
     "A": "the maker's own or a standard's own table",
@@ -246,7 +245,7 @@ class Grade(GradeSheet):
             return (
                 "computed from the factors of a standard, no product; taken where a study names it"
             )
-        if _SINGLE_STRAND.match(self.construction):
+        if re.match(r"1\s*[x×]\s*\d", self.construction):
             return "a single strand, made for stays and not for drums; taken where a study names it"
         return None
 

@@ -41,7 +41,6 @@ _METALLIC_MODULUS_PA = {
     "steel": ((4.0e10, 1.45e11), (4.0e10, 2.1e11)),
     "stainless steel": ((3.5e10, 1.30e11), (3.5e10, 2.0e11)),
 }
-_STRAND = re.compile(r"\b1x\d|spiral|locked|\brod\b|\bsolid\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +67,6 @@ def _fibre(density_kg_per_m3: float, strength_Pa: float, modulus_over_strength: 
 
 
 _WIRE = Bounds((3800.0, 7000.0), (2e8, 2.5e9), (15.0, 400.0), outlier=0.1)
-_WIRE_STRAND = replace(_WIRE, density_kg_per_m3=(5000.0, 7800.0))
-_ANY = Bounds((200.0, 9000.0), (2e7, 3e9), (0.5, 1000.0), outlier=0.25)
 
 # Density, strength and modulus over strength of yarn: Tension Technology International,
 # "Synthetic fibre yarn properties", table 1; of two fibres with one name the stronger. The ratio
@@ -91,8 +88,11 @@ BOUNDS = {
 
 def bounds_of(grade: Grade) -> Bounds:
     """Return the bounds of the grade's material; wide ones where it is not known."""
-    bounds = BOUNDS.get(grade.material or "", _ANY)
-    return _WIRE_STRAND if bounds is _WIRE and _is_strand(grade) else bounds
+    wide = Bounds((200.0, 9000.0), (2e7, 3e9), (0.5, 1000.0), outlier=0.25)
+    bounds = BOUNDS.get(grade.material or "", wide)
+    if bounds is _WIRE and _is_strand(grade):
+        return replace(_WIRE, density_kg_per_m3=(5000.0, 7800.0))
+    return bounds
 
 
 def metallic_modulus_bounds_Pa(grade: Grade) -> tuple[float, float] | None:
@@ -105,4 +105,5 @@ def metallic_modulus_bounds_Pa(grade: Grade) -> tuple[float, float] | None:
 
 
 def _is_strand(grade: Grade) -> bool:
-    return _STRAND.search(grade.construction) is not None
+    strand = r"\b1x\d|spiral|locked|\brod\b|\bsolid\b"
+    return re.search(strand, grade.construction, re.IGNORECASE) is not None

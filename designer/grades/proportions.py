@@ -25,10 +25,8 @@ LARGEST_FACTOR_OF_DOUBT = 1.6
 """A doubtful size may be this much stronger or heavier for its d² than the grade's median."""
 
 _NEIGHBOURS = 2
-_AGGREGATE_MARGIN = 1.05  # an area or a factor of a table is rounded
 _LEAST_OF_SOLID = 0.5  # ropes of EN 12385-4 have 0.62 to 0.79
 _MASS_OVER_AREA_KG_PER_M3 = (7500.0, 12000.0)  # of a strand about 8000, of a fibre core up to 9900
-_WIRE_GRADE = re.compile(r"(\d{3,4})\s*(?:N/mm|MPa)")
 
 
 def proportion_flaws(grade: Grade) -> Iterator[Flaw]:
@@ -108,13 +106,14 @@ def _around(values: Sequence[float], left: Sequence[int], place: int) -> float:
 
 def _strength(grade: Grade) -> Iterator[Flaw]:
     """A rope is weaker than all of its wires pulled straight, R·A, but not by half."""
-    wire_grade = _WIRE_GRADE.match(grade.wire_grade or "")
+    wire_grade = re.match(r"(\d{3,4})\s*(?:N/mm|MPa)", grade.wire_grade or "")
     if wire_grade is None:
         return
     strength_Pa = 1e6 * float(wire_grade[1])
     for index, size in enumerate(grade.sizes):
         aggregate_N = strength_Pa * _metal_m2(grade, size, STEEL_DENSITY_KG_PER_M3)
-        if size.minimum_breaking_load_N > _AGGREGATE_MARGIN * aggregate_N:
+        # An area or a factor of a table is rounded.
+        if size.minimum_breaking_load_N > 1.05 * aggregate_N:
             problem = f"is {size.minimum_breaking_load_N / 1e3:.4g} kN"
             expected = (
                 f"less than metallic area times wire grade, {aggregate_N / 1e3:.4g} kN; check "
@@ -149,7 +148,19 @@ def _metallic_areas(grade: Grade) -> Iterator[Flaw]:
 def _elasticity(grade: Grade) -> Iterator[Flaw]:
     metallic = metallic_modulus_bounds_Pa(grade)
     if metallic is not None:
-        yield from _metallic_modulus(grade, metallic)
+        # What a modulus on the nominal circle is on the metal, and whether metal can be that.
+        value_Pa = median(
+            grade.axial_stiffness_N(size)
+            / _metal_m2(grade, size, MASS_OVER_METALLIC_AREA_KG_PER_M3)
+            for size in grade.sizes
+        )
+        if not within(value_Pa, metallic):
+            problem = f"is {value_Pa / 1e9:.0f} GPa on the metallic area"
+            expected = (
+                f"{metallic[0] / 1e9:.0f} to {metallic[1] / 1e9:.0f} GPa for {grade.material}, "
+                f"{grade.construction}; check value and reference_area"
+            )
+            yield Flaw(("modulus", "value") if grade.modulus else ("stiffness",), problem, expected)
     fit, bounds = grade.fit(), bounds_of(grade).ea_over_breaking_load
     ratio = fit.youngs_modulus_Pa / fit.breaking_stress_Pa
     if not within(ratio, bounds):
@@ -157,18 +168,3 @@ def _elasticity(grade: Grade) -> Iterator[Flaw]:
         whose = grade.material or "a rope"
         field = "modulus" if grade.modulus else "stiffness"
         yield Flaw((field,), problem, f"{bounds[0]:.3g} to {bounds[1]:.3g} for {whose}")
-
-
-def _metallic_modulus(grade: Grade, bounds: tuple[float, float]) -> Iterator[Flaw]:
-    """What a modulus on the nominal circle is on the metal, and whether metal can be that."""
-    value_Pa = median(
-        grade.axial_stiffness_N(size) / _metal_m2(grade, size, MASS_OVER_METALLIC_AREA_KG_PER_M3)
-        for size in grade.sizes
-    )
-    if not within(value_Pa, bounds):
-        problem = f"is {value_Pa / 1e9:.0f} GPa on the metallic area"
-        expected = (
-            f"{bounds[0] / 1e9:.0f} to {bounds[1] / 1e9:.0f} GPa for {grade.material}, "
-            f"{grade.construction}; check value and reference_area"
-        )
-        yield Flaw(("modulus", "value") if grade.modulus else ("stiffness",), problem, expected)

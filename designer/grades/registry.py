@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 MOST_PROBLEMS_OF_A_SOURCE = 20
 _MOST_NAMED = 12
-_OUR_PLUGINS = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}
-"""How the ids of the example plugins begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +96,8 @@ class Catalogue:
     def explain_unknown(self, grade_id: str) -> tuple[str, str]:
         """Return what is wrong with an id that no grade has, and what was expected."""
         shown = one_line(grade_id)
-        plugin = next((p for start, p in _OUR_PLUGINS.items() if grade_id.startswith(start)), None)
+        ours = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}  # as their ids begin
+        plugin = next((p for start, p in ours.items() if grade_id.startswith(start)), None)
         if plugin is not None:
             why = "is not installed" if self.with_plugins else "--no-plugins leaves out"
             problem = f"the grade {shown!r} is of the plugin {plugin}, which {why}"

@@ -151,9 +151,6 @@ _SHEAVES = {
     "8x19": SheaveRatio(41, 27, f"for 8x19 Seale: {_RATIOS}"),
     "18x7": SheaveRatio(51, 34, f"for 19x7: {_RATIOS}"),
 }
-_EXPANSION = ThermalExpansion(
-    12.5e-6, "borrowed", "Metalico, data sheet of galvanised messenger strand"
-)
 
 
 def standard_rope(
@@ -197,7 +194,9 @@ def standard_rope(
         standard="EN 12385-4",
         wire_grade=f"{wire_grade_MPa} N/mm2",
         area_factor=AreaFactor(factors.metallic_area, "printed", "factor C of EN 12385-4"),
-        thermal_expansion=_EXPANSION,
+        thermal_expansion=ThermalExpansion(
+            12.5e-6, "borrowed", "Metalico, data sheet of galvanised messenger strand"
+        ),
         sheave_ratio=_SHEAVES.get(construction),
         computed=(
             ComputedFigure("minimum_breaking_load", f"K d^2 Rr, K = {factors.breaking_force:.3f}"),

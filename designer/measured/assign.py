@@ -79,9 +79,19 @@ def assign(table: Table, study: Study, measurements: Measurements) -> Assigned:
     for column in named.values():
         if column.name not in mapped:
             _assign_by_name(found, column, study)
-    _set_half_a_wind_aside(found)
+    # Take a wind without its horizontal components as covariates.
+    present = [name for name in WIND if name in found.ours]
+    missing = [name for name in WIND[:2] if name not in found.ours]
+    if present and missing:
+        found.notes.append(f"the wind is not used as such: there is no {' and no '.join(missing)}")
+        for name in present:
+            found.covariates[name] = found.ours.pop(name)
     if not measurements.has_poses:
-        _set_poses_aside(found)
+        given = [name for name in found.ours if name in POSITION or is_rotation(name)]
+        for name in given:
+            del found.ours[name]
+        if given:
+            found.notes.append(f"{', '.join(given)} left out: poses are said to be unknown")
     found.faults.extend(_missing(found, study, has_poses=measurements.has_poses))
     return found
 
@@ -121,25 +131,6 @@ def _assign_by_name(found: Assigned, column: RawColumn, study: Study) -> None:
         found.covariates[name] = column
 
 
-def _set_half_a_wind_aside(found: Assigned) -> None:
-    """Take a wind without its horizontal components as covariates."""
-    present = [name for name in WIND if name in found.ours]
-    missing = [name for name in WIND[:2] if name not in found.ours]
-    if present and missing:
-        found.notes.append(f"the wind is not used as such: there is no {' and no '.join(missing)}")
-        for name in present:
-            found.covariates[name] = found.ours.pop(name)
-
-
-def _set_poses_aside(found: Assigned) -> None:
-    """Leave out columns of a pose that is said to be unknown."""
-    given = [name for name in found.ours if name in POSITION or is_rotation(name)]
-    for name in given:
-        del found.ours[name]
-    if given:
-        found.notes.append(f"{', '.join(given)} left out: poses are said to be unknown")
-
-
 def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Fault]:
     lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
     known = {*found.ours, *found.awaited}
@@ -158,8 +149,13 @@ def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Faul
         yield found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
     else:
         yield from _missing_of(found, POSITION)
-        if not study.robot.is_point_mass:
-            yield from _missing_rotation(found)
+        rotations = [name for name in (*found.ours, *found.awaited) if is_rotation(name)]
+        forms = {rotation_form(name): name for name in rotations}
+        if not study.robot.is_point_mass and len(forms) > 1:
+            problem = f"the orientation is given in two forms, with {' and '.join(forms.values())}"
+            yield found.table.fault(None, "", problem, "one; the columns of the other ignored")
+        elif not study.robot.is_point_mass:
+            yield from _missing_of(found, next(iter(forms), ROTATION_VECTOR))
     if known.isdisjoint(lengths + tensions):
         expected = f"{lengths[0]} … {lengths[-1]}, or {tensions[0]} … {tensions[-1]}, or both"
         problem = "there is neither a column for lengths nor one for tensions"
@@ -169,17 +165,6 @@ def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Faul
     for names in (lengths, tensions):
         if not known.isdisjoint(names):
             yield from _missing_of(found, names)
-
-
-def _missing_rotation(found: Assigned) -> Iterator[Fault]:
-    known = [*found.ours, *found.awaited]
-    forms = {rotation_form(name): name for name in known if is_rotation(name)}
-    if len(forms) > 1:
-        given = " and ".join(forms.values())
-        problem = f"the orientation is given in two forms, with {given}"
-        yield found.table.fault(None, "", problem, "one; the columns of the other ignored")
-        return
-    yield from _missing_of(found, next(iter(forms), ROTATION_VECTOR))
 
 
 def _missing_of(found: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:

@@ -18,15 +18,7 @@ IGNORE = "ignore"
 COVARIATE = "covariate"
 """What a log's column may be that is none of ours."""
 
-_READING = re.compile(r"length_(?P<length>[0-9]{1,9})_m|tension_(?P<tension>[0-9]{1,9})_N")
-_EULER = re.compile(r"euler_(?:intrinsic|extrinsic)_(?P<axes>[xyz]{3})_[123]")
-_MOST_CABLES = 64
-_COMMON_EULER = tuple(
-    f"euler_{way}_{axes}_{number}"
-    for way in ("intrinsic", "extrinsic")
-    for axes in ("xyz", "zyx", "zxz", "zyz")
-    for number in (1, 2, 3)
-)
+
 _DIMENSIONS: dict[str, Dimension] = {
     TIME_NAME: TIME,
     TEMPERATURE_NAME: TEMPERATURE,
@@ -55,8 +47,8 @@ def standard_names(n_cables: int) -> frozenset[str]:
 
 def cable_of(name: str) -> int | None:
     """Return the number of the cable that a length or tension belongs to; None for others."""
-    found = _READING.fullmatch(name)
-    return None if found is None else int(found["length"] or found["tension"])
+    found = re.fullmatch(r"length_([0-9]{1,9})_m|tension_([0-9]{1,9})_N", name)
+    return None if found is None else int(found[1] or found[2])
 
 
 def is_rotation(name: str) -> bool:
@@ -80,11 +72,20 @@ def dimension_of(name: str) -> Dimension | None:
     cable = cable_of(name)
     if cable is not None and str(cable) == name.split("_")[1] and cable > 0:
         return LENGTH if name.startswith("length") else FORCE
-    euler = _EULER.fullmatch(name)  # a turn about the same axis twice in a row is one
-    return ANGLE if euler and euler["axes"][0] != euler["axes"][1] != euler["axes"][2] else None
+    # A turn about the same axis twice in a row is one.
+    euler = re.fullmatch(
+        r"euler_(?:intrinsic|extrinsic)_([xyz])(?!\1)([xyz])(?!\2)[xyz]_[123]", name
+    )
+    return ANGLE if euler else None
 
 
 def column_hint(name: str) -> str:
     """Return a hint at the column of ours whose name is most like this one."""
-    readings = (*length_names(_MOST_CABLES), *tension_names(_MOST_CABLES))
-    return did_you_mean(name, (*_DIMENSIONS, *readings, *_COMMON_EULER, IGNORE, COVARIATE))
+    readings = (*length_names(64), *tension_names(64))
+    common_euler = (
+        f"euler_{way}_{axes}_{number}"
+        for way in ("intrinsic", "extrinsic")
+        for axes in ("xyz", "zyx", "zxz", "zyz")
+        for number in (1, 2, 3)
+    )
+    return did_you_mean(name, (*_DIMENSIONS, *readings, *common_euler, IGNORE, COVARIATE))

@@ -5,12 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.errors import Fault, InputError
 from designer.measured.assign import Assigned, assign
-from designer.measured.names import POSITION, length_names, tension_names
-from designer.measured.orientation import orientation, quaternion_faults
+from designer.measured.names import (
+    POSITION,
+    QUATERNION,
+    ROTATION_VECTOR,
+    length_names,
+    tension_names,
+)
 from designer.measured.rows import Rows, cell_faults, usable_rows
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
@@ -21,8 +27,6 @@ from designer.model.robot import Poses, Robot
 from designer.study import Study
 
 MOST_FAULTS = 100
-_SAME_PLACE_M = 1e-6
-_SAME_ROTATION = 1e-6
 
 
 def read_measured(study: Study) -> Measured:
@@ -49,7 +53,11 @@ def read_measured(study: Study) -> Measured:
         _refuse([*faults, *quaternion_faults(found, rows.kept)])
     if measurements.has_poses:
         poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
-        _refuse_one_pose(table, poses)
+        has_moved = np.ptp(poses.position_m, axis=0).max() > 1e-6
+        has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > 1e-6
+        if not has_moved and not has_turned:
+            problem = "all rows are at one pose, so nothing can be told apart"
+            raise InputError([Fault(table.name, None, "", problem, "different poses")])
     else:
         poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
     measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
@@ -101,14 +109,6 @@ def _stacked(found: Assigned, names: tuple[str, ...], kept: BoolArray) -> FloatA
     return np.stack(columns, axis=1)[kept]
 
 
-def _refuse_one_pose(table: Table, poses: Poses) -> None:
-    has_moved = np.ptp(poses.position_m, axis=0).max() > _SAME_PLACE_M
-    has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > _SAME_ROTATION
-    if not has_moved and not has_turned:
-        problem = "all rows are at one pose, so nothing can be told apart"
-        raise InputError([Fault(table.name, None, "", problem, "different poses")])
-
-
 def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Table) -> None:
     """Refuse rows that readings only just settle: nothing is left to test the model with."""
     if not robot.has_enough_cables:
@@ -151,3 +151,40 @@ def _measured(
         notes=tuple(notes),
         sha256=found.table.sha256,
     )
+
+
+def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
+    """Return rotations from body to world (n_rows, 3, 3).
+
+    Parameters
+    ----------
+    columns : tuple of str
+        Our names of the columns: a rotation vector, a quaternion, or Euler angles, whose names say
+        the axes and whether these turn with the body (``intrinsic``) or not (``extrinsic``).
+    values : array (n_rows, 3 or 4)
+        The columns; angles in radians. Quaternions are scaled to unit length.
+    """
+    if columns == ROTATION_VECTOR:
+        rotation = Rotation.from_rotvec(values)
+    elif columns == QUATERNION:
+        rotation = Rotation.from_quat(np.roll(values, -1, axis=1))  # SciPy has w last
+    else:
+        _, way, axes, _ = columns[0].split("_")
+        rotation = Rotation.from_euler(axes.upper() if way == "intrinsic" else axes, values)
+    return np.asarray(rotation.as_matrix(), dtype=np.float64)
+
+
+def quaternion_faults(found: Assigned, kept: BoolArray) -> list[Fault]:
+    """Return the rows whose quaternion is not of unit length within a hundredth."""
+    columns = found.present(QUATERNION)
+    if len(columns) < len(QUATERNION):
+        return []
+    norm = np.sqrt(sum(column.values**2 for column in columns))
+    rows = np.flatnonzero(kept & np.isfinite(norm) & (np.abs(norm - 1.0) > 0.01))
+    faults = (
+        found.table.fault(
+            int(row), columns[0].name, f"has a quaternion of length {norm[row]:.4g}", "1 within 1 %"
+        )
+        for row in rows
+    )
+    return found.table.first_few(faults, len(rows), "such quaternions")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from designer.errors import Fault
 from designer.measured.assign import Assigned
 from designer.measured.cells import MOST_ALIKE, is_number
 from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
-from designer.measured.table import RawColumn
+from designer.measured.table import RawColumn, Table
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
 FEWEST_ROWS = 8
@@ -55,7 +56,22 @@ def cell_faults(found: Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
     others = [("", column) for column in found.covariates.values() if is_numeric(column)]
     columns = [*found.ours.items(), *others]
-    return [*_text_faults(found, [one for _, one in columns]), *_boundless_faults(found, columns)]
+    faults: list[Fault] = []
+    total = 0
+    for name, column in columns:
+        dimension = dimension_of(name) or NUMBER  # a covariate has no name of ours
+        low, high = _BOUNDS.get(dimension, (-_LARGEST_NUMBER, _LARGEST_NUMBER))
+        rows = np.flatnonzero((column.values < low) | (column.values > high))
+        total += len(rows)
+        for row in rows[:MOST_ALIKE]:
+            value = float(column.values[row])
+            expected = f"{low:g} to {high:g} {dimension.unit}; units go into measurements.columns"
+            if abs(value) > _LARGEST_NUMBER:
+                expected = "a finite number, or nothing where there is none"
+            problem = f"has the value {value:g}"
+            faults.append(found.table.fault(int(row), column.name, problem, expected))
+    wild = found.table.first_few(faults, total, "values out of all bounds")
+    return [*_text_faults(found, [one for _, one in columns]), *wild]
 
 
 def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
@@ -71,14 +87,17 @@ def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
         Whether the rows are poses at rest, which may have the same time.
     """
     has_pose, faults = _with_pose(found)
-    has_reading = _with_reading(found, n_cables)
+    has_reading = np.ones_like(has_pose)
+    if readings := found.present(length_names(n_cables) + tension_names(n_cables)):
+        has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
     kept = has_pose & has_reading
     notes = [
         f"{_row_list(np.flatnonzero(left_out) + 1)} without {what} left out"
         for left_out, what in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
-    faults += [*_missing_times(found, kept), *_times_out_of_order(found, kept, settled=settled)]
+    if time := found.ours.get(TIME_NAME):
+        faults += _time_faults(found.table, time, kept, settled=settled)
     if kept.sum() < FEWEST_ROWS:
         total = found.table.n_rows
         problem = f"{kept.sum()} of {total} rows have a pose and a reading"
@@ -96,46 +115,16 @@ def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
         problem = f"holds texts, such as {text}, in {len(with_text)} columns"
         expected = "numbers; units of columns go into measurements.columns"
         return [found.table.fault(0, "", problem, expected)]
-    faults = (
-        found.table.fault(
-            cell.row, column.name, f"has the text {describe(cell.text)}", _instead_of(cell.text)
-        )
-        for column in with_text
-        for cell in column.texts
-    )
+    faults = []
+    for column in with_text:
+        for cell in column.texts:
+            expected = "a number, or nothing where there is none"
+            if "," in cell.text and is_number(cell.text.replace(",", "")):
+                expected = "a number with a decimal point and without commas"
+            problem = f"has the text {describe(cell.text)}"
+            faults.append(found.table.fault(cell.row, column.name, problem, expected))
     total = sum(column.n_texts for column in columns)
     return found.table.first_few(faults, total, "cells with a text")
-
-
-def _instead_of(text: str) -> str:
-    if "," in text and is_number(text.replace(",", "")):
-        return "a number with a decimal point and without commas"
-    return "a number, or nothing where there is none"
-
-
-def _boundless_faults(found: Assigned, columns: list[tuple[str, RawColumn]]) -> list[Fault]:
-    faults: list[Fault] = []
-    total = 0
-    for name, column in columns:
-        dimension = dimension_of(name) or NUMBER  # a covariate has no name of ours
-        low, high = _BOUNDS.get(dimension, (-_LARGEST_NUMBER, _LARGEST_NUMBER))
-        rows = np.flatnonzero((column.values < low) | (column.values > high))
-        total += len(rows)
-        for row in rows[:MOST_ALIKE]:
-            value = float(column.values[row])
-            expected = f"{low:g} to {high:g} {dimension.unit}; units go into measurements.columns"
-            if abs(value) > _LARGEST_NUMBER:
-                expected = "a finite number, or nothing where there is none"
-            problem = f"has the value {value:g}"
-            faults.append(found.table.fault(int(row), column.name, problem, expected))
-    return found.table.first_few(faults, total, "values out of all bounds")
-
-
-def _with_reading(found: Assigned, n_cables: int) -> BoolArray:
-    readings = found.present(length_names(n_cables) + tension_names(n_cables))
-    if not readings:
-        return np.ones(found.table.n_rows, dtype=np.bool_)
-    return np.asarray(~np.all([np.isnan(column.values) for column in readings], axis=0))
 
 
 def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
@@ -155,37 +144,31 @@ def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
     return has_pose, faults + table.first_few(halves, len(places), "missing values")
 
 
-def _missing_times(found: Assigned, kept: BoolArray) -> list[Fault]:
-    time = found.ours.get(TIME_NAME)
-    if time is None or time.is_empty or time.n_texts:
-        return []
-    rows = np.flatnonzero(np.isnan(time.values) & kept)
-    problem, expected = "has no time", "a time in each row, or in none"
-    faults = (found.table.fault(int(row), time.name, problem, expected) for row in rows)
-    return found.table.first_few(faults, len(rows), "rows without a time")
-
-
-def _times_out_of_order(found: Assigned, kept: BoolArray, *, settled: bool) -> list[Fault]:
-    time = found.ours.get(TIME_NAME)
-    if time is None:
-        return []
+def _time_faults(
+    table: Table, time: RawColumn, kept: BoolArray, *, settled: bool
+) -> Iterator[Fault]:
+    if not (time.is_empty or time.n_texts):
+        rows = np.flatnonzero(np.isnan(time.values) & kept)
+        expected = "a time in each row, or in none"
+        missing = (table.fault(int(row), time.name, "has no time", expected) for row in rows)
+        yield from table.first_few(missing, len(rows), "rows without a time")
     rows = np.flatnonzero(kept & np.isfinite(time.values))
-    if not settled and len(rows) and np.ptp(time.values[rows]) == 0.0:
+    values = time.values[rows]
+    if not settled and len(rows) and np.ptp(values) == 0.0:
         expected = "a time that grows, or no such column"
-        return [found.table.fault(None, time.name, "is the same in all rows", expected)]
-    step = np.diff(time.values[rows])
-    places = np.flatnonzero(step < 0.0 if settled else step <= 0.0)
-    faults = (_out_of_order(found, time, *rows[place : place + 2]) for place in places)
-    return found.table.first_few(faults, len(places), "rows out of order")
-
-
-def _out_of_order(found: Assigned, time: RawColumn, before: int, row: int) -> Fault:
-    at, earlier = time.values[row], time.values[before]
-    how = "the same time as" if at == earlier else "before"
-    problem = f"has {at:.10g} s, {how} row {before + 1}"
-    if at != earlier:
-        problem += f" with {earlier:.10g} s"
-    return found.table.fault(int(row), time.name, problem, "rows in the order of their time")
+        yield table.fault(None, time.name, "is the same in all rows", expected)
+        return
+    faults = []
+    places = np.flatnonzero(np.diff(values) < 0.0 if settled else np.diff(values) <= 0.0)
+    for place in places[:MOST_ALIKE]:
+        earlier, at = values[place : place + 2]
+        how = "the same time as" if at == earlier else "before"
+        problem = f"has {at:.10g} s, {how} row {rows[place] + 1}"
+        if at != earlier:
+            problem += f" with {earlier:.10g} s"
+        expected = "rows in the order of their time"
+        faults.append(table.fault(int(rows[place + 1]), time.name, problem, expected))
+    yield from table.first_few(faults, len(places), "rows out of order")
 
 
 def _row_list(rows: IntArray) -> str:

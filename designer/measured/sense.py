@@ -21,23 +21,9 @@ FEWEST_POSES = 5
 """Several are held out from every fit, and an exit point alone has three unknowns."""
 
 _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "feet": 1.0 / 0.3048, "inches": 1.0 / 0.0254}
-_LEVEL_TOLERANCE = 1.1
-"""Of a length over its straight distance: sag and stretch are less."""
-_SPREAD_TOLERANCE = 2.0
-"""Of spreads over the rows, which follow the geometry loosely."""
-_FAR_OFF = 30.0
-"""So loosely that they tell only units that are as far off as this."""
 _ALIKE, _UNLIKE = 0.99, 0.9
 """Correlation of a length with a distance: sag leaves more than the former, noise than the latter;
 between them nothing is told."""
-_SAME_M = 1e-6
-_KELVIN_FROM = 150.0
-"""No machine is as hot in °C, or as cold in kelvin."""
-_PUSHING = -0.01
-"""Of the load: a load cell that is only off reads less of a push."""
-_LIGHTEST = 0.5
-"""Cables pull along themselves, so that their tensions add up to the weight at least; rest: doubt
-about the weight."""
 _MAP = "measurements.columns"
 _METRES = f"metres, or the unit in {_MAP}"
 
@@ -53,9 +39,12 @@ class _Ratio:
     def unit(self) -> str | None:
         """The unit that the lengths seem to be in; None for metres, or where nothing is told."""
         for unit, factor in _UNITS.items():
-            if _is_near(self.level, factor, _LEVEL_TOLERANCE):
+            # Sag and stretch are less of a straight distance.
+            if _is_near(self.level, factor, 1.1):
                 return unit
-            if factor > _FAR_OFF and _is_near(self.spread, factor, _SPREAD_TOLERANCE):
+            # Spreads over the rows follow the geometry so loosely that they tell only units that
+            # are far off.
+            if factor > 30.0 and _is_near(self.spread, factor, 2.0):
                 return unit
         return None
 
@@ -110,10 +99,36 @@ def sense_faults(robot: Robot, measured: Measured, table: Table, *, is_homed: bo
     is_homed : bool
         Whether the winches' offsets are known, so that lengths are positive.
     """
-    faults = [*_few_poses(measured, table), *_temperature(measured, table)]
+    faults = []
+    poses = measured.poses
+    rotation = np.broadcast_to(poses.rotation, (measured.n_rows, 3, 3)).reshape(-1, 9)
+    places = np.round(np.hstack([poses.position_m, rotation]) / 1e-6)  # nearer is the same
+    if (count := len(np.unique(places, axis=0))) < FEWEST_POSES:
+        problem = f"the rows are at {count} different poses"
+        faults.append(Fault(table.name, None, "", problem, f"at least {FEWEST_POSES}"))
+    # No machine is as hot in °C as 150, or as cold in kelvin.
+    temperature_C = measured.temperature_C
+    if temperature_C is not None and (middle := float(np.median(temperature_C))) > 150.0:
+        problem = f"the temperature is about {middle:.4g}, as if it were in kelvin"
+        expected = f"°C, or {{to: {TEMPERATURE_NAME}, unit: K}} in {_MAP}"
+        faults.append(table.fault(None, TEMPERATURE_NAME, problem, expected))
     faults += [*_wrong_cable(robot, measured, table), *_pushing(robot, measured, table)]
     if not faults and is_homed:
-        faults += _not_positive(measured, table)
+        names = length_names(robot.n_cables)
+        negative = np.argwhere(measured.length_m.T <= 0.0)
+        expected = (
+            "more than 0; or 'unknown: [length_offset]' for lengths that are counted from home"
+        )
+        not_positive = (
+            table.fault(
+                int(measured.row_numbers[row]) - 1,
+                names[cable],
+                f"has the length {measured.length_m[row, cable]:g} m",
+                expected,
+            )
+            for cable, row in negative
+        )
+        faults += table.first_few(not_positive, len(negative), "lengths that are not positive")
     return faults or list(_too_light(robot, measured, table))
 
 
@@ -132,26 +147,6 @@ def _is_near(value: float, factor: float, tolerance: float) -> bool:
 
 def _about(values: Sequence[float]) -> str:
     return f"{float(f'{np.median(values):.2g}'):g}"
-
-
-def _few_poses(measured: Measured, table: Table) -> Iterator[Fault]:
-    poses = measured.poses
-    rotation = np.broadcast_to(poses.rotation, (measured.n_rows, 3, 3)).reshape(-1, 9)
-    places = np.round(np.hstack([poses.position_m, rotation]) / _SAME_M)
-    count = len(np.unique(places, axis=0))
-    if count < FEWEST_POSES:
-        expected = f"at least {FEWEST_POSES}"
-        yield Fault(table.name, None, "", f"the rows are at {count} different poses", expected)
-
-
-def _temperature(measured: Measured, table: Table) -> Iterator[Fault]:
-    if measured.temperature_C is None:
-        return
-    middle = float(np.median(measured.temperature_C))
-    if middle > _KELVIN_FROM:
-        problem = f"the temperature is about {middle:.4g}, as if it were in kelvin"
-        expected = f"°C, or {{to: {TEMPERATURE_NAME}, unit: K}} in {_MAP}"
-        yield table.fault(None, TEMPERATURE_NAME, problem, expected)
 
 
 def _wrong_cable(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
@@ -177,29 +172,14 @@ def _correlation(first: FloatArray, second: FloatArray) -> float:
     return float(np.corrcoef(first[seen], second[seen])[0, 1])
 
 
-def _not_positive(measured: Measured, table: Table) -> list[Fault]:
-    names = length_names(measured.length_m.shape[1])
-    places = np.argwhere(measured.length_m.T <= 0.0)
-    expected = "more than 0; or 'unknown: [length_offset]' for lengths that are counted from home"
-    faults = (
-        table.fault(
-            int(measured.row_numbers[row]) - 1,
-            names[cable],
-            f"has the length {measured.length_m[row, cable]:g} m",
-            expected,
-        )
-        for cable, row in places
-    )
-    return table.first_few(faults, len(places), "lengths that are not positive")
-
-
 def _pushing(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
     """Tell load cells that read a push most of the time."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
         middle_N = np.nanmedian(measured.tension_N, axis=0)
     for name, tension_N in zip(tension_names(robot.n_cables), middle_N, strict=True):
-        if tension_N < _PUSHING * _pull_N(robot):
+        # A load cell that is only off reads less of a push.
+        if tension_N < -0.01 * _pull_N(robot):
             problem = f"is {tension_N:.4g} N in the middle, but no cable can push"
             yield table.fault(None, name, problem, f"a pull, or 'scale: -1' in {_MAP}")
 
@@ -207,7 +187,9 @@ def _pushing(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
 def _too_light(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
     total_N = measured.tension_N.sum(axis=1)
     pull_N = _pull_N(robot)
-    if np.isnan(total_N).all() or float(np.nanmedian(total_N)) >= _LIGHTEST * pull_N:
+    # Cables pull along themselves, so that their tensions add up to the weight at least; half of it
+    # leaves doubt about the weight.
+    if np.isnan(total_N).all() or float(np.nanmedian(total_N)) >= 0.5 * pull_N:
         return
     names = tension_names(robot.n_cables)
     problem = (

@@ -18,8 +18,6 @@ from designer.measured.cells import MOST_ALIKE, TextCell, is_number, read_cells
 
 LARGEST_FILE_BYTES = 200_000_000
 _LONGEST_LINE_BYTES = 1_000_000
-_ROWS_AT_ONCE = 4096
-"""Few enough that their text takes no memory to speak of, many enough for whole columns."""
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _EXPECTED = "a CSV file: names of columns in its first line, numbers below"
 
@@ -113,7 +111,8 @@ def read_table(file: BinaryIO, name: str) -> Table:
     columns = [_Filling() for _ in names]
     lines: list[int] = []
     misfits: list[tuple[int, int]] = []
-    while block := list(islice(rows, _ROWS_AT_ONCE)):
+    # Few enough that their text takes no memory to speak of, many enough for whole columns.
+    while block := list(islice(rows, 4096)):
         first_row = len(lines)
         lines += [line for line, _ in block]
         widths = enumerate((len(cells) for _, cells in block), start=first_row)
@@ -124,7 +123,20 @@ def read_table(file: BinaryIO, name: str) -> Table:
             column.add(filled, first_row)
     filled_columns = tuple(one.column(own) for own, one in zip(names, columns, strict=True))
     table = Table(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
-    return replace(table, faults=(*_repeated_names(table), *_misfits(table, misfits)))
+    expected = f"{len(names)}, as the first line has names"
+    of_another_width = (
+        table.fault(row, "", f"has {width} value{'s' * (width != 1)}", expected)
+        for row, width in misfits
+    )
+    told = table.first_few(of_another_width, len(misfits), "rows of another width")
+    places: dict[str, int] = {}
+    repeated = []
+    for place, own in enumerate(names, start=1):
+        if own and own in places:
+            problem = f"columns {places[own]} and {place} have the same name"
+            repeated.append(table.fault(None, own, problem, "a name for each column"))
+        places.setdefault(own, place)
+    return replace(table, faults=(*repeated, *told))
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:
@@ -201,26 +213,3 @@ class _Filling:
     def column(self, name: str) -> RawColumn:
         values = np.concatenate(self.blocks) if self.blocks else np.empty(0)
         return RawColumn(name, values, self.n_texts, tuple(self.texts))
-
-
-def _misfits(table: Table, misfits: list[tuple[int, int]]) -> list[Fault]:
-    """Return the rows of another width, each given with that."""
-    faults = (
-        table.fault(
-            row,
-            "",
-            f"has {width} value" + "s" * (width != 1),
-            f"{len(table.columns)}, as the first line has names",
-        )
-        for row, width in misfits
-    )
-    return table.first_few(faults, len(misfits), "rows of another width")
-
-
-def _repeated_names(table: Table) -> Iterator[Fault]:
-    places: dict[str, int] = {}
-    for place, column in enumerate(table.columns, start=1):
-        if column.name and column.name in places:
-            problem = f"columns {places[column.name]} and {place} have the same name"
-            yield table.fault(None, column.name, problem, "a name for each column")
-        places.setdefault(column.name, place)

@@ -237,25 +237,19 @@ class LoadCase:
             wrench = wrench + np.concatenate([drag, np.zeros(3)])
         body = replace(body, mass_kg=factor * mass, wrench_N=wrench, centre_force_N=centre)
         loaded = replace(robot, platform=body)
-        load = self._cable_load_N_per_m(robot, cable, wind)
+        # Weight, ice and drag of a cable per unstrained length, in the world frame.
+        ice = self.ice or Ice(0.0)
+        density = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable.diameter_m)
+        load = -STANDARD_GRAVITY_M_PER_S2 * density * robot.level[2]
+        if self.wind is not None and wind is not None:
+            width = cable.diameter_m + 2.0 * ice.thickness_m
+            load = load + self.wind.pressure_Pa * self.wind.cable_drag_coefficient * width * wind
         size = float(np.linalg.norm(load))
         if self.wind is not None:
             loaded = replace(loaded, cable_load_direction=load / size)
         if self.wind is not None or self.ice is not None:
             cable = replace(cable, linear_density_kg_per_m=size / STANDARD_GRAVITY_M_PER_S2)
         return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable)
-
-    def _cable_load_N_per_m(
-        self, robot: Robot, cable: Cable, wind: FloatArray | None
-    ) -> FloatArray:
-        """Return weight, ice and drag per unstrained length (3,), world frame [N/m]."""
-        ice = self.ice or Ice(0.0)
-        mass = cable.linear_density_kg_per_m + ice.linear_density_kg_per_m(cable.diameter_m)
-        load = -STANDARD_GRAVITY_M_PER_S2 * mass * robot.level[2]
-        if self.wind is not None and wind is not None:
-            width = cable.diameter_m + 2.0 * ice.thickness_m
-            load = load + self.wind.pressure_Pa * self.wind.cable_drag_coefficient * width * wind
-        return np.asarray(load)
 
 
 STATIC = LoadCase("static")

@@ -24,8 +24,6 @@ Sizes = tuple[tuple[str, float, str], ...]
 CHUNK = 2**15
 """Positions per chunk; a power of two keeps Sobol sequences balanced."""
 _OFF_LINE = 1e-9
-_MOST_VERTICES = 256
-_UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 class Shape(ABC):
@@ -304,7 +302,7 @@ class Rectangle(Shape):
         return self.at(rng.random((count, 2)))
 
     def border(self) -> Border:
-        corners = self.at(_UNIT_SQUARE)
+        corners = self.at(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
         return Border(corners, ring(corners), [corners])
 
 
@@ -349,7 +347,7 @@ class PointList(Shape):
         return self.points_m[rng.integers(len(self.points_m), size=count)]
 
     def border(self) -> Border:
-        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
+        return Border(self.points_m[:256], np.empty((0, 2, 3)), [])
 
 
 Region = Prism | Rectangle | PointList

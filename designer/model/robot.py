@@ -17,8 +17,6 @@ from designer.arrays import (
 )
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 
-_NO_ROTATION = 1e-6
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Platform:
@@ -200,7 +198,12 @@ class Robot:
     def _headed(self, vertical: FloatArray) -> FloatArray:
         if not self.is_planar:
             return vertical
-        return np.asarray(_heading_frame(self.exit_points_m @ vertical.T) @ vertical)
+        # Turn the line of the exit points, seen from above, into x.
+        plan = (self.exit_points_m @ vertical.T)[:, :2]
+        x, y = np.linalg.svd(plan - plan.mean(axis=0))[2][0]
+        if (x, y) < (0.0, 0.0):
+            x, y = -x, -y
+        return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]]) @ vertical
 
     @property
     def attachments_m(self) -> FloatArray:
@@ -258,15 +261,6 @@ def vertical_frame(gravity_direction: FloatArray) -> FloatArray:
     return np.asarray(Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix())
 
 
-def _heading_frame(points_m: FloatArray) -> FloatArray:
-    """Return the rotation about z that turns the line of the points, seen from above, into x."""
-    plan = points_m[:, :2] - points_m[:, :2].mean(axis=0)
-    x, y = np.linalg.svd(plan)[2][0]
-    if (x, y) < (0.0, 0.0):
-        x, y = -x, -y
-    return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Poses:
     """A batch of platform poses, over any leading axes.
@@ -297,7 +291,7 @@ class Poses:
             raise ValueError(f"rotations for {have} poses do not fit positions for {want}")
         # The squares of its entries add up to three; cheap enough for every batch.
         size = np.einsum("...ij,...ij->...", rotation, rotation)
-        if np.any(np.abs(size - 3.0) > _NO_ROTATION):
+        if np.any(np.abs(size - 3.0) > 1e-6):
             raise ValueError("rotation must consist of rotation matrices")
 
     @classmethod

@@ -70,6 +70,10 @@ class Verdict(IntEnum):
         return f"{self.clause[0].upper()}{self.clause[1:]}."
 
 
+OPEN = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
+"""Verdicts that prove nothing: another way may still find a solution."""
+
+
 def hanging_cables(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:
     """Tell which cables (..., n_cables) come from above and are lowest below the platform end.
 

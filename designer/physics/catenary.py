@@ -255,7 +255,11 @@ def _closure(
     stretch = 0.5 * strain * coth
     q = 1.0 / (1.0 + stretch)
     g, rest = 2.0 * theta / width, strain / width
-    R = _sag(theta)
+    # ((sinh θ / θ)² - 1) / θ², by a series where the difference would cancel.
+    t = theta * theta
+    series = 1 / 3 + t * (2 / 45 + t * (1 / 315 + t * (2 / 14175 + t * 2 / 467775)))
+    safe = np.maximum(theta, 0.1)
+    R = np.where(theta < 0.1, series, ((np.sinh(safe) / safe) ** 2 - 1.0) / safe**2)
     chord = np.hypot(X, D)
     excess = (
         (chord - length) * (chord + length)
@@ -281,14 +285,6 @@ def _closure_slope_in_length(
     arc = (2.0 * X * np.sinh(theta) / width) ** 2
     slope = -((D * q) ** 2) * q * kappa * coth - 2.0 * arc * kappa / width - 2.0 * length
     return slope / length**2
-
-
-def _sag(theta: FloatArray) -> FloatArray:
-    """Return ((sinh θ / θ)² - 1) / θ²; a series where the difference would cancel."""
-    t = theta * theta
-    series = 1 / 3 + t * (2 / 45 + t * (1 / 315 + t * (2 / 14175 + t * 2 / 467775)))
-    safe = np.maximum(theta, 0.1)
-    return np.where(theta < 0.1, series, ((np.sinh(safe) / safe) ** 2 - 1.0) / safe**2)
 
 
 def _mean_tension(length: FloatArray, theta: FloatArray) -> FloatArray:

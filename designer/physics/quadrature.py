@@ -15,7 +15,6 @@ from math import hypot
 import numpy as np
 
 _ACCURACY = 1e-12
-_DECADES = 12
 
 
 def end_position_m(
@@ -36,7 +35,7 @@ def end_position_m(
 
     # A slack cable bends over a length of F_x / w about its lowest point, on one side or both.
     bend_m, lowest_m = force_x_N / weight_N_per_m, length_m - force_z_N / weight_N_per_m
-    steps_m = bend_m * 10.0 ** np.arange(_DECADES)
+    steps_m = bend_m * 10.0 ** np.arange(12)
     ends_m = np.concatenate([lowest_m - steps_m, [lowest_m], lowest_m + steps_m])
     pieces_m = ends_m[(ends_m > 0.0) & (ends_m < length_m)]
 

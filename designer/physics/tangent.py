@@ -31,8 +31,6 @@ from designer.arrays import FloatArray
 from designer.physics import catenary
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
-_SHORT_ARC = 0.5
-"""Arc up to which ten nodes reach rounding, and above which the closed form loses few digits."""
 
 
 def flexibility_m_per_N(
@@ -70,7 +68,15 @@ def flexibility_m_per_N(
     with np.errstate(invalid="ignore", divide="ignore"):
         # V/T at the attachment point less the same at the exit point, free of cancellation.
         turn = np.where(F_z * V_0 > 0.0, F_x**2 * sinh / (T_0 * T_l), F_z / T_l - V_0 / T_0)
-    across = np.where(angle < _SHORT_ARC, _short_across(length, F_x, V_0, w), (angle - turn) / w)
+    # The integral of n_x²/T over the cable. On short arcs its closed form is the difference of two
+    # nearly equal numbers, but the integrand is smooth, so that ten nodes reach rounding; on longer
+    # ones the closed form loses few digits.
+    total = np.zeros(length.shape)
+    for node, weight in zip(0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS, strict=True):
+        V = V_0 + node * w * length
+        with np.errstate(invalid="ignore", divide="ignore"):
+            total = total + weight * V**2 / np.hypot(F_x, V) ** 3
+    across = np.where(angle < 0.5, length * total, (angle - turn) / w)
     stretch = length / EA
     skew = -F_x * length * (F_z + V_0) / ((T_l + T_0) * T_l * T_0)
     rows = [[stretch + across, skew], [skew, stretch + turn / w]]
@@ -89,7 +95,17 @@ def stiffness_N_per_m(
     The inverse of `flexibility_m_per_N`, with the same parameters.
     """
     C = flexibility_m_per_N(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
-    return _inverse(C)
+    # An infinite entry gives a zero.
+    a, b, c = C[..., 0, 0], C[..., 0, 1], C[..., 1, 1]
+    soft = np.isinf(a)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        determinant = a * c - b * b
+        rows = [[c / determinant, -b / determinant], [-b / determinant, a / determinant]]
+        inverse = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+        folded = np.stack(
+            [np.zeros((*c.shape, 2)), np.stack([np.zeros_like(c), 1.0 / c], axis=-1)], axis=-2
+        )
+    return np.where(soft[..., None, None], folded, inverse)
 
 
 def stiffness_over_pulley_N_per_m(
@@ -136,33 +152,3 @@ def stiffness_over_pulley_N_per_m(
     jacobian = np.concatenate([position_by, total_by[..., None, :]], axis=-2)
     bad = ~np.isfinite(jacobian).all(axis=(-2, -1))[..., None, None]
     return np.where(bad, np.nan, np.linalg.inv(np.where(bad, np.eye(3), jacobian)))[..., :2, :2]
-
-
-def _short_across(
-    length: FloatArray, F_x: FloatArray, V_0: FloatArray, w: FloatArray
-) -> FloatArray:
-    """Return the integral of n_x²/T over the cable by quadrature.
-
-    Its closed form is the difference of two nearly equal numbers where the cable is nearly
-    straight; there the integrand is smooth, so that a few nodes reach rounding.
-    """
-    total = np.zeros(length.shape)
-    for node, weight in zip(0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS, strict=True):
-        V = V_0 + node * w * length
-        with np.errstate(invalid="ignore", divide="ignore"):
-            total = total + weight * V**2 / np.hypot(F_x, V) ** 3
-    return np.asarray(length * total)
-
-
-def _inverse(matrix: FloatArray) -> FloatArray:
-    """Return the inverse of symmetric matrices (..., 2, 2); an infinite entry gives a zero."""
-    a, b, c = matrix[..., 0, 0], matrix[..., 0, 1], matrix[..., 1, 1]
-    soft = np.isinf(a)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        determinant = a * c - b * b
-        rows = [[c / determinant, -b / determinant], [-b / determinant, a / determinant]]
-        inverse = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-        folded = np.stack(
-            [np.zeros((*c.shape, 2)), np.stack([np.zeros_like(c), 1.0 / c], axis=-1)], axis=-2
-        )
-    return np.where(soft[..., None, None], folded, inverse)

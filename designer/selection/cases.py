@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded, free_axes
 from designer.model.robot import Poses, Robot
@@ -30,7 +30,7 @@ FEW_SAMPLES, MOST_SAMPLES = 64, 256
 """Poses in which a cable is lost, for each candidate and for the chosen one."""
 _NEAR = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
-_FIRST_TURN, _LAST_TURN, _MOST_ROUNDS = 0.5, 1e-6, 6
+_MOST_ROUNDS = 6
 _SAME = 1e-9
 
 
@@ -287,21 +287,17 @@ def _turned(found: CaseFound) -> CaseFound:
 
 def _steepest(found: CaseFound) -> CaseFound:
     """Turn the inertia force at one pose, by ever smaller steps, for as long as it gets worse."""
-    step, axes = _FIRST_TURN, free_axes(found.loaded.robot)
-    while step > _LAST_TURN:
-        trials = [_towards(found, step * side) for side in (*axes, *-axes)]
-        best = governing([found, *trials])
+    step, axes = 0.5, free_axes(found.loaded.robot)
+    while step > 1e-6:
+        trials = [found]
+        for side in (*axes, *-axes):
+            assert found.loaded.inertia is not None
+            loaded = found.loaded.pushed(found.loaded.inertia + step * side)
+            tension = found.tension_N(loaded)
+            used = tension / loaded.cable.allowable_tension_N
+            met = replace(found.verification, max_tension_N=tension, utilisation=used)
+            trials.append(replace(found, loaded=loaded, verification=met))
+        best = governing(trials)
         step *= 0.5 if best is found else 1.2
         found = best
     return found
-
-
-def _towards(found: CaseFound, side: FloatArray) -> CaseFound:
-    """Return what is met at the same pose with the inertia force turned toward a side (3,)."""
-    one, met = found.loaded, found.verification
-    assert one.inertia is not None
-    loaded = one.pushed(one.inertia + side)
-    tension = found.tension_N(loaded)
-    used = tension / loaded.cable.allowable_tension_N
-    met = replace(met, max_tension_N=tension, utilisation=used)
-    return replace(found, loaded=loaded, verification=met)

@@ -17,8 +17,6 @@ from designer.selection.result import Standing
 from designer.selection.verify import Sampled, Verification
 from designer.study import Objective
 
-_NEAR_LIMIT = 0.9
-
 
 @dataclass(slots=True, eq=False)
 class Entry:
@@ -76,8 +74,9 @@ def settle(
         pending = _search_all(front, search)
     for grade in dict.fromkeys(entry.grade for entry in entries):
         best_of([e for e in entries if e.grade is grade], objectives, search)
-    near = (e for e in entries if e.verification.holds)
-    _search_all([e for e in near if e.verification.utilisation > _NEAR_LIMIT], search)
+    held = (e for e in entries if e.verification.holds)
+    near_limit = [e for e in held if e.verification.utilisation > 0.9]
+    _search_all(near_limit, search)
     return sorted(front, key=lambda e: e.key(objectives))
 
 

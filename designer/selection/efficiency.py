@@ -30,8 +30,6 @@ from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
 from designer.study import Selection
 
-_STEEL = ("steel", "stainless steel", None)
-
 
 @dataclass(frozen=True, slots=True)
 class Allowance:
@@ -57,7 +55,7 @@ class Allowance:
             return 1.0
         ratio = self.sheave_diameter_m / diameter_m
         least = grade.sheave_ratio.minimum if grade.sheave_ratio else None
-        if grade.material not in _STEEL and least is not None:
+        if grade.material not in ("steel", "stainless steel", None) and least is not None:
             return 1.0 if ratio >= least else math.nan
         return bending_efficiency(ratio)
 

@@ -27,8 +27,6 @@ from designer.selection.verify import Verification, verify_sizes
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
-_SHEAVE = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
-
 
 def select(
     robot: Robot,
@@ -127,8 +125,9 @@ class _Trial:
         """Try all sizes of these grades."""
         entries = self.sampled(grades)
         tried = {id(entry.size) for entry in entries}
+        why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
-            NotTried(g, size, _SHEAVE) for g in grades for size in g.sizes if id(size) not in tried
+            NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in tried
         ]
         with self.reporter.task("search", len(entries)) as advance:
             thorough: set[int] = set()

@@ -22,11 +22,8 @@ from designer.study import Workspace
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import Effort, Worst, refine_over_branches, worst_over_samples
 
-_PIECE, _SLOW_PIECE = 2**13, 2**9
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
-_FIRST_TRIES, _TRIES = 16, 256
-"""Hard poses that are solved before a look whether the cable has failed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -168,7 +165,7 @@ def verify_sizes(
     space, is_slow = workspace.space, not is_quick(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
     samples = ((some, True) for some in workspace.places())
-    most = _SLOW_PIECE if is_slow else _PIECE
+    most = 2**9 if is_slow else 2**13
     for chunk, counts in chain([(space.landmarks(), False)], samples):
         for start in range(0, len(chunk), most):
             some = chunk[start : start + most]
@@ -196,7 +193,8 @@ def _meet(
         return found
     for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
         hard = np.flatnonzero(found.failed[row])
-        edges = [0, _FIRST_TRIES, *range(_TRIES, len(hard) + _TRIES, _TRIES)]
+        # After 16 hard poses, and each 256, a look whether the cable has failed.
+        edges = [0, 16, *range(256, len(hard) + 256, 256)]
         for some in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
             add_slowly(found, row, robot, poses, cables[row], cells, exclude, some)
             if gives_up and found.failed[row, some].any():

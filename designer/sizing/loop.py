@@ -10,10 +10,6 @@ from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_massless, solve_sagging
 
-_RUNAWAY = 1e4
-"""Largest tension over the massless one at which the loop is given up: far beyond what its turns
-can reach where it settles, since each of them then adds less than the one before."""
-
 
 @dataclass(frozen=True, slots=True)
 class Iterate:
@@ -90,7 +86,9 @@ def size_by_loop(
         if not np.isfinite(tension):
             return LoopSizing(tuple(iterates), has_converged=False)
         iterates.append(Iterate(tension, material.diameter_for_tension_m(tension)))
-        if tension > _RUNAWAY * iterates[0].max_tension_N:
+        # Far beyond what its turns can reach where it settles, since each of them then adds less
+        # than the one before.
+        if tension > 1e4 * iterates[0].max_tension_N:
             return LoopSizing(tuple(iterates), has_converged=False, has_diverged=True)
         if abs(iterates[-1].diameter_m - iterates[-2].diameter_m) < threshold_m:
             return LoopSizing(tuple(iterates), has_converged=True)

@@ -34,13 +34,11 @@ from designer.statics.geometry import cable_geometry, load_wrench_N, structure_m
 
 _START_PULL = 0.7
 _TRUST = 0.5
-_SMALLEST_TRUST = 1e-10
 _ALONG = 1e-4
 _PRICE = 100.0  # of a violation; above the sum of all multipliers
 _ROUNDING = 1e-13
 _STILL = 1e-8
 _AT_BOUND = 1e-7
-_CLARABEL = {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +129,7 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     y, c = problem.start()
     state, trust, turns = problem.state(y), _TRUST, 0
     multiplier = np.zeros(len(problem.load))
-    while turns < max_turns and trust > _SMALLEST_TRUST:
+    while turns < max_turns and trust > 1e-10:
         turns += 1
         found = _solve(problem, state, y, multiplier, trust)
         if found is None:
@@ -345,7 +343,9 @@ def _solve(
         with warnings.catch_warnings():
             # Of less than full accuracy; the residuals of the answer tell.
             warnings.simplefilter("ignore", UserWarning)
-            programme["problem"].solve(solver=cp.CLARABEL, **_CLARABEL)
+            programme["problem"].solve(
+                solver=cp.CLARABEL, tol_gap_abs=1e-12, tol_gap_rel=1e-12, tol_feas=1e-12
+            )
     except cp.SolverError:
         return None
     if programme["step"].value is None:

@@ -27,14 +27,8 @@ from designer.statics.inverse import Statics
 from designer.statics.stiffness import is_stable, per_reach, reach_m, scaled, upright_stiffness
 
 _MOST_STEPS = 300
-# Trust radii over the size of the robot: the first, and that at which a search gives up.
-_FIRST_RADIUS = 0.1
-_SMALLEST_RADIUS = 1e-14
-_FLOOR = 1e-10
-"""Least stiffness over the largest: what is softer would take a step of any length."""
+
 _TOLERANCE = 1e-9
-_POLISH = 3
-"""Steps that are tried at rest for the last digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,8 +103,8 @@ class _Search:
         self.position = start.position_m.copy()
         self.rotation = start.rotation.copy()
         self.size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0))) + reach_m(robot)
-        self.radius = np.full(len(length_m), _FIRST_RADIUS * self.size)
-        self.left = np.full(len(length_m), _POLISH)
+        self.radius = np.full(len(length_m), 0.1 * self.size)
+        self.left = np.full(len(length_m), 3)  # steps that are tried at rest for the last digits
 
     def statics(self, chosen: BoolArray, poses: Poses) -> Statics:
         """Return the cables of some problems in trial poses."""
@@ -134,9 +128,7 @@ class _Search:
             if not active.any():
                 break
             self._step(active)
-            active = np.asarray(
-                active & (self.left > 0) & (self.radius > _SMALLEST_RADIUS * self.size)
-            )
+            active = np.asarray(active & (self.left > 0) & (self.radius > 1e-14 * self.size))
 
     def _step(self, active: BoolArray) -> None:
         here = Poses(self.position[active], self.rotation[active])
@@ -189,7 +181,8 @@ def _newton_step(
     eigenvalues, axes = np.linalg.eigh(0.5 * (safe + np.swapaxes(safe, -1, -2)))
     strength = np.abs(eigenvalues)
     stiffest = strength.max(axis=-1)
-    strength = np.maximum(strength, _FLOOR * stiffest[:, None])
+    # What is softer would take a step of any length.
+    strength = np.maximum(strength, 1e-10 * stiffest[:, None])
     along = np.einsum("pij,pi->pj", axes, push) / strength
     return np.einsum("pij,pj->pi", axes, along), 8.0 * np.finfo(np.float64).eps * stiffest * size
 

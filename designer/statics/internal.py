@@ -24,7 +24,6 @@ from designer.statics.taut import solve_taut
 _LEAST_PULL = 1.0 / 16.0
 _LEAST_SHARE = 0.05
 _SPREAD = 1.0
-_CLOSES = 1e-9
 
 
 def solve_internal(
@@ -85,6 +84,6 @@ def solve_internal(
         return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
-    closes = (rest <= _CLOSES) & (gap_rad <= SETTLED_RAD)
+    closes = (rest <= 1e-9) & (gap_rad <= SETTLED_RAD)
     verdict = np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
     return statics_with(robot, poses, cable, run, verdict, found, force_N)

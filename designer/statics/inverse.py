@@ -191,7 +191,13 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
         tension = distribute_evenly(robot, poses).tension_N
         return MasslessStatics(geometry.chord_m + run.wrap_m, tension)
     with np.errstate(invalid="ignore", divide="ignore"):
-        density = _solve_or_nan(density_matrix(robot, geometry), load_wrench_N(robot, poses))
+        matrices = density_matrix(robot, geometry)
+        # A singular one gives NaN instead of an exception.
+        scale = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
+        singular = np.abs(np.linalg.det(matrices / scale)) < 1e-14
+        safe = np.where(singular[..., None, None], np.eye(matrices.shape[-1]), matrices)
+        solution = np.linalg.solve(safe, load_wrench_N(robot, poses)[..., None])[..., 0]
+        density = np.where(singular[..., None], np.nan, solution)
     return MasslessStatics(geometry.chord_m + run.wrap_m, density * geometry.chord_m)
 
 
@@ -305,12 +311,3 @@ def statics_with(
         run=run,
         force_N=force_N,
     )
-
-
-def _solve_or_nan(matrices: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve many small systems; a singular one gives NaN instead of an exception."""
-    scale = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
-    singular = np.abs(np.linalg.det(matrices / scale)) < 1e-14
-    safe = np.where(singular[..., None, None], np.eye(matrices.shape[-1]), matrices)
-    solution = np.linalg.solve(safe, right[..., None])[..., 0]
-    return np.where(singular[..., None], np.nan, solution)

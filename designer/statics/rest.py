@@ -14,10 +14,6 @@ from designer.statics.forward import ForwardStatics, solve_forward
 from designer.statics.stiffness import reach_m
 
 _STARTS = 24
-_SMALL_TURN_RAD = 1e-3
-"""Turn that is not worth a word."""
-_SAME = 1e-6
-"""Distance over the robot's size within which two balances are the same one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +51,7 @@ class RestingPlaces:
                 f"({searched})."
             )
         turn = self.nearest_turn_rad
-        turned = f", turned by {np.degrees(turn):.0f}°" if turn > _SMALL_TURN_RAD else ""
+        turned = f", turned by {np.degrees(turn):.0f}°" if turn > 1e-3 else ""
         where = "one other place" if self.others == 1 else f"{self.others} other places"
         nearest = "" if self.others == 1 else "the nearest "
         return (
@@ -153,7 +149,8 @@ def find_equilibria(
     shape = places.shape[:-2]
     flat = places.reshape(-1, *places.shape[-2:])
     size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0)))
-    which = np.array([_group(one, _SAME * size) for one in flat]).reshape(*shape, -1)
+    # So near to each other two balances are the same one.
+    which = np.array([_group(one, 1e-6 * size) for one in flat]).reshape(*shape, -1)
     stable = np.where(found.is_stable, which, -1).reshape(-1, places.shape[-2])
     n_stable = np.array([len(set(row) - {-1}) for row in stable.tolist()]).reshape(shape)
     return Equilibria(found, which, n_stable)

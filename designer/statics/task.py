@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import Verdict
+from designer.model.verdict import OPEN, Verdict
 from designer.physics import pulley
 from designer.progress import checkpoint
 from designer.statics.geometry import (
@@ -23,7 +23,7 @@ from designer.statics.geometry import (
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-_FIRST_TURNS, _MOST_TURNS = 5, 40
+_MOST_TURNS = 40
 # Last turn of the angle at which a cable leaves its pulley: at rounding, and good enough.
 _STILL_RAD = 1e-13
 SETTLED_RAD = 1e-9
@@ -35,8 +35,6 @@ _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
-_AS_GOOD = 1.0 + 1e-7
-"""Weight or tension over another's up to which they are the same but for rounding."""
 
 Answer = TypeVar("Answer")
 
@@ -152,7 +150,7 @@ def solve_task(
 
 
 def _solve_over_pulleys(
-    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool, turns: int = _FIRST_TURNS
+    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool, turns: int = 5
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
@@ -222,8 +220,7 @@ def _try_other_branches(
 
     Writes what is better into the solution and the run of the cables.
     """
-    open_verdicts = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
-    hard = np.isin(solution.verdict, open_verdicts)
+    hard = np.isin(solution.verdict, OPEN)
     at = np.flatnonzero(hard | (seeks_better & (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
@@ -238,7 +235,7 @@ def _try_other_branches(
     was_long, is_long = (
         (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
     )
-    tauter = was_long & ~is_long & (burden <= _AS_GOOD * before)
+    tauter = was_long & ~is_long & (burden <= (1.0 + 1e-7) * before)  # up to rounding
     better = solved & ((burden < before) | tauter | (solution.verdict[at] != Verdict.SOLVED))
     _replace(solution, run, at, again, its_run, better)
     if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are

@@ -32,7 +32,6 @@ from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7
 # What no winch would do: leave so much of the load, or a cable so long for its chord.
-_MOST_LEFT = 0.9
 _LONGEST = 8.0
 
 
@@ -91,7 +90,7 @@ def solve_underactuated(
 
     found, run, gap_rad = over_pulleys(robot, poses, solve)
     load = np.linalg.norm(pull_N, axis=1)
-    held = (told[:, WRENCH_LEFT] <= _MOST_LEFT * load) & (told[:, LONGEST] <= _LONGEST)
+    held = (told[:, WRENCH_LEFT] <= 0.9 * load) & (told[:, LONGEST] <= _LONGEST)
     verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND).astype(np.int8)
     verdict[~((told[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = Verdict.NOT_CONVERGED
     return statics_with(robot, poses, cable, run, verdict, found, force_N)

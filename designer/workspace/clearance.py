@@ -32,7 +32,6 @@ PLATFORM = -1
 _COARSE, _FINE = 24, 12
 _FINER_PASSES = 3
 _COINCIDENT = 1e-9
-_OWN_SHARE = 0.25
 _CHUNK = 256
 
 
@@ -121,7 +120,7 @@ def cable_margin_m(robot: Robot, hull: Hull) -> FloatArray:
     it. A straight cable that leaves the hull at an angle ψ is then told if the clearance is more
     than sin ψ times that quarter.
     """
-    return np.asarray(_OWN_SHARE * hull.extent_m + hull.depth_m(robot.attachments_m))
+    return np.asarray(0.25 * hull.extent_m + hull.depth_m(robot.attachments_m))
 
 
 def _some(statics: Statics, rows: IntArray) -> Statics:

@@ -55,16 +55,9 @@ def platform_hull(robot: Robot) -> Hull | None:
     if spread[2] > _FLAT * spread[0]:
         hull = ConvexHull(corners)
         return Hull(corners[hull.simplices], hull.equations)
-    return _flat_hull(corners, axes)
-
-
-def _flat_hull(corners_m: FloatArray, axes: FloatArray) -> Hull:
-    """Return a convex polygon, as a fan of triangles, between two faces and within its edges."""
-    from scipy.spatial import ConvexHull
-
-    middle = corners_m.mean(axis=0)
-    outline = ConvexHull((corners_m - middle) @ axes[:2].T)
-    ring = corners_m[outline.vertices]
+    # A convex polygon, as a fan of triangles, between two faces and within its edges.
+    outline = ConvexHull((corners - middle) @ axes[:2].T)
+    ring = corners[outline.vertices]
     fan = [np.stack([ring[0], b, c]) for b, c in pairwise(ring[1:])]
     edges = outline.equations[:, :2] @ axes[:2]
     normals = np.concatenate([axes[2:], -axes[2:], edges])

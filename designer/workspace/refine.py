@@ -27,11 +27,7 @@ _CELLS_A_SIDE = 12
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 _MOST_ROUNDS = 8
-_GAIN = 1e-10
 _NEAR_SCALES = 10.0 ** -np.arange(1.0, 8.0)
-_NEAR_TRIALS = 24
-_SLIDES, _SECTIONS = 10, 4
-_SHARES = np.arange(1, 8) / 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,7 +199,7 @@ class _Search:
             before = np.array([worst.demand for worst in self._best])
             places = np.concatenate([self._scatter(), self._near_the_best()])
             values = self._ask(places)
-            gain = np.where(np.isneginf(before), 0.0, _GAIN * np.abs(before))
+            gain = np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
             higher = values > before + gain
             if self._is_over or not higher.any():
                 break
@@ -222,7 +218,8 @@ class _Search:
         """Return places about each of the best, at all distances."""
         found = np.array([worst.place for worst in self._best])
         found = found[np.isfinite(found).all(axis=1)]
-        cloud = self._rng.uniform(-1.0, 1.0, (len(_NEAR_SCALES), _NEAR_TRIALS, len(self._size)))
+        of_each = (len(_NEAR_SCALES), 24, len(self._size))
+        cloud = self._rng.uniform(-1.0, 1.0, of_each)
         cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, len(self._size))
         return self._space.nearest((found[:, None] + cloud).reshape(-1, len(self._size)))
 
@@ -316,7 +313,7 @@ class _Search:
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        some = offsets[:, self._rng.permutation(offsets.shape[1])[:_SLIDES]]
+        some = offsets[:, self._rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
         across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
         low, part = np.full((*across.shape[:2], 1), -1.0), 2.0
 
@@ -329,8 +326,8 @@ class _Search:
             own = np.take_along_axis(asked, climbs.extreme[:, None, None, None], axis=3)
             return places, own[..., 0]
 
-        for _ in range(_SECTIONS):
-            outside_there = np.isneginf(at(low + part * _SHARES)[1])
+        for _ in range(4):
+            outside_there = np.isneginf(at(low + part * np.arange(1, 8) / 8.0)[1])
             low = low + part / 8.0 * outside_there.sum(axis=2, keepdims=True)
             part /= 8.0
         places, asked = (values[:, :, 0] for values in at(low + part))

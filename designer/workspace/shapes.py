@@ -59,7 +59,13 @@ class Curves:
         plan = x[..., None] * self.outward[which, None, :]
         points = self.start_m[which, None, :] + np.concatenate([plan, z[..., None]], axis=-1)
         slope = np.arctan2(F_z + w * (s - length), F_x)
-        return Polylines(points, share, _sagitta_m(points, slope))
+        # A convex plane arc lies in the triangle of its chord and its end tangents; with a turn φ
+        # from one tangent to the other its height is at most c/2 tan(φ/2). Where the arc folds
+        # over, it is still no farther from the chord's ends than half its length, here bounded by
+        # the triangle of a nearly full turn.
+        chord = np.linalg.norm(np.diff(points, axis=-2), axis=-1)
+        turn = np.minimum(np.abs(np.diff(slope, axis=-1)), 0.999 * np.pi)
+        return Polylines(points, share, 0.5 * chord * np.tan(0.5 * turn))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,16 +76,3 @@ class Polylines:
     share: FloatArray  # (n, segments + 1): Where they lie, as shares of the unstrained length
     # (n, segments): No point of the curve is farther than this from its straight piece [m]
     sagitta_m: FloatArray
-
-
-def _sagitta_m(points_m: FloatArray, slope_rad: FloatArray) -> FloatArray:
-    """Return a bound on the height of an arc over its chord.
-
-    A convex plane arc lies in the triangle of its chord and its end tangents; with a turn φ from
-    one tangent to the other its height is at most c/2 tan(φ/2). Where the arc folds over, it
-    is still no farther from the chord's ends than half its length, here bounded by the triangle
-    of a nearly full turn.
-    """
-    chord = np.linalg.norm(np.diff(points_m, axis=-2), axis=-1)
-    turn = np.minimum(np.abs(np.diff(slope_rad, axis=-1)), 0.999 * np.pi)
-    return np.asarray(0.5 * chord * np.tan(0.5 * turn))

@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from twins import robots
 from twins.dataset import DataSet, make, size_for
+from twins.effects import LISTED, UNLISTED
 from twins.troubles import TROUBLES, troubled
 
 ROBOTS = {
@@ -37,13 +38,6 @@ ROBOTS = {
     "hall6": robots.HALL6,
     "hall8": robots.HALL8,
 }
-LISTED = (
-    "pulley_radius", "thermal_expansion", "elastic_modulus", "linear_mass", "platform_mass",
-    "centre_of_mass_offset", "anchor_offset", "length_offset", "drum_scale", "drum_layering",
-    "creep", "pulley_friction", "tension_gain", "tension_bias", "wind_drag", "base_tilt",
-    "clock_offset", "bending_stiffness", "mast_compliance", "stiffening", "tension_length",
-)  # fmt: skip
-UNLISTED = ("tower_settles", "cable_mass_drift", "encoder_backlash")
 PAIRS = (
     ("pulley_radius", "platform_mass"), ("elastic_modulus", "linear_mass"),
     ("length_offset", "elastic_modulus"), ("thermal_expansion", "tension_bias"),

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
+from designer.kernel import answer as kernel
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.inverse import solve_massless, solve_sagging
@@ -120,4 +121,7 @@ def test_hangs_below_is_flagged(fast_robot, steel) -> None:
 @pytest.mark.parametrize("verdict", list(Verdict))
 def test_each_verdict_has_a_label_and_a_sentence(verdict) -> None:
     assert verdict.label == verdict.name.lower()
+    assert verdict.reason
     assert verdict.sentence.endswith(".")
+    assert verdict.advice or verdict is Verdict.SOLVED
+    assert getattr(kernel, verdict.name) == int(verdict)

@@ -12,12 +12,10 @@ from twins.effects import LISTED, UNLISTED, Scene, predict
 from twins.physics import GRAVITY, solve
 from twins.robots import FAST3, HALL6, ROBOTS, YARD3, TwinRobot
 
-CONTRACT = {
-    "pulley_radius", "thermal_expansion", "elastic_modulus", "linear_mass", "platform_mass",
-    "centre_of_mass_offset", "anchor_offset", "length_offset", "drum_scale", "drum_layering",
-    "creep", "pulley_friction", "tension_gain", "tension_bias", "wind_drag", "base_tilt",
-    "clock_offset", "bending_stiffness", "mast_compliance", "stiffening", "tension_length",
-}  # fmt: skip
+from designer.effects.registry import EFFECTS
+
+CONTRACT = {effect.id for effect in EFFECTS} - {"load_step"}
+"""Every effect that a diagnosis knows has its twin; a step is one of `twins.troubles`."""
 
 
 def readings(robot: TwinRobot, effect: str | None = None, scene: Scene | None = None, **p: float):

@@ -11,14 +11,12 @@ from designer.arrays import frozen_array
 from designer.documents.document import Document
 from designer.effects.known import KnownEffects
 from designer.errors import InputError
-from designer.io.config.columns import log_column
 from designer.io.config.effects import read_effects
 from designer.io.config.load_cases import RegionSection, load_case
 from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.schema import (
     BoxSection,
     CableSection,
-    DocumentSection,
     MeasurementsSection,
     PointsSection,
     PoseSection,
@@ -30,7 +28,7 @@ from designer.io.config.schema import (
 )
 from designer.model.cable import Material
 from designer.model.machine import Surroundings
-from designer.model.measurements import Measurements
+from designer.model.measurements import LogColumn, Measurements
 from designer.model.region import PointList, Prism, Rectangle, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
@@ -83,18 +81,14 @@ def build_study(
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,
-        document=_control(section.document, folder),
-    )
-
-
-def _control(section: DocumentSection, folder: Path) -> DocumentControl:
-    return DocumentControl(
-        section.number or "",
-        section.revision or "",
-        section.author or "",
-        section.checker or "",
-        section.approver or "",
-        None if section.logo is None else folder / section.logo,
+        document=DocumentControl(
+            section.document.number or "",
+            section.document.revision or "",
+            section.document.author or "",
+            section.document.checker or "",
+            section.document.approver or "",
+            None if section.document.logo is None else folder / section.document.logo,
+        ),
     )
 
 
@@ -229,7 +223,9 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         axial_stiffness_N=section.cable.axial_stiffness,
         diameter_m=section.cable.diameter,
         minimum_breaking_load_N=section.cable.minimum_breaking_load,
-        columns=tuple(log_column(*item) for item in section.columns.items()),
+        columns=tuple(
+            LogColumn(name, one.to, *one.conversion()) for name, one in section.columns.items()
+        ),
         settled=section.settled,
         unknown=section.unknown,
         length_noise_m=section.noise.length,

@@ -36,7 +36,24 @@ _UNKNOWN = "measurements.unknown"
 def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]:
     """Return every fault that concerns more than one field of the document, or the effects."""
     parts = Parts(document, document.root.data(), effects)
-    return [fault for check in (*ROBOT_CHECKS, *_CHECKS) for fault in check(parts)]
+    checks = (
+        *ROBOT_CHECKS,
+        prism_has_area,
+        rectangle_has_area,
+        planar_region,
+        places_are_near,
+        catalogues_exist,
+        each_cable_in_one_group,
+        selection_has_workspace,
+        limit_has_groups,
+        load_cases_fit,
+        effects_are_known,
+        columns_fit_the_robot,
+        unknowns_are_known,
+        logo_is_a_picture,
+        unknown_poses_can_be_told,
+    )
+    return [fault for check in checks for fault in check(parts)]
 
 
 def prism_has_area(parts: Parts) -> Iterator[Fault]:
@@ -252,21 +269,3 @@ def logo_is_a_picture(parts: Parts) -> Iterator[Fault]:
         yield parts.fault(_LOGO, "the file is too large", f"at most {LARGEST_LOGO_BYTES:,} bytes")
     elif picture_type(start) is None:
         yield parts.fault(_LOGO, f"{path.name} is no such picture", "a PNG, JPEG or SVG file")
-
-
-_CHECKS = (
-    prism_has_area,
-    rectangle_has_area,
-    planar_region,
-    places_are_near,
-    catalogues_exist,
-    each_cable_in_one_group,
-    selection_has_workspace,
-    limit_has_groups,
-    load_cases_fit,
-    effects_are_known,
-    columns_fit_the_robot,
-    unknowns_are_known,
-    logo_is_a_picture,
-    unknown_poses_can_be_told,
-)

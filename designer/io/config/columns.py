@@ -9,7 +9,6 @@ from pydantic import BeforeValidator, Field, model_validator
 from designer.documents.fields import Text, bounded, mapping, refusal
 from designer.documents.section import Section
 from designer.measured.names import COVARIATE, IGNORE, column_hint, dimension_of
-from designer.model.measurements import LogColumn
 from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, describe, read_quantity
 
 _TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
@@ -93,8 +92,3 @@ class ColumnSection(Section):
 
 
 Columns = Annotated[dict[str, ColumnSection], BeforeValidator(mapping)]
-
-
-def log_column(name: str, section: ColumnSection) -> LogColumn:
-    """Return the frozen value of one entry of the map."""
-    return LogColumn(name, section.to, *section.conversion())

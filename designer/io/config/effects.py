@@ -111,36 +111,27 @@ def _read_one(found: Found, effect: Effect, place: Place, given: Data) -> None:
         problem = f"{'an empty mapping' if given == {} else describe(given)} is not a mapping"
         found.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
         return
-    misspelt = set(_refuse_unknown(found, place, given, keys))
+    misspelt = set()  # what was probably meant by names that are no parameters
+    for key in given:
+        if key not in keys:
+            problem = f"unknown parameter '{printable(key)}'"
+            expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
+            found.refuse((*place, key), problem, expected)
+            misspelt.add(nearest_name(key, keys) or key)
     cable = None
     if effect.takes_cable and "cable" not in misspelt:
-        cable = _cable(found, (*place, "cable"), given)
+        at = (*place, "cable")
+        if "cable" in given:
+            number = found.read(at, WholeNumber(1, found.n_cables), given["cable"])
+            cable = None if number is None else int(number)
+        else:
+            found.refuse(at, "is missing", f"the number of the cable, 1 to {found.n_cables}")
     values = {
         one.name: _value(found, (*place, one.name), given, one)
         for one in parameters
         if one.name not in misspelt
     }
     found.effects.append((place, DeclaredEffect(effect.id, cable, values)))
-
-
-def _refuse_unknown(
-    found: Found, place: Place, given: Mapping[str, Data], keys: list[str]
-) -> Iterator[str]:
-    """Refuse what is no parameter; yield the parameters that were probably meant."""
-    for key in given:
-        if key not in keys:
-            problem = f"unknown parameter '{printable(key)}'"
-            expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
-            found.refuse((*place, key), problem, expected)
-            yield nearest_name(key, keys) or key
-
-
-def _cable(found: Found, place: Place, given: Mapping[str, Data]) -> int | None:
-    if "cable" not in given:
-        found.refuse(place, "is missing", f"the number of the cable, 1 to {found.n_cables}")
-        return None
-    number = found.read(place, WholeNumber(1, found.n_cables), given["cable"])
-    return None if number is None else int(number)
 
 
 def _value(found: Found, place: Place, given: Mapping[str, Data], parameter: Parameter) -> float:

@@ -56,7 +56,11 @@ def _entries(
         for index, item in enumerate(value):
             yield Entry(path_text((*place, index)), _given(node.child(index)), str(item))
     elif isinstance(value, dict) and value:
-        yield from _map_entries(value, node, place)
+        for name, item in value.items():
+            if isinstance(item, tuple):
+                yield from _entries(item, node.child(name), (*place, name), NUMBER)
+            elif isinstance(item, ColumnSection):
+                yield Entry(path_text((*place, name)), _given(node.child(name)), item.meaning)
     elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
     elif len(value) > _MOST_ROWS:
@@ -65,14 +69,6 @@ def _entries(
     else:
         for index, row in enumerate(value):
             yield from _entries(row, node.child(index), (*place, index), dimension)
-
-
-def _map_entries(value: dict[str, Any], node: Node, place: tuple[Key, ...]) -> Iterator[Entry]:
-    for name, item in value.items():
-        if isinstance(item, tuple):
-            yield from _entries(item, node.child(name), (*place, name), NUMBER)
-        elif isinstance(item, ColumnSection):
-            yield Entry(path_text((*place, name)), _given(node.child(name)), item.meaning)
 
 
 def _in_SI(value: Any, dimension: Dimension) -> str:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 
 from designer.arrays import frozen_array
 from designer.errors import Fault
-from designer.io.config.loads import WindSection
 from designer.io.config.parts import Parts
 from designer.io.config.schema import (
     BoxSection,
@@ -28,25 +27,22 @@ def load_case(
     region_of: Callable[[RegionSection], Region],
 ) -> LoadCase:
     """Return the load case that a section describes."""
-    wrench, ice = section.wrench, section.ice
+    wrench, ice, wind = section.wrench, section.ice, section.wind
+    along = None if wind is None or wind.direction is None else frozen_array(wind.direction)
+    drag = cable_drag_coefficient or 0.0
     return LoadCase(
         name=section.name,
         mass_kg=section.mass,
         wrench_N=None if wrench is None else frozen_array([*wrench.force, *wrench.moment]),
         dynamic_factor=section.dynamic_factor,
         acceleration_m_per_s2=section.acceleration,
-        wind=None if section.wind is None else _wind(section.wind, cable_drag_coefficient),
+        wind=None if wind is None else Wind(wind.speed, drag, wind.directions or 8, along),
         ice=None if ice is None else Ice(ice.thickness, ice.density),
         cable_lost=section.cable_lost,
         safety_factor=section.safety_factor,
         termination_efficiency=section.termination_efficiency,
         region=None if section.region is None else region_of(section.region),
     )
-
-
-def _wind(section: WindSection, cable_drag_coefficient: float | None) -> Wind:
-    along = None if section.direction is None else frozen_array(section.direction)
-    return Wind(section.speed, cable_drag_coefficient or 0.0, section.directions or 8, along)
 
 
 def load_cases_fit(parts: Parts) -> Iterator[Fault]:

@@ -12,10 +12,9 @@ from designer.documents.section import Section
 from designer.io.config.orientation import only_one_of
 
 MOST_CABLES = 64
-_LOST = "'each' or the number of a cable"
 
 LostCable = Annotated[
-    Annotated[Literal["each"], only_word("each", _LOST), Tag("a word")]
+    Annotated[Literal["each"], only_word("each", "'each' or the number of a cable"), Tag("a word")]
     | Annotated[int, WholeNumber(1, MOST_CABLES), Tag("a number")],
     Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
 ]

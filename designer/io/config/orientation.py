@@ -17,7 +17,7 @@ from designer.units import describe
 
 FORMS = ("rotation_vector", "quaternion", "euler")
 _LARGEST_NORM_ERROR = 1e-3
-_CONVENTION = re.compile(r"(?!.*(.)\1)(?:[XYZ]{3}|[xyz]{3})")
+
 _AXES = "three axes such as XYZ, which turn with the body, or xyz, which do not"
 
 
@@ -29,7 +29,8 @@ def _of_unit_length(parts: tuple[float, float, float, float]) -> tuple[float, ..
 
 
 def _convention(given: object) -> str:
-    if not isinstance(given, str) or not _CONVENTION.fullmatch(given):
+    axes = r"(?!.*(.)\1)(?:[XYZ]{3}|[xyz]{3})"
+    if not isinstance(given, str) or not re.fullmatch(axes, given):
         raise refusal(f"{describe(given)} is no order of axes", _AXES)
     return given
 

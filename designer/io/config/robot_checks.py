@@ -24,7 +24,6 @@ _COINCIDENT = 1e-9
 """Distance of two cables' ends that counts as none, over the extent of the robot."""
 _FLAT = 1e-6
 """What counts as on one line or in one plane, over the extent of the points."""
-_WEIGHTLESS = 1e-9
 _LARGEST_STRAIN = 0.5
 """Linear elasticity says nothing beyond; the softest rope of the catalogue breaks before."""
 LARGEST = BOUNDS["distance"]
@@ -147,7 +146,7 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
             parts.array, ("robot.platform.wrench.moment", "robot.platform.centre_of_mass")
         )
     )
-    size_N = _WEIGHTLESS * float(np.linalg.norm(weight))
+    size_N = 1e-9 * float(np.linalg.norm(weight))  # counts as none
     left = (force + weight, moment + np.cross(lever, weight))
     if all(np.linalg.norm(part) <= size_N for part in left):
         problem = "cancels the platform's weight, so there is nothing for the cables to hold"
@@ -197,11 +196,14 @@ def lies_in_plane(parts: Parts) -> Iterator[Fault]:
     if anchors is None or not parts.is_planar:
         return
     size = float(np.linalg.norm(np.ptp(anchors, axis=0)))
-    normal = _normal(parts, anchors, size)
-    if normal is None:
+    plan = parts.seen_from_above(anchors)
+    _, spread, axes = np.linalg.svd(plan - plan.mean(axis=0))
+    on_line = len(spread) < 2 or spread[1] <= _FLAT * size
+    if not (spread[0] > _FLAT * size and on_line):
         problem = "the anchors do not lie in one vertical plane, as robot.planar asks"
         yield parts.fault(_ANCHORS, problem, "anchors on one line, seen from above")
         return
+    normal = np.array([-axes[0, 1], axes[0, 0], 0.0]) @ vertical_frame(parts.down)
     for path, values in _vectors(parts, anchors[0], size):
         off = np.abs(values @ normal)
         if off.max() > _FLAT * size:
@@ -210,17 +212,6 @@ def lies_in_plane(parts: Parts) -> Iterator[Fault]:
     for path, turns in _turns(parts):
         if np.linalg.norm(np.cross(turns, normal), axis=1).max() > _FLAT:
             yield parts.fault(path, "turns the platform out of the plane", "a turn in the plane")
-
-
-def _normal(parts: Parts, anchors: FloatArray, size: float) -> FloatArray | None:
-    """Return the normal (3,) of the vertical plane of the anchors, None where there is none."""
-    plan = parts.seen_from_above(anchors)
-    _, spread, axes = np.linalg.svd(plan - plan.mean(axis=0))
-    on_line = len(spread) < 2 or spread[1] <= _FLAT * size
-    if not (spread[0] > _FLAT * size and on_line):
-        return None
-    across = np.array([-axes[0, 1], axes[0, 0], 0.0])
-    return np.asarray(across @ vertical_frame(parts.down))
 
 
 def _vectors(parts: Parts, origin: FloatArray, size: float) -> Iterator[tuple[str, FloatArray]]:

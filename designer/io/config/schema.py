@@ -62,17 +62,20 @@ _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 _names = list_of(0, 1000, "a list")
-_corners = list_of(3, 1000, _CORNERS)
-_positions = list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
+
 _ends = list_of(2, 2, _ENDS)
-_box = list_of(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
 
 Anchors = Annotated[tuple[fields.Point, ...], _points]
 Attachments = Annotated[tuple[fields.Point, ...], _points]
-Corners = Annotated[tuple[fields.Corner, ...], _corners]
+Corners = Annotated[tuple[fields.Corner, ...], list_of(3, 1000, _CORNERS)]
 Ends = Annotated[tuple[fields.Corner, fields.Corner], _ends]
-Positions = Annotated[tuple[fields.Point, ...], _positions]
-Box = Annotated[tuple[fields.Interval, fields.Interval, fields.Interval], _box]
+Positions = Annotated[
+    tuple[fields.Point, ...], list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
+]
+Box = Annotated[
+    tuple[fields.Interval, fields.Interval, fields.Interval],
+    list_of(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]"),
+]
 Objectives = Annotated[
     tuple[Objective, ...],
     list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -307,10 +310,11 @@ class LoadCaseSection(Section):
 
     def __str__(self) -> str:
         """Return what it sets, in SI units."""
-        return ", ".join(f"{name} {plainly(value)}" for name, value in self if self._sets(name))
-
-    def _sets(self, name: str) -> bool:
-        return name != "name" and name in self.model_fields_set
+        return ", ".join(
+            f"{name} {plainly(value)}"
+            for name, value in self
+            if name != "name" and name in self.model_fields_set
+        )
 
 
 class MeasuredCableSection(Section):

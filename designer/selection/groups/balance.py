@@ -43,7 +43,6 @@ from designer.study import Workspace
 
 Members = Sequence[IntArray]
 """Of each group the indices of its cables."""
-_TURNS_DEG = (0.0, 4.0, 12.0, 30.0)
 
 
 def is_sound(robot: Robot, workspace: Workspace) -> bool:
@@ -86,7 +85,7 @@ class Balance:
             self.weight.reshape(n, -1) @ x <= W,
             *(
                 cp.multiply(np.cos(theta), H) + cp.multiply(np.sin(theta), v + W) <= may_carry
-                for theta in (slope + np.radians(turn) for turn in _TURNS_DEG)
+                for theta in (slope + np.radians(turn) for turn in (0.0, 4.0, 12.0, 30.0))
             ),
         ]
 

@@ -28,8 +28,6 @@ from designer.selection.groups.master import Assignment, Block
 from designer.selection.groups.trials import Trials
 from designer.study import Workspace
 
-_BISECTIONS = 8
-
 
 def is_monotone(robot: Robot, workspace: Workspace) -> bool:
     """Tell whether blocks may be proved by weight.
@@ -94,7 +92,7 @@ def _lowered(trials: Trials, corner: list[Cable], g: int, culprit: int) -> list[
     weights = sorted({one.cable.linear_density_kg_per_m for one in trials.products})
     low = 0
     high = int(np.searchsorted(weights, corner[g].linear_density_kg_per_m))
-    for _ in range(_BISECTIONS):
+    for _ in range(8):
         if low >= high:
             break
         # The lightest first: as a rule the product is too weak whatever the others weigh.

@@ -43,7 +43,6 @@ MOST_PROPOSALS = 100
 """Where to stop and report a gap."""
 _MOST_GUIDED = 30
 _MOST_BALANCES = 6
-_MOST_TRIALS_OF_A_BLOCK = 300
 _MOST_TRIALS = 100_000
 _EQUAL = 1e-9
 
@@ -252,7 +251,7 @@ class _Search:
             block = block_by_weight(self.trials, assignment, culprit)
             if block != _alone(assignment):
                 return block
-        room = min(_MOST_TRIALS_OF_A_BLOCK, _MOST_TRIALS - self.trials.count)
+        room = min(300, _MOST_TRIALS - self.trials.count)  # for one block
         return block_by_trial(self.trials, assignment, culprit, self._could_be_better, room)
 
     def _cut_beside(self, assignment: Assignment) -> int:

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -74,13 +73,24 @@ class Master:
             If HiGHS ends without an answer.
         """
         import cvxpy as cp
+        from scipy import sparse
 
         n_groups, n_products = self.cost.shape
         x = cp.Variable(n_groups * n_products, boolean=True)
         scale = float(self.cost.max())
-        constraints = [
-            *self._choice(x),
-            *self._forbidden(x),
+        each = sparse.kron(sparse.eye_array(n_groups), np.ones((1, n_products))).tocsr()
+        constraints = [each @ x == 1]
+        if self.most_distinct < n_groups:
+            y = cp.Variable(n_products)
+            every = sparse.kron(np.ones((n_groups, 1)), sparse.eye_array(n_products)).tocsr()
+            constraints += [x <= every @ y, y <= 1, cp.sum(y) <= self.most_distinct]
+        if self._cuts:
+            terms = np.concatenate(self._cuts)
+            ends = np.concatenate([[0], np.cumsum([len(cut) for cut in self._cuts])])
+            shape = (len(self._cuts), self.cost.size)
+            rows = sparse.csr_array((np.ones(len(terms)), terms, ends), shape=shape)
+            constraints.append(rows @ x <= n_groups - 1)
+        constraints += [
             *(one for balance in self.balances for one in balance.constraints(x)),
             *((row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides),
         ]
@@ -93,27 +103,3 @@ class Master:
             raise RuntimeError(f"the mixed-integer solver ended with {problem.status}")
         best = np.asarray(x.value).reshape(n_groups, n_products).argmax(axis=1)
         return tuple(int(p) for p in best)
-
-    def _choice(self, x: Any) -> list[Any]:
-        import cvxpy as cp
-        from scipy import sparse
-
-        n_groups, n_products = self.cost.shape
-        each = sparse.kron(sparse.eye_array(n_groups), np.ones((1, n_products))).tocsr()
-        constraints = [each @ x == 1]
-        if self.most_distinct < n_groups:
-            y = cp.Variable(n_products)
-            every = sparse.kron(np.ones((n_groups, 1)), sparse.eye_array(n_products)).tocsr()
-            constraints += [x <= every @ y, y <= 1, cp.sum(y) <= self.most_distinct]
-        return constraints
-
-    def _forbidden(self, x: Any) -> list[Any]:
-        from scipy import sparse
-
-        if not self._cuts:
-            return []
-        terms = np.concatenate(self._cuts)
-        ends = np.concatenate([[0], np.cumsum([len(cut) for cut in self._cuts])])
-        shape = (len(self._cuts), self.cost.size)
-        rows = sparse.csr_array((np.ones(len(terms)), terms, ends), shape=shape)
-        return [rows @ x <= len(self.cost) - 1]

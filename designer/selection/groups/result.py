@@ -146,22 +146,21 @@ class GroupChoice:
                 f"Stopped after {count} proposals: no assignment of {of} that holds has less than "
                 f"{self.bound:.4g} {self.unit}, so one may be {kind} by up to {self.gap:.2%}."
             )
-        return f"No assignment of {of} is {kind} and holds. {self._grounds}"
-
-    @property
-    def _grounds(self) -> str:
         means = "by poses that the solver showed they cannot hold"
         if self.by_weight:
             means += ", where heavier company of an overloaded cable does not help it"
         if self.by_balance:
             means += ", by the balance of forces in a pose"
-        text = f"All that would be were excluded {means}, or by the lengths that they need."
-        if self.lengths_are_bounds:
-            return text
-        return (
-            f"{text} This is for the lengths of the first answer: which poses count, and so how "
-            "long a cable must be, depends on the cables themselves."
+        text = (
+            f"No assignment of {of} is {kind} and holds. "
+            f"All that would be were excluded {means}, or by the lengths that they need."
         )
+        if not self.lengths_are_bounds:
+            text += (
+                " This is for the lengths of the first answer: which poses count, and so how "
+                "long a cable must be, depends on the cables themselves."
+            )
+        return text
 
     @property
     def saving_kg(self) -> float | None:

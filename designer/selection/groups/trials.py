@@ -25,7 +25,6 @@ from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
 from designer.workspace.refine import Demand, Pool, refine_over_branches
 
-_MOST_WITNESSES = 120
 _NUDGE = 1e-3
 
 
@@ -171,7 +170,7 @@ class Trials:
         known = {tuple(place) for place in self._found}
         new = [p for p in some if np.isfinite(p).all() and tuple(p) not in known]
         found = np.concatenate([self._found, np.array(new).reshape(-1, self._found.shape[1])])
-        self._found = found[-_MOST_WITNESSES:]
+        self._found = found[-120:]  # the latest: each is asked in every trial
 
     def cables(self, assignment: Assignment) -> Cables:
         """Return the cables of an assignment, in the order of the exit points."""
