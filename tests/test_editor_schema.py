@@ -1,6 +1,6 @@
 """The schema for editors that is shipped.
 
-Apart from the tests of what it says, since older versions of pydantic write the same in other words.
+Apart from the tests of what it says: older versions of pydantic write the same in other words.
 """
 
 from __future__ import annotations
