@@ -77,7 +77,8 @@ def keys_are_told(name: str, found: dict[str, object]) -> None:
         assert set(found) - first <= set(re.findall(r"`(\w+)`", part.rpartition("|\n")[2]))
         return
     assert first == set(found)
-    below = {key for cell in cells for key in re.findall(r"`(\w+)`", cell[1])}
+    given = [cell for cell in cells if any(found[key] for key in re.findall(r"`(\w+)`", cell[0]))]
+    below = {key for cell in given for key in re.findall(r"`(\w+)`", cell[1])}
     assert below - {key for one in found.values() for key in keys_in(one)} <= _SELDOM
 
 
