@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -253,6 +254,17 @@ def test_init_writes_a_study_that_reads(designer) -> None:
     unknown = designer("init", "other.yaml", "--example", "yart")
     assert unknown.status == 2
     assert "yard" in unknown.err
+
+
+def test_the_shell_completes_commands_and_names() -> None:
+    for typed, wanted in (("designer dia", "diagnose"), ("designer init --example ya", "yard")):
+        asked = {"_DESIGNER_COMPLETE": "complete_bash", "COMP_WORDS": typed}
+        run = subprocess.run(
+            [Path(sys.executable).with_name("designer")],
+            env={**os.environ, **asked, "COMP_CWORD": str(len(typed.split()) - 1)},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        assert run.stdout.split() == [wanted]
 
 
 def test_catalog_list_show_check(designer) -> None:

@@ -28,7 +28,7 @@ def config():
     for name, schema in properties.items():
         if name not in single and name != "effects":
             about = schema.get("description", "")
-            rows = dict.fromkeys(_rows_in(schema, name))
+            rows = dict.fromkeys(_rows_in(schema, ""))
             text += f"\n## `{name}`\n\n{about}\n\n{_table(rows)}\n"
     return text
 
