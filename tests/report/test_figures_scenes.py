@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -399,6 +400,61 @@ class TestInteractive:
 
     def test_names_are_escaped(self, page: str) -> None:
         assert "<title>A &amp; B &lt;crane&gt;</title>" in page
+
+    def test_axes_stand_around_it(self, page: str) -> None:
+        ticks = re.findall(r'class="tick" data-at="([^"]+)">([^<]+)<', page)
+        names = [text for _, text in ticks if "[m]" in text]
+        assert names == ["x [m]", "y [m]", "z [m]"]
+        for axis, name in enumerate(names):
+            after = [text for _, text in ticks].index(name)
+            for at, text in ticks[:after][-2:]:
+                number = float(text.replace("−", "-"))
+                assert float(at.split(",")[axis]) == pytest.approx(number, abs=1e-4)
+
+    @pytest.mark.parametrize("name", CASES)
+    def test_every_pose_that_is_seen_can_be_read(self, name: str) -> None:
+        page, shown = workspace_scene_html(maps_of(name)), maps_of(name).thinned().shown
+        found = re.search(r'id="poses">(.*?)</script>', page)
+        assert found is not None
+        data = json.loads(found.group(1))
+        for grid, field in zip(data["grids"], shown, strict=True):
+            points = np.array(grid["points"])
+            assert points[:, :3] == pytest.approx(field.position_m.reshape(-1, 3), rel=1e-4)
+            assert len(points) % grid["columns"] == 0
+            value = DIAMETER.of(field).ravel()
+            has_value = np.isfinite(value)
+            assert points[has_value, 3] == pytest.approx(value[has_value], rel=1e-4)
+            for number in {round(code) for code in points[~has_value, 3]}:
+                why = data["reasons"][-number - 1]
+                left_out = field.is_left_out.ravel()[points[:, 3] == number]
+                assert left_out.all() == why.startswith("left out")
+
+    def test_is_worked_by_keys_and_dark_as_the_system(self, page: str) -> None:
+        assert re.search(
+            r'class="content" tabindex="0" role="application" aria-label="[^"]+"', page
+        )
+        assert 'id="picked" role="status"' in page
+        assert "@media (prefers-color-scheme: dark)" in page
+
+    @pytest.mark.slow
+    @pytest.mark.skipif(shutil.which("chromium") is None, reason="needs Chromium")
+    def test_a_browser_shows_it_and_obeys_the_keys(self, page: str, tmp_path: Path) -> None:
+        probe = """<script>setTimeout(() => {
+          window.dispatchEvent(new KeyboardEvent("keydown", {key: "n"}));
+        }, 2000);</script></body>"""
+        file = tmp_path / "scene.html"
+        before, after = page.rsplit("</body>", 1)
+        file.write_text(before + probe + after, encoding="utf-8")
+        flags = ("--headless", "--no-sandbox", "--use-angle=swiftshader", "--disable-dev-shm-usage")
+        more = ("--enable-unsafe-swiftshader", "--virtual-time-budget=6000", "--dump-dom")
+        command = ["chromium", *flags, *more, f"--user-data-dir={tmp_path / 'profile'}", str(file)]
+        run = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+        if "WebGL" in run.stderr and 'class="label strong" style' not in run.stdout:
+            pytest.skip("this Chromium draws no WebGL here")
+        assert re.search(r'class="label strong"[^>]* style="left: [\d.]+px; top: ', run.stdout)
+        picked = re.search(r'id="picked"[^>]*>([^<]+)<', run.stdout)
+        assert picked is not None
+        assert picked.group(1).startswith("needed diameter 51.2 mm at x ")
 
     def test_says_what_orange_and_grey_mean(self) -> None:
         assert "no finite cable</span>" in workspace_scene_html(maps_of("partly"))

@@ -12,8 +12,8 @@ _AREAS = {
     "Here": Qt.DockWidgetArea.RightDockWidgetArea,
 }
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
-_SIDES_PX = (252, 392)
-_BELOW_PX = 190
+_SIDES_PX = (252, 400)
+_BELOW_PX = 215
 
 
 def put_docks(window: QMainWindow, panels: Mapping[str, QWidget]) -> dict[str, QDockWidget]:
@@ -31,7 +31,7 @@ def put_docks(window: QMainWindow, panels: Mapping[str, QWidget]) -> dict[str, Q
         window.tabifyDockWidget(first, dock)
     first.raise_()
     window.setCorner(Qt.Corner.BottomLeftCorner, _AREAS["Study"])
-    window.setCorner(Qt.Corner.BottomRightCorner, _AREAS["Here"])
+    window.setCorner(Qt.Corner.BottomRightCorner, _BELOW)  # tables are wide
     return docks
 
 

@@ -102,7 +102,7 @@ class PanelHere(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("here")
-        self.setMinimumWidth(364)
+        self.setMinimumWidth(384)
         self._place = np.zeros(6)
         self._entries: list[QLineEdit] = []
         self._turn_labels: list[QLabel] = []

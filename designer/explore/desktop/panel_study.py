@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from designer.explore.desktop.entry import Entry
+from designer.explore.desktop.layouts import emptied
 
 if TYPE_CHECKING:
     from designer.errors import Fault
@@ -96,10 +97,7 @@ class PanelStudy(QWidget):
         self._filter()
 
     def _rebuild(self, fields: Sequence[Field]) -> None:
-        while (item := self._list.takeAt(0)) is not None:
-            widget = item.widget()
-            if widget is not None:
-                widget.deleteLater()
+        emptied(self._list)
         self.rows, self._headings = {}, {}
         groups: dict[str, list[Field]] = {}
         for field in fields:

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from designer.explore.desktop.layouts import emptied
 from designer.resources import example_file, example_names, example_summary
 
 _PICTURE_PX = (200, 125)
@@ -52,7 +53,7 @@ class StartPage(QScrollArea):
 
     def show_recent(self, studies: Iterable[Path]) -> None:
         """Show the studies that were open before."""
-        _empty(self._recent)
+        emptied(self._recent)
         self._recent.addWidget(_label("cdpr-designer", "title"))
         self._recent.addWidget(_label("Which cable, how thick, and how sure is that?", "muted"))
         self._recent.addSpacing(12)
@@ -133,10 +134,3 @@ def _label(text: str, role: str) -> QLabel:
     label = QLabel(text)
     label.setProperty("role", role)
     return label
-
-
-def _empty(column: QVBoxLayout) -> None:
-    while (item := column.takeAt(0)) is not None:
-        widget = item.widget()
-        if widget is not None:
-            widget.deleteLater()

@@ -23,6 +23,7 @@ class Theme:
     window: str
     base: str
     raised: str
+    stripe: str
     border: str
     ink: str
     muted: str
@@ -39,6 +40,7 @@ LIGHT = Theme(
     window="#f3f4f6",
     base="#ffffff",
     raised="#fbfbfc",
+    stripe="#f5f7f9",
     border="#cfd4da",
     ink=palette.INK,
     muted="#646c76",
@@ -51,10 +53,11 @@ LIGHT = Theme(
 )
 DARK = Theme(
     name="dark",
-    window="#1e2227",
+    window="#2a2f36",
     base="#15181c",
-    raised="#262b31",
-    border="#3b424b",
+    raised="#363c44",
+    stripe="#1d2126",
+    border="#4b535d",
     ink="#e7eaee",
     muted="#9ba5b1",
     accent="#56b4e9",
@@ -86,7 +89,7 @@ def _palette(theme: Theme) -> QPalette:
     everywhere = {
         role.Window: theme.window,
         role.Base: theme.base,
-        role.AlternateBase: theme.raised,
+        role.AlternateBase: theme.stripe,
         role.Button: theme.raised,
         role.ToolTipBase: theme.raised,
         role.WindowText: theme.ink,

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 
 from designer.arrays import FloatArray
 from designer.explore.desktop.hit import Hit
+from designer.explore.desktop.layouts import emptied
 from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import Scene
 from designer.explore.desktop.theme import LIGHT, Theme
@@ -151,7 +152,7 @@ class WorkPage(QWidget):
         self._study = study
         stage = self.scene.stage
         stage.put_study(study)
-        together = 0.02 * float(np.linalg.norm(np.ptp(stage.bounds_m, axis=0)))
+        together = 0.04 * float(np.linalg.norm(np.ptp(stage.bounds_m, axis=0)))
         self.scene.overlay.names = canvas.names_of(study.robot.exit_points_m, together)
         self.scene.can_turn = not study.robot.is_point_mass
         if afresh:
@@ -339,10 +340,7 @@ class _Notice(QFrame):
         self.hide()
 
     def show_text(self, text: str, buttons: tuple[str, ...]) -> None:
-        while (item := self._row.takeAt(0)) is not None:
-            widget = item.widget()
-            if widget is not None:
-                widget.deleteLater()
+        emptied(self._row)
         label = QLabel(text)
         label.setWordWrap(True)
         self._row.addWidget(label, 1)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.analysis.maps import WorkspaceMaps
-from designer.report.figures import canvas, overlay
+from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps
-from designer.report.figures.scenes import add_workspace, scale_of, size_m, view_of
+from designer.report.figures.scenes import add_workspace, bounds_m, scale_of, size_m, view_of
 from designer.report.figures.stage import SCREEN, Stage
 from designer.report.figures.view import View
 from designer.report.fonts import with_fonts
@@ -26,16 +26,26 @@ from designer.report.fonts import with_fonts
 if TYPE_CHECKING:
     from pyvista import Plotter
 
+_KEYS = (
+    "The workspace. Arrow keys turn it, with Shift they move it; plus and minus zoom; N and P go "
+    "to the next and the previous pose by what it asks for; Escape forgets it, Home resets all."
+)
+
+_HINT = "drag or arrow keys: turn · wheel or + −: zoom · click or N P: pick a pose · Home: reset"
+
 
 def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
     """Return the workspace, cut open, as an HTML page in which it can be turned."""
     steps = scale_of(maps, quantity)
     stage = Stage(view_of(maps), SCREEN)
-    add_workspace(stage, maps.thinned(), quantity, steps)
+    thinned = maps.thinned()
+    add_workspace(stage, thinned, quantity, steps)
+    stage.lines(overlay.floor_lines(stage.view, bounds_m(maps)), palette.FAINT, 1.0)
     stage.aim()
     scene = _scene(stage.plotter)
     stage.plotter.clear()
-    return _page(scene, maps.study.name, _overlay(maps, quantity, steps, stage.view))
+    parts = _overlay(maps, quantity, steps, stage.view) + _poses(thinned, quantity)
+    return _page(scene, maps.study.name, parts)
 
 
 def _scene(plotter: Plotter) -> bytes:
@@ -83,7 +93,8 @@ def _page(scene: bytes, title: str, overlay: str) -> str:
     head, rest = page.split("<title>", 1)
     rest = rest.split("</title>", 1)[1]
     page = f"{head}<title>{escape(title)}</title>\n<style>{style}</style>{rest}"
-    page = page.replace("<body>", f'<body>\n<div class="content"></div>\n{overlay}', 1)
+    content = f'<div class="content" tabindex="0" role="application" aria-label="{_KEYS}"></div>'
+    page = page.replace("<body>", f"<body>\n{content}\n{overlay}", 1)
     before, after = page.rsplit("</body>", 1)
     return with_fonts(f"{before}<script>{script}</script>\n</body>{after}")
 
@@ -105,6 +116,7 @@ def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, vi
     labels = [(maps.focus.position_m, quantity.text_of(maps.focus), "label strong")]
     for name, place in canvas.names_of(maps.study.robot.exit_points_m, 0.04 * size_m(maps)):
         labels.append((place, name, "label"))
+    labels += [(place, text, "tick") for place, text in overlay.box_ticks(view, bounds_m(maps))]
     parts = []
     for point_m, text, kind in labels:
         at = ",".join(f"{x:.6g}" for x in point_m)
@@ -116,10 +128,34 @@ def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, vi
     )
     found = "".join(notes)
     parts.append(f'<p class="notes">{found}</p>' if found else "")
+    parts.append('<div id="near" hidden></div><div id="mark" hidden></div>')
+    parts.append('<p id="pointed" hidden></p>')
+    parts.append('<p id="picked" role="status"></p>')
     parts.append('<button id="shield"><span>click to turn the scene</span></button>')
     half_height = f"{view.half_height_m:.6g}"
-    parts.append(f'<button id="home" data-half-height="{half_height}">reset view</button>')
+    parts.append(f'<button id="home" data-half-height="{half_height}">reset</button>')
+    parts.append(f'<p class="keys">{_HINT}</p>')
     return "\n".join(parts)
+
+
+def _poses(maps: WorkspaceMaps, quantity: MapQuantity) -> str:
+    """Return the poses that are seen, as data: grids of positions and values.
+
+    A value below zero is the number of the reason why there is none, from -1 down.
+    """
+    reasons = [text for _, text in overlay.meanings(maps.shown)]
+    grids = []
+    for field in maps.shown:
+        value = quantity.of(field)
+        whys = [np.isfinite(value), field.is_infeasible, field.is_left_out]
+        values = np.select(whys, [value, -1.0, -len(reasons)], -1.0 - len(reasons))
+        points = np.column_stack([field.position_m.reshape(-1, 3), values.ravel()])
+        columns = values.shape[1] if values.ndim > 1 else 1  # of one column are points, not faces
+        rounded = [[float(f"{x:.5g}") for x in point] for point in points]
+        grids.append({"columns": columns, "points": rounded})
+    known = {"title": quantity.title, "unit": quantity.unit, "reasons": reasons}
+    text = json.dumps({**known, "grids": grids}, separators=(",", ":")).replace("<", "\\u003c")
+    return f'\n<script type="application/json" id="poses">{text}</script>'
 
 
 def _scale(quantity: MapQuantity, steps: Steps) -> str:

@@ -177,6 +177,38 @@ def floor_lines(view: View, bounds_m: FloatArray) -> list[FloatArray]:
     return lines
 
 
+def box_ticks(view: View, bounds_m: FloatArray) -> list[tuple[FloatArray, str]]:
+    """Return coordinates along edges of a box (2, 3) in space, and the names of its axes.
+
+    As in `box_axes`, for a scene that is turned: each is a point (3,) [m] a little outside, and its
+    text.
+    """
+    low, high = bounds_m
+    beyond = 0.05 * float(np.ptp(bounds_m, axis=0).max())
+    out = np.where(view.toward_camera > 0.0, 1.0, -1.0)
+    near = np.where(out > 0.0, high, low)
+    corner = leftmost_corner(view, bounds_m)
+    found = []
+    for axis, name in enumerate("xyz"):
+        edge = np.array([*(corner if axis == 2 else near[:2]), low[2]])
+        side = np.zeros(3)
+        if axis == 2:
+            side[:2] = np.sign(corner - 0.5 * (low + high)[:2])
+        else:
+            side[1 - axis] = out[1 - axis]
+        ticks = ticks_between(low[axis], high[axis], 4 if axis == 2 else 5)
+        ends = [(tick, fmt.trimmed(tick, 6), 1.0) for tick in ticks]
+        if axis == 2:
+            ends.append((high[axis] + beyond, f"{name} [m]", 0.0))
+        else:
+            ends.append((0.5 * (low + high)[axis], f"{name} [m]", 2.2))
+        for at, text, times in ends:
+            place = edge + times * beyond * side
+            place[axis] = at
+            found.append((place, text))
+    return found
+
+
 def leftmost_corner(view: View, bounds_m: FloatArray) -> FloatArray:
     """Return x and y of the upright edge of a box that is leftmost in the picture (2,) [m]."""
     corners = floor_corners(bounds_m)
