@@ -16,6 +16,7 @@ from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
+from designer.model.limits import Limits
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
@@ -146,6 +147,8 @@ class Selection:
         Groups of cables that may each get a product of their own; empty for none.
     max_distinct_products : int or None
         How many products the groups may have between them; None for one each.
+    limits : Limits
+        What the chosen rope is checked against beyond its strength.
     """
 
     grades: tuple[str, ...] | None = None
@@ -155,6 +158,7 @@ class Selection:
     sheave_diameter_m: float | None = None
     groups: tuple[CableGroup, ...] = ()
     max_distinct_products: int | None = None
+    limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
         require_number("safety_factor", self.safety_factor, least=1.0)
@@ -174,6 +178,14 @@ class Selection:
                 if cable in first:
                     raise ValueError(f"cable {cable} is in group '{first[cable]}' already")
                 first[cable] = group.name
+
+    def under(self, case: LoadCase) -> Selection:
+        """Return the same with the safety factor and the efficiency of a load case."""
+        return replace(
+            self,
+            safety_factor=case.safety_factor or self.safety_factor,
+            termination_efficiency=case.termination_efficiency or self.termination_efficiency,
+        )
 
 
 @dataclass(frozen=True, slots=True)

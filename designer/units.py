@@ -29,7 +29,7 @@ _COMMON_UNITS = (
     *("kg", "g", "t", "lb", "kilogram", "gram", "tonne", "pound"),
     *("N", "kN", "MN", "kgf", "lbf", "newton", "kilonewton", "meganewton"),
     *("Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "pascal", "megapascal", "gigapascal"),
-    *("rad", "deg", "radian", "degree", "K", "degC", "kelvin", "s", "min", "h", "second"),
+    *("rad", "deg", "radian", "degree", "K", "degC", "kelvin", "s", "min", "h", "second", "Hz"),
 )
 
 
@@ -65,6 +65,8 @@ COMPLIANCE = Dimension("a displacement per force", "m/N", "2e-6 m/N")
 FLEXURAL_RIGIDITY = Dimension("a flexural rigidity", "N*m^2", "12 N*m^2")
 TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
 SPEED = Dimension("a speed", "m/s", "3 m/s")
+FREQUENCY = Dimension("a frequency", "Hz", "2 Hz")
+STIFFNESS = Dimension("a force per displacement", "N/m", "50 kN/m")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "0.5 m/s^2")
 
 

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from designer.analysis.governing import string_frequency_Hz
 from designer.arrays import FloatArray
 from designer.model.robot import Poses
 from designer.selection.cases import CaseFound
 from designer.selection.qualities import Qualities
 from designer.selection.result import Candidate
-from designer.statics.inverse import solve_sagging
+from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Selection
 
 _SAMPLES = 500
+_WHERE = f"{_SAMPLES} samples and the corners of the region in each case"
+_Solved = tuple[CaseFound, FloatArray, Statics]
+"""A load case, places (n, n_coordinates) in it, and their equilibria (n,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,16 +70,32 @@ def checks_of(
     """Return the checks that the study gives what they need for; ``least_N`` is tension_min."""
     found: list[Check] = [_breaking(chosen, selection)]
     found += _bending(chosen, selection)
-    found.append(_slack(chosen, least_N))
+    solved = tuple(_solved(chosen))
+    found.append(_slack(chosen, least_N, solved))
     found += _clearance(qualities)
     found += _stability(chosen.governing)
+    found += _stiffness(qualities, selection.limits.stiffness_N_per_m)
+    found += _excitation(solved, selection.limits.excitation_Hz)
+    found += _drum(chosen, selection.limits.drum_capacity_m)
     return tuple(found)
+
+
+def _solved(chosen: Candidate) -> Iterator[_Solved]:
+    """Yield some samples of every load case in which no cable is lost, solved."""
+    for one in chosen.cases:
+        if one.loaded.lost_cable is not None:
+            continue
+        space = one.workspace.space
+        own = one.verification.worst_position_m[None]
+        places = np.concatenate([own, space.landmarks(), one.workspace.thinned(_SAMPLES)])
+        loaded, poses = one.loaded, Poses.at(places)
+        yield one, places, solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=False)
 
 
 def _breaking(chosen: Candidate, selection: Selection) -> Check:
     most = chosen.governing
     case, met = most.case, most.verification
-    factor = case.safety_factor or selection.safety_factor
+    factor = selection.under(case).safety_factor
     return Check(
         id="breaking_load",
         title="Breaking load",
@@ -112,18 +132,10 @@ def _bending(chosen: Candidate, selection: Selection) -> Iterator[Check]:
     )
 
 
-def _slack(chosen: Candidate, least_N: float) -> Check:
-    """Return the least tension over some samples of every load case in which no cable is lost."""
+def _slack(chosen: Candidate, least_N: float, solved: Sequence[_Solved]) -> Check:
+    """Return the least tension over the samples."""
     best: tuple[float, CaseFound, int, FloatArray] | None = None
-    for one in chosen.cases:
-        if one.loaded.lost_cable is not None:
-            continue
-        space = one.workspace.space
-        own = one.verification.worst_position_m[None]
-        places = np.concatenate([own, space.landmarks(), one.workspace.thinned(_SAMPLES)])
-        statics = solve_sagging(
-            one.loaded.robot, Poses.at(places), one.loaded.cable, seeks_better=False
-        )
+    for one, places, statics in solved:
         tension = np.where(statics.is_solved[:, None], statics.least_tension_N, np.inf)
         row, cable = np.unravel_index(int(tension.argmin()), tension.shape)
         if best is None or tension[row, cable] < best[0]:
@@ -133,7 +145,7 @@ def _slack(chosen: Candidate, least_N: float) -> Check:
         id="least_tension",
         title="Slack",
         formula="least tension anywhere in a cable ≥ what the study asks for",
-        source=f"robot.tension_min; {_SAMPLES} samples and the corners of the region in each case",
+        source=f"robot.tension_min; {_WHERE}",
         demand=least_N,
         capacity=least,
         unit="N",
@@ -184,4 +196,81 @@ def _stability(most: CaseFound) -> Iterator[Check]:
         holds=is_stable,
         load_case=most.case.name,
         place=most.verification.worst_position_m,
+    )
+
+
+def _stiffness(qualities: Qualities | None, least_N_per_m: float | None) -> Iterator[Check]:
+    """Yield the least stiffness of the platform, where the study asks for one."""
+    found = None if qualities is None else qualities.stiffness
+    if found is None or least_N_per_m is None:
+        return
+    there = 1.0 / found.softest_m_per_N
+    yield Check(
+        id="stiffness",
+        title="Stiffness",
+        formula="least force per displacement of the platform, cables of fixed length ≥ the limit",
+        source="selection.limits.stiffness; searched over the workspace",
+        demand=least_N_per_m,
+        capacity=there,
+        unit="N/m",
+        utilisation=least_N_per_m / there if there > 0.0 else math.inf,
+        holds=there >= least_N_per_m,
+        load_case="static load of the study",
+        place=found.softest_place,
+    )
+
+
+def _excitation(solved: Sequence[_Solved], band_Hz: tuple[float, float] | None) -> Iterator[Check]:
+    """Yield the cable whose lowest frequency comes nearest the band, or lies deepest in it."""
+    if band_Hz is None or not solved:
+        return
+    low, high = band_Hz
+    best: tuple[float, float, CaseFound, int, FloatArray] | None = None
+    for one, places, statics in solved:
+        frequency = np.where(
+            statics.is_solved[:, None], string_frequency_Hz(one.loaded, statics), np.inf
+        )
+        depth = np.minimum(high / frequency, frequency / low)  # above 1 within the band
+        row, cable = np.unravel_index(int(depth.argmax()), depth.shape)
+        if best is None or depth[row, cable] > best[0]:
+            nearest = float(frequency[row, cable])
+            best = float(depth[row, cable]), nearest, one, int(cable) + 1, places[row]
+    assert best is not None
+    depth_there, there, case, number, place = best
+    is_above = there / low >= high / there
+    yield Check(
+        id="excitation",
+        title="Excitation",
+        formula=f"√(T/m)/2l of each cable outside {low:g} to {high:g} Hz; no overtones",
+        source=f"selection.limits.excitation; {_WHERE}",
+        demand=high if is_above else there,
+        capacity=there if is_above else low,
+        unit="Hz",
+        utilisation=depth_there,
+        holds=depth_there < 1.0,
+        load_case=case.case.name,
+        cable=number,
+        place=place,
+    )
+
+
+def _drum(chosen: Candidate, capacity_m: float | None) -> Iterator[Check]:
+    """Yield the largest stroke of a cable, where the study says what a drum takes up."""
+    if capacity_m is None:
+        return
+    met = chosen.verification
+    stroke = met.longest_m - met.shortest_m
+    cable = int(np.nan_to_num(stroke, nan=-1.0).argmax())
+    yield Check(
+        id="drum_capacity",
+        title="Drum",
+        formula="stroke: largest − smallest unstrained length ≤ what the drum takes up",
+        source="selection.limits.drum_capacity, beside its dead turns",
+        demand=float(stroke[cable]),
+        capacity=capacity_m,
+        unit="m",
+        utilisation=float(stroke[cable]) / capacity_m,
+        holds=bool(stroke[cable] <= capacity_m),
+        load_case="all",
+        cable=cable + 1,
     )

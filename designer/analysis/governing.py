@@ -113,7 +113,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
     strength_N = factor * found.loaded.cable.allowable_tension_N
     tension = statics.cable_tension_N[0]
     ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
-    mass = _mass_kg_per_m(found.loaded)
+    frequency = string_frequency_Hz(found.loaded, statics)[0]
     rows = zip(
         found.cables.tolist(),
         statics.length_m[0].tolist(),
@@ -122,7 +122,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         _sags_m(statics).tolist(),
         _stretches_m(statics).tolist(),
         (strength_N / tension).tolist(),
-        (np.sqrt(np.mean(ends, axis=0) / mass) / (2.0 * statics.free_length_m[0])).tolist(),
+        frequency.tolist(),
         pulls,
         strict=True,
     )
@@ -134,10 +134,16 @@ def _up(one: Loaded) -> FloatArray:
     return np.asarray(one.bare[0].level[2])
 
 
-def _mass_kg_per_m(one: Loaded) -> float:
+def string_frequency_Hz(one: Loaded, statics: Statics) -> FloatArray:
+    """Return the lowest frequency of each cable as a string (..., n_cables), with ice [Hz].
+
+    sqrt(T / m) / (2 l), of the mean T of its end tensions and its free length l.
+    """
     cable, ice = one.bare[1], one.case.ice
     around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
-    return cable.linear_density_kg_per_m + around
+    mass = cable.linear_density_kg_per_m + around
+    mean = 0.5 * (statics.exit_tension_N + statics.platform_tension_N)
+    return np.asarray(np.sqrt(mean / mass) / (2.0 * statics.free_length_m))
 
 
 def _pulls_N(statics: Statics) -> FloatArray:

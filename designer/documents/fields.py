@@ -320,12 +320,20 @@ DynamicFactor = Annotated[float, bounded("dynamic factor")]
 DragCoefficient = Annotated[float, bounded("drag coefficient")]
 DragArea = Annotated[float, bounded("drag area")]
 IceThickness = Annotated[float, bounded("ice")]
+Frequency = Annotated[float, bounded("frequency")]
+Stiffness = Annotated[float, bounded("stiffness")]
+DrumCapacity = Annotated[float, bounded("drum capacity")]
 
 Interval = Annotated[tuple[Length, Length], list_of(2, 2, _INTERVAL), AfterValidator(_rising)]
 Turn = Annotated[
     tuple[HalfTurn, HalfTurn],
     list_of(2, 2, _INTERVAL),
     AfterValidator(partial(_rising, unit="rad")),
+]
+Band = Annotated[
+    tuple[Frequency, Frequency],
+    list_of(2, 2, _INTERVAL),
+    AfterValidator(partial(_rising, unit="Hz")),
 ]
 Corner = Annotated[tuple[Length, Length], list_of(2, 2, "two lengths [x, y]")]
 Point = Annotated[tuple[Length, Length, Length], list_of(3, 3, "three lengths [x, y, z]")]

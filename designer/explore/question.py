@@ -147,12 +147,7 @@ class Question:
         size = next((one for one in grade.sizes if one.id == rope.size_id), None)
         if size is None:
             raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
-        allowance = Allowance.of(self.selection)
-        allowance = replace(
-            allowance,
-            safety_factor=case.safety_factor or allowance.safety_factor,
-            termination_efficiency=case.termination_efficiency or allowance.termination_efficiency,
-        )
+        allowance = Allowance.of(self.selection.under(case))
         if not allowance.efficiency(grade, size.diameter_m) > 0.0:
             raise DesignerError(
                 f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "

@@ -1,9 +1,10 @@
 """What candidates meet in the load cases of a study, over the samples and between them.
 
 Each case has directions of wind and inertia and lost cables (`designer.model.load_case.Loaded`);
-each of these is solved over all samples, for all candidates that hold so far. A lost cable sets the
-platform moving, which takes long to follow: that is done for fewer samples. Between the samples it
-is searched in the direction in which a case asks for most, and in those that come near it.
+each of these is solved over all samples, for all candidates that hold so far; of robots that are
+slow to solve over some of them at first, and over all where a candidate is searched. A lost cable
+sets the platform moving, which takes long to follow: that is done for fewer samples. Between the
+samples it is searched in the direction in which a case asks for most, and in those near it.
 """
 
 from __future__ import annotations
@@ -22,12 +23,15 @@ from designer.progress import Advance
 from designer.selection.verify import Sampled, Verification, refined, verify_sizes
 from designer.statics.cable_loss import CableLoss, lose_cable
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.sizes import is_quick
 from designer.study import Workspace
 from designer.workspace.demand import loss_demand, rope_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 FEW_SAMPLES, MOST_SAMPLES = 64, 256
 """Poses in which a cable is lost, for each candidate and for the chosen one."""
+_FEW_AT_FIRST = 300
+"""Samples that candidates are tried at first where all of them take long."""
 _NEAR = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MOST_ROUNDS = 6
@@ -50,6 +54,8 @@ class CaseFound:
         The same, also between the samples where ``is_refined``.
     is_full : bool
         Whether that search was the full one.
+    is_whole : bool
+        Whether all samples were solved, or, after the loss of a cable, all that ever are.
     """
 
     workspace: Workspace
@@ -57,6 +63,16 @@ class CaseFound:
     sampled: Sampled
     verification: Verification
     is_full: bool = False
+    is_whole: bool = True
+
+    def whole(self) -> CaseFound:
+        """Return what is met over all samples."""
+        if self.is_whole or not self.verification.holds:
+            return self
+        one = self.loaded
+        (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
+        met = sampled.verification(one.cable)
+        return replace(self, sampled=sampled, verification=met, is_whole=True)
 
     @property
     def case(self) -> LoadCase:
@@ -112,11 +128,30 @@ class CaseFound:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cases:
-    """The load cases of a study, ready to be tried on cables."""
+    """The load cases of a study, ready to be tried on cables.
+
+    ``few`` is how many samples are solved at first, where not all of them; see `hurried`.
+    """
 
     robot: Robot
     workspace: Workspace
     each: tuple[LoadCase, ...]
+    few: int | None = None
+
+    def hurried(self) -> Cases:
+        """Return the same, with few samples at first where all would take hours.
+
+        That is on robots that are slow to solve, where there is more than the static case: all
+        samples are left for candidates that are searched, see `CaseFound.whole`.
+        """
+        is_long = len(self.each) > 1 and not is_quick(self.robot)
+        return replace(self, few=_FEW_AT_FIRST) if is_long else self
+
+    @property
+    def sample_count(self) -> int:
+        """How many samples are solved in each direction, for a progress bar (an estimate)."""
+        count = self.workspace.sample_count
+        return count if self.few is None else min(self.few, count)
 
     def passes(self, cables: Sequence[Sequence[Cable]]) -> int:
         """Return how often all samples are solved at most, for a progress bar."""
@@ -159,7 +194,9 @@ class Cases:
         self, case: LoadCase, loaded: Sequence[Loaded], progress: Advance
     ) -> Iterator[CaseFound]:
         region = case.region or self.workspace.region
-        workspace = replace(self.workspace, region=region)
+        workspace = whole = replace(self.workspace, region=region)
+        if self.few is not None and case.cable_lost is None:
+            workspace = replace(workspace, samples=min(self.few, workspace.samples))
         cables = [one.cable for one in loaded]
         shares = bool(loaded) and not case.changes_robot and case.cable_lost is None
         if not loaded:
@@ -171,10 +208,11 @@ class Cases:
         else:
             met = verify_sizes(loaded[0].robot, workspace, cables, progress=progress)
         if not shares:
-            progress(workspace.sample_count)
+            progress(self.sample_count)
         for one, sampled in zip(loaded, met, strict=True):
             known = sampled.verification(one.cable)
-            yield CaseFound(workspace, one, sampled, known)
+            is_whole = workspace.samples == whole.samples
+            yield CaseFound(whole, one, sampled, known, is_whole=is_whole)
 
 
 def governing(found: Sequence[CaseFound]) -> CaseFound:
@@ -198,9 +236,16 @@ def together(found: Sequence[CaseFound]) -> Verification:
 
 def searched(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
     """Search between the samples: what governs in full, other cases near it lightly."""
+    found = _with(found, {id(o): o.whole() for o in _near(worst_of_each(found))})
     most = governing(found)
-    near = [o for o in worst_of_each(found) if o.utilisation > _NEAR * most.utilisation]
+    near = _near(worst_of_each(found))
     return _with(found, {id(o): _search(o, is_light=o is not most) for o in near})
+
+
+def _near(found: Sequence[CaseFound]) -> list[CaseFound]:
+    """Those that ask for most, or nearly."""
+    most = governing(found)
+    return [one for one in found if one.utilisation > _NEAR * most.utilisation]
 
 
 def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
@@ -210,10 +255,10 @@ def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
     neither gains. What is found is the largest that these searches met, from the worst of the first
     directions on; that there is none larger is not proved.
     """
+    found = tuple(one.whole() for one in found)
     done: dict[int, CaseFound] = {}
     for most in worst_of_each(found):
-        near = (o for o in found if o.case is most.case)
-        near = (o for o in near if o.utilisation > _NEAR * most.utilisation)
+        near = _near([o for o in found if o.case is most.case])
         done |= {id(o): _search(o, is_light=o is not most) for o in near}
     return tuple(_turned(one) for one in _with(found, done))
 

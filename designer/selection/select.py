@@ -45,7 +45,7 @@ def select(
     load case; without any it is the static one.
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
-    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,))
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     named = selection.grades
     allowed = [g for g in grades if is_allowed(g, named)]
     trial = _Trial(cases, selection, built, reporter, common_currency(allowed))
@@ -85,7 +85,7 @@ def best_product(
     what candidates are compared by. None where nothing holds.
     """
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
-    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,))
+    cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     currency = common_currency(allowed)
     trial = _Trial(cases, selection, built or AsBuilt(robot), Silent(), currency)
     return best_of(trial.sampled(allowed), selection.objectives, trial.searched)
@@ -165,10 +165,10 @@ class _Trial:
         """Solve all samples with all sizes that the sheave allows."""
         products = products_of(self.selection, grades, self.built)
         cables = [
-            [one.cable for one in products_of(self._selection_in(case), grades, self.built)]
+            [one.cable for one in products_of(self.selection.under(case), grades, self.built)]
             for case in self.cases.each
         ]
-        count = self.cases.workspace.sample_count * self.cases.passes(cables)
+        count = self.cases.sample_count * self.cases.passes(cables)
         with self.reporter.task("sizes", count) as advance:
             sampled = self.cases.sampled(cables, advance)
         entries = []
@@ -191,14 +191,6 @@ class _Trial:
                     self._add_stiffness(entry, searched=False)
                     advance(1)
         return entries
-
-    def _selection_in(self, case: LoadCase) -> Selection:
-        asked = self.selection
-        return replace(
-            asked,
-            safety_factor=case.safety_factor or asked.safety_factor,
-            termination_efficiency=case.termination_efficiency or asked.termination_efficiency,
-        )
 
     def _add_stiffness(self, entry: Entry, *, searched: bool) -> None:
         where = self.cases.robot, self.cases.workspace, entry.cable

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from redundant_robots import FOUR
 from scipy.spatial.transform import Rotation
 from twins.loaded import Twin, acting, held, least_largest, rest, tensions_N
 
@@ -13,15 +14,16 @@ from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
+from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Prism
 from designer.resources import example_file
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseFound, Cases, searched_all
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.statics.cable_loss import Fate, lose_cable
 from designer.statics.inverse import solve_sagging
-from designer.study import Study
+from designer.study import Study, Workspace
 
 PARKED = {
     "yard": Prism.box((13, 17), (7, 11), (1, 2)),
@@ -100,6 +102,33 @@ def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
     turned = Rotation.from_rotvec([1e-3, -1e-3, 1e-3]).as_matrix() @ turned
     _, _, pull = rest(twin, load, near, turned, length[others], others)
     return tensions_N(pull, length[others], load.q)
+
+
+@pytest.mark.slow
+def test_few_samples_at_first_change_no_figure_of_what_is_searched() -> None:
+    robot = replace(FOUR, platform=replace(FOUR.platform, drag_area_m2=2.0))
+    workspace = Workspace(Prism.box((20, 70), (20, 60), (-30, -8)), samples=40)
+    each = LoadCase("static"), LoadCase("wind", wind=Wind(15.0, 1.2, count=2))
+    cases = Cases(robot, workspace, each)
+    thin, thick = (Cable(d, 5000.0 * d**2, 5e10 * d**2, 6e8 * d**2) for d in (0.004, 0.01))
+    found = [
+        one.sampled([[thin, thick]] * 2, lambda _: None) for one in (cases, replace(cases, few=10))
+    ]
+    assert [tried[0].verification.holds for tried in found[1]] == [False, True]
+    assert {one.sampled.samples for one in found[1][1]} == {10}
+    full, few = (searched_all(tried[1]) for tried in found)
+    assert {one.sampled.samples for one in few} == {40}
+    assert [one.utilisation for one in few] == [one.utilisation for one in full]
+    assert [one.is_full for one in few] == [one.is_full for one in full]
+
+
+def test_only_slow_robots_with_several_cases_hurry() -> None:
+    workspace = Workspace(Prism.box((20, 70), (20, 60), (-30, -8)))
+    three = replace(FOUR, exit_points_m=FOUR.exit_points_m[:3])
+    both = LoadCase("static"), LoadCase("hoisting", dynamic_factor=1.3)
+    assert Cases(FOUR, workspace, both).hurried().few is not None
+    assert Cases(FOUR, workspace, both[:1]).hurried().few is None
+    assert Cases(three, workspace, both).hurried().few is None
 
 
 @pytest.mark.slow

@@ -27,6 +27,7 @@ from designer.io.config.schema import (
     WorkspaceSection,
 )
 from designer.model.cable import Material
+from designer.model.limits import Limits
 from designer.model.machine import Surroundings
 from designer.model.measurements import LogColumn, Measurements
 from designer.model.region import PointList, Prism, Rectangle, Region
@@ -211,6 +212,9 @@ def _selection(section: SelectionSection | None) -> Selection | None:
         sheave_diameter_m=section.sheave_diameter,
         groups=tuple(CableGroup(name, cables) for name, cables in (section.groups or {}).items()),
         max_distinct_products=section.max_distinct_products,
+        limits=Limits(
+            section.limits.stiffness, section.limits.excitation, section.limits.drum_capacity
+        ),
     )
 
 

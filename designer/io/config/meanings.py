@@ -125,6 +125,18 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "Different ropes",
         "How many different ropes the groups of cables may have between them.",
     ),
+    "selection.limits.stiffness": (
+        "Least stiffness",
+        "Force per displacement of the platform, in any direction, cables of fixed length.",
+    ),
+    "selection.limits.excitation": (
+        "Excitation",
+        "Band of frequencies in which no cable shall swing as a string.",
+    ),
+    "selection.limits.drum_capacity": (
+        "Drum capacity",
+        "Rope that a drum takes up, beside its dead turns.",
+    ),
     "load_cases.mass": (
         "Mass in load case",
         "Mass of the platform with its payload in this case, instead of the study's.",

@@ -281,6 +281,14 @@ class WorkspaceSection(Section):
         return only_one_of(given, ORIENTATION_KINDS, "the workspace")
 
 
+class LimitsSection(Section):
+    """What the chosen rope is checked against beyond its strength."""
+
+    stiffness: fields.Stiffness | None = None
+    excitation: fields.Band | None = None
+    drum_capacity: fields.DrumCapacity | None = None
+
+
 class SelectionSection(Section):
     """How a product is chosen."""
 
@@ -291,6 +299,7 @@ class SelectionSection(Section):
     sheave_diameter: fields.SheaveDiameter | None = None
     groups: Groups | None = None
     max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
+    limits: LimitsSection = LimitsSection()
 
 
 class LoadCaseSection(Section):

@@ -108,7 +108,7 @@ def _value(value: float, unit: str) -> str:
     if unit == "N":
         return fmt.newtons(value)
     if unit == "m":
-        return fmt.millimetres(value)
+        return fmt.millimetres(value) if value < 1.0 else fmt.metres(value)
     return f"{fmt.trimmed(value)}\u00a0{unit}".rstrip()
 
 
@@ -121,6 +121,13 @@ def _where(one: Check) -> str:
     return ", ".join(parts)
 
 
+_LIMITS = {
+    "stiffness": "stiffness (no limit is given)",
+    "excitation": "frequencies of cables (no excitation is given)",
+    "drum_capacity": "drums (no capacity is given)",
+}
+
+
 def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
     """Return what the study does not ask for, or gives no figures for."""
     done = {one.id for one in checks}
@@ -130,7 +137,7 @@ def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
         lacking.append("D/d (no least ratio is known)" if known else "D/d (no sheave is given)")
     if "clearance" not in done:
         lacking.append("clearance (none is asked for)")
-    lacking += ["a limit of displacement", "excitation of cables", "capacity and stroke of drums"]
+    lacking += [words for name, words in _LIMITS.items() if name not in done]
     return f"Not checked: {fmt.listing(lacking, 'and')}."
 
 

@@ -1,0 +1,36 @@
+"""What a study asks of the chosen rope beyond its strength."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from designer.arrays import require_number
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits that the chosen rope is checked against; None asks for nothing.
+
+    Parameters
+    ----------
+    stiffness_N_per_m : float or None
+        Least force per displacement of the platform, in any direction, cables of fixed length
+        [N/m].
+    excitation_Hz : (float, float) or None
+        Band from the lowest to the highest frequency of what shakes the robot [Hz], in which no
+        cable shall swing as a string.
+    drum_capacity_m : float or None
+        Rope that a drum takes up, beside its dead turns [m].
+    """
+
+    stiffness_N_per_m: float | None = None
+    excitation_Hz: tuple[float, float] | None = None
+    drum_capacity_m: float | None = None
+
+    def __post_init__(self) -> None:
+        require_number("stiffness_N_per_m", self.stiffness_N_per_m, above=0.0)
+        require_number("drum_capacity_m", self.drum_capacity_m, above=0.0)
+        if self.excitation_Hz is not None:
+            low, high = self.excitation_Hz
+            require_number("excitation_Hz", low, above=0.0)
+            require_number("excitation_Hz", high, above=low)

@@ -1,0 +1,107 @@
+"""Checks of the chosen rope that only a study with limits has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from report_parts import table
+
+from designer.analysis.analyse import Analysis
+from designer.analysis.checks import Check, checks_of
+from designer.analysis.result_json import result_dict
+from designer.model.limits import Limits
+from designer.model.robot import Poses
+from designer.report.design import checks
+from designer.report.design.source import source_of
+from designer.statics.inverse import solve_sagging
+
+pytestmark = pytest.mark.slow
+
+YARD = """
+name: Yard
+robot:
+  anchors: [[0, 0, 11.5], [30, 0, 11.5], [15, 26, 11.5]]
+  platform: {mass: 180 kg}
+cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MPa}
+workspace: {region: {box: [[10, 20], [4, 12], [1, 7]]}, samples: 200}
+selection:
+  grades: [unirope-7x19-galvanised]
+  limits: {stiffness: 3 kN/m, excitation: [1 Hz, 2 Hz], drum_capacity: 9 m}
+"""
+
+
+@pytest.fixture(scope="module")
+def found(solve: Callable[[str], Analysis]) -> Analysis:
+    return solve(YARD)
+
+
+def with_limits(found: Analysis, limits: Limits) -> dict[str, Check]:
+    assert found.selection is not None
+    assert found.selection.chosen is not None
+    assert found.study.selection is not None
+    selection = replace(found.study.selection, limits=limits)
+    each = checks_of(found.selection.chosen, selection, 0.0, found.qualities)
+    return {one.id: one for one in each}
+
+
+def test_result_has_the_limits(found: Analysis) -> None:
+    rows = {row["id"]: row for row in result_dict(found)["checks"]}
+    assert rows["stiffness"]["demand"] == pytest.approx(3000.0)
+    assert rows["stiffness"]["utilisation"] == pytest.approx(3000.0 / rows["stiffness"]["capacity"])
+    assert rows["drum_capacity"]["capacity"] == pytest.approx(9.0)
+    assert rows["drum_capacity"]["unit"] == "m"
+    assert rows["excitation"]["unit"] == "Hz"
+    assert len(rows["excitation"]["pose"]) == 3
+
+
+def test_stroke_is_that_between_the_farthest_poses(found: Analysis) -> None:
+    assert found.selection is not None
+    assert found.selection.chosen is not None
+    drum = with_limits(found, Limits(drum_capacity_m=9.0))["drum_capacity"]
+    assert drum.cable is not None
+    exit_point = found.study.robot.exit_points_m[drum.cable - 1]
+    box = np.array([[10.0, 4.0, 1.0], [20.0, 12.0, 7.0]])
+    farthest = np.linalg.norm(np.abs(box - exit_point).max(axis=0))
+    nearest = np.linalg.norm(np.clip(exit_point, *box) - exit_point)
+    assert drum.demand == pytest.approx(farthest - nearest, rel=0.01)
+    assert drum.holds == (drum.demand <= 9.0)
+    assert with_limits(found, Limits(drum_capacity_m=30.0))["drum_capacity"].holds
+
+
+def test_frequency_is_that_of_a_string_there(found: Analysis) -> None:
+    assert found.selection is not None
+    assert found.selection.chosen is not None
+    cable = found.selection.chosen.cable
+    low = with_limits(found, Limits(excitation_Hz=(0.01, 0.02)))["excitation"]
+    assert low.holds
+    assert low.place is not None
+    assert low.cable is not None
+    statics = solve_sagging(found.study.robot, Poses.at(low.place[None]), cable)
+    ends = statics.exit_tension_N + statics.platform_tension_N
+    expected = np.sqrt(0.5 * ends / cable.linear_density_kg_per_m) / (2.0 * statics.length_m)
+    assert low.capacity == pytest.approx(expected[0, low.cable - 1], rel=1e-9)
+    assert low.demand == 0.02
+    assert low.utilisation == pytest.approx(0.02 / low.capacity)
+
+
+def test_a_cable_that_swings_within_the_band_does_not_hold(found: Analysis) -> None:
+    low = with_limits(found, Limits(excitation_Hz=(0.01, 0.02)))["excitation"].capacity
+    around = with_limits(found, Limits(excitation_Hz=(0.9 * low, 1.1 * low)))["excitation"]
+    assert not around.holds
+    assert around.utilisation > 1.0
+    above = with_limits(found, Limits(excitation_Hz=(5e3, 6e3)))["excitation"]
+    assert above.holds
+    assert above.capacity == 5e3
+    assert above.demand > low
+
+
+def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
+    section = checks.section(source_of(found, draws=False))
+    assert section is not None
+    names = [row.cells[0] for row in table(section, "Checks of the chosen rope.").groups[0].rows]
+    assert names[-3:] == ["Stiffness", "Excitation", "Drum"]
+    assert any(isinstance(block, str) and "Not checked: D/d" in block for block in section.blocks)
+    assert not any("excitation" in block for block in section.blocks if isinstance(block, str))
