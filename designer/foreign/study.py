@@ -61,8 +61,8 @@ def study_text(robot: ForeignRobot, answers: Answers) -> str:
     if answers.position_m is not None:
         robot = replace(robot, position_m=answers.position_m, euler_xyz_rad=(0.0, 0.0, 0.0))
     lines = [
-        f"# {robot.name}",
-        f"# Imported from a {robot.source}.",
+        f"# {_in_one_line(robot.name)}",
+        f"# Imported from a {_in_one_line(robot.source)}.",
         f"# Where it says '{FILL_IN}', the file does not tell; the study is refused until all is",
         "# filled in. The fields are explained in the example that `designer init` writes.",
         "",
@@ -231,6 +231,11 @@ def _effects(robot: ForeignRobot) -> Iterator[str]:
 
 def _remarks(robot: ForeignRobot, field: str, indent: str = "") -> Iterator[str]:
     return (f"{indent}# {line}" for line in robot.remarks.get(field, ()))
+
+
+def _in_one_line(text: str) -> str:
+    # Else a name could go on beyond its comment.
+    return "".join(one if one.isprintable() else "?" for one in " ".join(text.split()))
 
 
 def _number(value: float) -> str:

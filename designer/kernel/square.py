@@ -108,6 +108,8 @@ def solve_range(
             _solve_block(cables, A, poses, figures, rows, sizing, iterations, step, lightness)
             evaluate(cables, figures.kappa)
             check(poses, cables, figures.weights, figures.strength, rows)
+            if not sizing:
+                _refuse_other_weights(poses)
             _store(out, cables, poses, lane, sizing)
             for j in range(min(LANES, pending.size - first)):
                 # Negated, so that NaN counts as failed.
@@ -220,6 +222,14 @@ def check(
             poses[PULL, j] += abs(poses[LOAD + axis, j]) / poses[REACH, j]
         # Addition instead of a maximum, because it lets NaN through.
         poses[RESIDUAL, j] += force / poses[SCALE, j]
+
+
+@kernel
+def _refuse_other_weights(poses: FloatArray) -> None:
+    """Leave unsolved what balances cables that are lighter still than those asked for."""
+    for j in range(LANES):
+        if poses[C, j] != poses[GOAL, j]:
+            poses[RESIDUAL, j] = np.inf
 
 
 @element

@@ -229,13 +229,18 @@ def _hold_pose(tally: Tally, statics: Statics, i: int) -> None:
     ours = np.stack([statics.length_m[i], statics.force_x_N[i], statics.force_z_N[i]], axis=-1)
     EA, w = float(statics.axial_stiffness_N.flat[0]), float(statics.weight_N_per_m.flat[0])
     load = 9.81 * robot.platform.mass_kg
-    true = exact_catenary.pose(ours.ravel(), robot.exit_points_m, ends, arms, load, EA, w)
+    where = robot.exit_points_m.tolist(), pose.position_m[i].tolist()
+    try:
+        true = exact_catenary.pose(ours.ravel(), robot.exit_points_m, ends, arms, load, EA, w)
+    except ArithmeticError as error:  # nothing near by balances
+        tally.faults.append(f"{tally.name}: {error}: {where}")
+        return
     exact = true.values.reshape(ours.shape)
     top = np.array([tension(F, V, w * s) for s, F, V in exact])
     scale = np.column_stack([exact[:, 0], top, top])
     off, moves = np.abs(ours - exact) / scale, true.moves.reshape(ours.shape) / scale
     for error, moved in zip(off.ravel(), moves.ravel(), strict=True):
-        tally.hold_error(error, moved, (robot.exit_points_m.tolist(), pose.position_m[i].tolist()))
+        tally.hold_error(error, moved, where)
 
 
 def try_moorpy(count: int, rng: np.random.Generator) -> str:

@@ -118,10 +118,10 @@ def test_so_few_cables_choose_no_tension(tmp_path) -> None:
 
 
 def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
-    odd = bodies(link().replace("Test rig", "yes: #1 &quot;fill in&quot;"))
+    odd = bodies(link().replace("Test rig", "yes: #1 &quot;fill in&quot;&#10;robot: fill in"))
     path = write_caspr(tmp_path, odd, cables())
     assert run("import", str(path), *GRADE)[0] == 0
-    assert read_study(tmp_path / "rig.yaml").name == 'yes: #1 "fill in"'
+    assert read_study(tmp_path / "rig.yaml").name == 'yes: #1 "fill in"\nrobot: fill in'
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
 from designer.kernel import answer as kernel
+from designer.model.cable import Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.inverse import solve_massless, solve_sagging
@@ -125,3 +126,17 @@ def test_each_verdict_has_a_label_and_a_sentence(verdict) -> None:
     assert verdict.sentence.endswith(".")
     assert verdict.advice or verdict is Verdict.SOLVED
     assert getattr(kernel, verdict.name) == int(verdict)
+
+
+def test_cables_lighter_than_asked_for_are_no_answer() -> None:
+    """The way down from light cables may end early: what balances then has another weight."""
+    exits = [[94.54, -64.46, -4.53], [-50.78, 102.54, 0.29], [-102.48, -50.91, 0.53]]
+    robot = Robot(frozen_array(exits), Platform(2.26))
+    cable = Cable(0.01, 0.0943, 4.8e7, 1e9)
+    near = np.random.default_rng(0).normal([93.5, -64.04, -236.8], 1.0, (500, 3))
+    statics = solve_sagging(robot, Poses.at(near), cable)
+    solved = statics.is_solved
+    assert solved.sum() > 50
+    assert statics.weight_N_per_m[solved] == pytest.approx(cable.weight_N_per_m, rel=1e-15)
+    closure = statics.closure_residual_m()[solved] / statics.length_m[solved]
+    assert closure.max() < 1e-9
