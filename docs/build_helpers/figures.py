@@ -77,21 +77,23 @@ def internal(axes):
     best = choice[np.argmin(largest)] / 1e3
     axes.axvline(best, color="k", linestyle=":", label="smallest largest tension")
     axes.axhline(0, color="k", linewidth=0.8)
-    axes.set(xlabel="internal force [kN]", ylabel="tension [kN]", ylim=(-3, 12))
-    axes.legend(frameon=False, ncols=2)
+    axes.set(xlabel="internal force [kN]", ylabel="tension [kN]", ylim=(-1, 17))
+    axes.legend(frameon=False, ncols=3, loc="upper center")
 
 
 def cone(axes):
-    """What two cables of a plane can do with a platform between them, whatever they weigh."""
-    for x, colour in ((-3.0, "C0"), (2.0, "C1")):
-        axes.plot([x, 0], [2, 0], "--", color=colour, linewidth=1)
+    """What two cables to the right of a platform can do, whatever they weigh, and its weight."""
+    for x, colour in ((1.0, "C0"), (3.4, "C1")):
+        axes.plot([0, x], [0, 2], "--", color=colour, linewidth=1)
         axes.annotate("", (x / 2, 1), (0, 0), arrowprops={"arrowstyle": "->", "color": colour})
         axes.plot(x, 2, "o", color=colour)
-    axes.annotate("", (0, -1.4), (0, 0), arrowprops={"arrowstyle": "->", "color": "C2"})
-    axes.fill([0, -3, -3, 0], [0, 2, -1.6, -1.6], color="C2", alpha=0.15)
-    axes.fill([0, 2, 2, 0], [0, 2, -1.6, -1.6], color="C2", alpha=0.15)
-    axes.fill([0, -3, 2], [0, 2, 2], color="C0", alpha=0.15)
-    axes.text(-0.7, 1.5, "straight cables reach this")
-    axes.text(-2.8, -1.2, "sagging ones also this", color="C2")
-    axes.set(aspect="equal", xlim=(-3.3, 2.3), ylim=(-1.7, 2.3))
+    axes.annotate("", (0, -1.2), (0, 0), arrowprops={"arrowstyle": "->", "color": "C2"})
+    axes.annotate("", (0, 1.5), (0, 0), arrowprops={"arrowstyle": "->", "linewidth": 2})
+    axes.fill([0, 1.0, 3.4], [0, 2, 2], color="C0", alpha=0.15)
+    axes.fill([0, 3.4, 3.4, 0], [0, 2, -1.4, -1.4], color="C2", alpha=0.15)
+    axes.plot([-0.56, 0.92], [-1.4, 2.3], "k:", linewidth=1)  # through the origin
+    axes.text(1.2, 1.6, "straight cables do this", color="C0")
+    axes.text(0.5, -0.6, "sagging ones also this", color="C2")
+    axes.text(-0.1, 1.3, "what the weight asks for: outside", ha="right")
+    axes.set(aspect="equal", xlim=(-3.2, 3.6), ylim=(-1.5, 2.4))
     axes.set_axis_off()

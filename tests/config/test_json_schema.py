@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -52,7 +53,13 @@ def test_shipped_studies_pass(name: str) -> None:
     assert list(EDITOR.iter_errors(read_document(example_file(name)).root.data())) == []
 
 
-def test_every_option_in_the_comments_of_the_starter_study_passes() -> None:
+def test_the_studies_of_the_guide_pass() -> None:
+    guide = example_file("fast").with_name("measured-logs.md").read_text(encoding="utf-8")
+    studies = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    assert [faults(study) for study in studies] == [[], []]
+
+
+def test_options_of_the_starter_study_pass() -> None:
     text = example_file("fast").read_text(encoding="utf-8")
     assert faults(text.replace("  # tension_min", "  tension_min")) == []
     assert faults(f"{text}\nsurroundings: {{temperature: -10 degC}}\nformat: 1") == []
