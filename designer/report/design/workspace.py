@@ -114,7 +114,9 @@ def _figures(source: Source) -> tuple[Block, ...]:
     if source.maps is None:
         return ()
     first, *rest = workspace_figures(source.maps, draws_scenes=source.draws_scenes)
-    return Box.of("keep", Subheading("maps", "Maps"), replace(first, kind="space")), *rest
+    if isinstance(first, Picture):
+        first = replace(first, kind="space")
+    return Box.of("keep", Subheading("maps", "Maps"), first), *rest
 
 
 def _verdicts(census: Census) -> Picture | None:

@@ -10,7 +10,7 @@ from designer.analysis.field import Field
 from designer.analysis.maps import Served, WorkspaceMaps
 from designer.analysis.rope_maps import Rope
 from designer.report import format as fmt
-from designer.report.blocks import Picture
+from designer.report.blocks import Box, Picture
 from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
 from designer.report.pictures import chart, scene
 
@@ -21,13 +21,13 @@ _NEAR = 0.005
 _IN_SPACE = "The region in space, coloured by diameter"
 
 
-def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
+def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box]:
     """Yield maps and charts of the workspace, in the order in which they are shown."""
     drawn = _figures(maps, draws_scenes=draws_scenes)
     yield from (picture for picture in drawn if picture is not None)
 
 
-def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | None]:
+def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box | None]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_shares import served_chart
     from designer.report.figures.interactive import workspace_scene_html
@@ -48,12 +48,13 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
             f"tension is {fmt.percent(change, 2)} there at most."
         )
         yield chart(caption, f"Two maps in {view}", slice_panels(maps, (DIAMETER, tension)))
-    yield chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
+    edge = chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
     if change > _LITTLE:
         drawn = slice_panels(maps, (tension, RATIO))
         yield chart(panels_caption(maps), f"Two maps in {view}", drawn)
     drawn = served_chart(maps.served)
-    yield chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
+    share = chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
+    yield share if edge is None else Box.of("pair keep", edge, share)
 
 
 def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
