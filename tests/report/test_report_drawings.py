@@ -55,7 +55,8 @@ def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
 def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
     charts = report_from(Source(analysis, find(analysis), draws=True, missing="no scenes"))
-    assert len(pictures(charts.section("workspace"))) == 5
+    assert len(pictures(charts.section("workspace"))) == 1
+    assert len(pictures(charts.section("family"))) == 4
     reader = pypdf.PdfReader(io.BytesIO(render_pdf(render_html(charts, paged=True))))
     assert [len(page.images) for page in reader.pages] == [0] * len(reader.pages)
 

@@ -220,7 +220,7 @@ def turns_table(loop: LoopSizing) -> Table:
             tension = diameter = "diverges"
         rows.append(Row((str(turn), tension, diameter)))
     columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
-    caption = "Turns; turn 0 is the massless start."
+    caption = "Turns of the iteration; turn 0 is the massless start."
     if loop.has_diverged:
         caption += " It diverges: each turn asks for more than the one before."
     return Table.of(caption, columns, *rows, kind="narrow turns")

@@ -150,8 +150,7 @@ def _tried(selection: SelectionResult) -> str:
 def _front(selection: SelectionResult, *, draws: bool) -> tuple[Block, ...]:
     heading = Subheading("pareto", "Pareto-optimal sizes")
     picture = _pareto_chart(selection) if draws and len(selection.front) > 1 else None
-    shown = Box.of("keep", heading, front_sentence(selection), picture)
-    return (shown, pareto_table(selection)) if len(selection.front) > 1 else (shown,)
+    return Box.of("keep", heading, front_sentence(selection), picture), pareto_table(selection)
 
 
 def _pareto_chart(selection: SelectionResult) -> Picture | None:

@@ -78,6 +78,7 @@ def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Bl
     if source.rope is None:
         yield _facts(study, study.workspace, found)
     yield _extremes(study.workspace.region, found)
+    yield _weight_effect(found)
     yield Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census))
     hanging = _hanging(source.analysis.built.robot, study.workspace, found, other)
     heading = Subheading("hanging", "Cables below the platform") if other is not None else None
@@ -178,6 +179,17 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
         _extreme(f"Worst pose{how}", found.sagging, is_answer=True),
         _extreme("Worst sample", found.sampled),
         _extreme("Worst pose, rope weight ignored", found.massless),
+    )
+
+
+def _weight_effect(found: WorkspaceMap) -> str:
+    if found.sagging is None or found.massless is None:
+        return ""
+    diameter = fmt.factor(found.sagging.diameter_m / found.massless.diameter_m)
+    tension = fmt.factor(found.sagging.max_tension_N / found.massless.max_tension_N)
+    return (
+        f"The effect of rope weight is a factor of {diameter} in diameter and of {tension} in "
+        "tension, each at its own worst pose."
     )
 
 

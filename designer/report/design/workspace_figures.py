@@ -32,7 +32,7 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | B
     from designer.report.figures.charts_shares import served_chart
     from designer.report.figures.interactive import workspace_scene_html
     from designer.report.figures.scenes import workspace_scene
-    from designer.report.figures.sections import slice_chart, slice_panels
+    from designer.report.figures.sections import slice_panels
 
     if draws_scenes:
         page = workspace_scene_html(maps)
@@ -40,8 +40,8 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | B
     view = "plane" if maps.is_upright else "plan"
     place, tension, change = _place_of(maps), tension_of(maps.section), _largest_change(maps)
     if change > _LITTLE:
-        caption = f"Needed diameter {place}. White lines join poses of equal need."
-        yield chart(caption, f"A map in {view}", slice_chart(maps))
+        drawn = slice_panels(maps, (DIAMETER, tension, RATIO))
+        yield chart(panels_caption(maps), f"Three maps in {view}", drawn)
     else:
         caption = (
             f"Needed diameter and largest tension {place}. The effect of rope weight on the "
@@ -49,9 +49,6 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | B
         )
         yield chart(caption, f"Two maps in {view}", slice_panels(maps, (DIAMETER, tension)))
     edge = chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
-    if change > _LITTLE:
-        drawn = slice_panels(maps, (tension, RATIO))
-        yield chart(panels_caption(maps), f"Two maps in {view}", drawn)
     drawn = served_chart(maps.served)
     share = chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
     yield share if edge is None else Box.of("pair keep", edge, share)
@@ -133,8 +130,9 @@ def _place_of(maps: WorkspaceMaps) -> str:
 
 
 def panels_caption(maps: WorkspaceMaps) -> str:
-    """Return the caption of the maps of tension and of its ratio to the one without sag."""
-    shown = f"Largest tension, and its ratio to that of weightless cables, {_place_of(maps)}."
+    """Return the caption of the maps of need, tension, and tension over that without sag."""
+    what = "Needed diameter, largest tension, and its ratio to that of weightless cables"
+    shown = f"{what}, {_place_of(maps)}. White lines join poses of equal need."
     ratio = RATIO.of(maps.section)
     if not np.isfinite(ratio).any():
         return shown

@@ -49,7 +49,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         canvas.grid_lines(axes)
         height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
-        axes.set_xlabel("distance to the edge of the exit points' hull [m]")
+        axes.set_xlabel("distance to the exit points' hull [m]")
         return canvas.svg(figure, "edge", shown)
 
 
