@@ -52,7 +52,8 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
         titles = ", ".join(quantity.title for quantity in quantities)
-        return canvas.svg(figure, "slice-panels", f"{_place(maps)}: {titles}")
+        key = "-".join(["slice", *(quantity.key for quantity in quantities)])
+        return canvas.svg(figure, key, f"{_place(maps)}: {titles}")
 
 
 def stiffness_map(analysis: Analysis) -> str | None:
