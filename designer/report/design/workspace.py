@@ -94,8 +94,10 @@ def _served(rope: Rope, analysis: Analysis) -> Statement:
         f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
         f"'{rope.load_case}' at {fmt.position(rope.place)}."
     )
-    fine = used <= 1.0 and analysis.is_positive
-    return Statement("Every pose is held", text, "good" if fine else "doubt")
+    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    if chosen is not None and chosen.governing.loaded.lost_cable is not None:
+        text += " That is with all cables; the loss of one asks for more, see the load cases."
+    return Statement("Every pose is held", text, "good" if used <= 1.0 else "bad")
 
 
 def _hanging_share(source: Source) -> str:
