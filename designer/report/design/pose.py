@@ -208,7 +208,7 @@ def turns_table(loop: LoopSizing) -> Table:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
     typical = loop.iterates[0 if loop.has_diverged else -1]
     unit, scale = fmt.force_unit(typical.max_tension_N)
-    force_places = fmt.decimals([typical.max_tension_N / scale], 4)
+    force_places = fmt.decimals([typical.max_tension_N / scale], 5)
     places = fmt.decimals([1e3 * typical.diameter_m], 4)
     rows: list[Row] = []
     for turn, iterate in numbered:
