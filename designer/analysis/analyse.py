@@ -292,9 +292,8 @@ def analyse(
     if catalogue is None:
         catalogue = load_catalogue(study.catalogues)
     catalogue.require_grades_of(study)
-    scratch = None
-    if folder is None and study.workspace is not None:
-        scratch = Scratch()
+    scratch = Scratch() if folder is None and study.workspace is not None else None
+    if scratch is not None:
         folder = scratch.folder
     provenance = Provenance.now(study)
     pose = analyse_pose(study)

@@ -141,6 +141,8 @@ def _slack(chosen: Candidate, least_N: float, solved: Sequence[_Solved]) -> Chec
         if best is None or tension[row, cable] < best[0]:
             best = float(tension[row, cable]), one, int(cable) + 1, places[row]
     least, case, number, place = best or (math.nan, chosen.governing, 0, None)
+    holds = least > 0.0 and least >= least_N * (1.0 - 1e-9)
+    used = least_N / least if least > 0.0 else math.inf
     return Check(
         id="least_tension",
         title="Slack",
@@ -149,8 +151,8 @@ def _slack(chosen: Candidate, least_N: float, solved: Sequence[_Solved]) -> Chec
         demand=least_N,
         capacity=least,
         unit="N",
-        utilisation=least_N / least if least > 0.0 else math.inf,
-        holds=least > 0.0 and least >= least_N * (1.0 - 1e-9),
+        utilisation=min(used, 1.0) if holds else used,
+        holds=holds,
         load_case=case.case.name,
         cable=number or None,
         place=place,

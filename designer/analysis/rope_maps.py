@@ -16,7 +16,6 @@ from designer.model.region import Prism, Rectangle
 from designer.model.robot import Poses, Robot
 from designer.selection.cases import CaseFound
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.statics.sizes import is_quick
 from designer.study import Workspace
 from designer.workspace.demand import demand_of, is_left_out
 
@@ -87,10 +86,9 @@ def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
     focus = Focus(place[:3], "worst pose", statics if statics.is_solved else None, _at(rope, place))
     shell: dict[str, Field] = {}
     if isinstance(region, Prism):
-        step = 1 if is_quick(rope.robot) else 2
-        section = _over(rope, grids.disc_m(region, region.z_m[1], 90 // step, 240 // step))
+        section = _over(rope, grids.disc_m(region, region.z_m[1], 45, 120))
         pieces = grids.cutaway_m(region, place[:3])
-        shell = {name: _over(rope, _every(step, grid)) for name, grid in pieces.items()}
+        shell = {name: _over(rope, _every_second(grid)) for name, grid in pieces.items()}
     elif isinstance(region, Rectangle):
         section = _over(rope, grids.upright_disc_m(region))
         shell = {"section": section}
@@ -100,9 +98,9 @@ def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
     return replace(family, study=study, focus=focus, section=section, shell=shell, edge=None)
 
 
-def _every(step: int, grid_m: FloatArray) -> FloatArray:
-    """Return every so many points along both axes of a grid, its rim kept."""
-    rows, columns = (np.unique([*range(0, n, step), n - 1]) for n in grid_m.shape[:2])
+def _every_second(grid_m: FloatArray) -> FloatArray:
+    """Return every second point along both axes of a grid, its rim kept."""
+    rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in grid_m.shape[:2])
     return np.asarray(grid_m[np.ix_(rows, columns)])
 
 

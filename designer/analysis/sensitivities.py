@@ -189,7 +189,7 @@ def with_payload(one: Loaded, factor: float) -> Loaded:
     (robot, cable), case = one.bare, one.case
     mass = robot.platform.mass_kg if case.mass_kg is None else case.mass_kg
     wrench = robot.platform.wrench_N if case.wrench_N is None else case.wrench_N
-    case = replace(case, mass_kg=factor * mass, wrench_N=factor * wrench)
+    case = replace(case, mass_kg=factor * mass or None, wrench_N=factor * wrench)
     return replace(one, case=case).on(robot, cable)
 
 

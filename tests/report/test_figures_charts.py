@@ -27,13 +27,25 @@ from designer.report.figures.charts_shares import (
     usable_chart,
     verdict_chart,
 )
-from designer.report.figures.colours import TENSION, steps_for, steps_over_decades
-from designer.report.figures.sections import slice_chart, slice_panels
+from designer.report.figures.colours import (
+    DIAMETER,
+    TENSION,
+    MapQuantity,
+    steps_for,
+    steps_over_decades,
+)
+from designer.report.figures.sections import slice_panels
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.study import Selection, Workspace
 
 pytestmark = pytest.mark.slow
+
+
+def slice_chart(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
+    """One map alone."""
+    return slice_panels(maps, (quantity,))
+
 
 CHARTS: dict[str, Callable[[WorkspaceMaps], str | None]] = {
     "slice": slice_chart,

@@ -136,16 +136,24 @@ def test_first_page_names_the_rope_and_its_margin(reports: dict[str, Report[Firs
 def test_sag_table_shows_the_papers_workspace_figures(
     reports: dict[str, Report[FirstPage]],
 ) -> None:
+    family = reports["positive"].section("family")
+    worst, _, massless = (row[-2:] for row in cells(family, "The thinnest diameter"))
+    assert worst == ("51.2\u00a0mm", "371.0\u00a0kN")
+    assert massless == ("29.3\u00a0mm", "121.4\u00a0kN")
+    assert "a factor of 1.75 in diameter and of 3.06 in tension" in said(family)
+
+
+def test_sag_table_is_of_the_chosen_rope(reports: dict[str, Report[FirstPage]]) -> None:
     sag = reports["positive"].first_page.sag
-    rows = cells(sag, "Configured cable family")
-    assert rows[0] == ("Diameter", "29.3\u00a0mm", "51.2\u00a0mm", "1.75")
-    assert rows[1] == ("Tension", "121.4\u00a0kN", "371.0\u00a0kN", "3.06")
+    rows = cells(sag, "gost-6x19s-iwrc-1960")
+    assert [row[0] for row in rows] == ["Tension", "Used"]
+    assert rows[1][2] == "99.8\u00a0%"
     assert "19 mm" in sag[1]
     assert "1.80" in sag[1]
 
 
 def test_pose_section_shows_the_papers_loop(reports: dict[str, Report[FirstPage]]) -> None:
-    assert cells(reports["positive"].section("pose"), "Turns of the loop")[:3] == [
+    assert cells(reports["positive"].section("pose"), "Turns of the iteration")[:3] == [
         ("0", "86.39", "24.72"),
         ("1", "123.08", "29.51"),
         ("2", "138.69", "31.32"),
@@ -155,8 +163,8 @@ def test_pose_section_shows_the_papers_loop(reports: dict[str, Report[FirstPage]
 def test_a_loop_that_diverges_is_said_to(solve: Callable[[str], Analysis]) -> None:
     text = FAST.format(**{**DEFAULTS, "pose": "[250, 200, -1]"})
     section = pose.section(source_of(solve(text[: text.index("workspace:")]), draws=False))
-    assert "It diverges" in table(section, "Turns of the loop").caption
-    turns = cells(section, "Turns of the loop")
+    assert "It diverges" in table(section, "Turns of the iteration").caption
+    turns = cells(section, "Turns of the iteration")
     assert max(len(cell) for row in turns for cell in row) <= 15
     row = cells(section, "The diameter of this pose by each way")[-1]
     assert row[1:3] == (fmt.MISSING, fmt.MISSING)
@@ -245,12 +253,14 @@ def test_numbers_of_sections_count_up(reports: dict[str, Report[FirstPage]]) -> 
     assert [section.id for section in reports["positive"].sections] == [
         "answer",
         "inputs",
-        "pose",
+        "checks",
+        "carries",
         "workspace",
         "selection",
-        "checks",
         "stiffness",
         "workshop",
+        "pose",
+        "family",
         "verification",
         "left-out",
         "assumptions",

@@ -29,13 +29,22 @@ def report(analyses: dict[str, Analysis]) -> Report[FirstPage]:
 
 
 def test_every_place_is_filled(report: Report[FirstPage]) -> None:
-    numbers = {"pose": 2, "workspace": 6, "selection": 4, "stiffness": 1}
+    numbers = {"checks": 1, "carries": 1, "workspace": 1, "selection": 2, "stiffness": 1}
+    numbers |= {"pose": 2, "family": 5}
     for section in report.sections:
         assert len(pictures(section)) == numbers.get(section.id, 0), section.id
     for picture in (report.first_page.picture, *pictures(report.sections)):
         assert picture is not None
         assert picture.caption.endswith(".")
         assert picture.svg.startswith("<svg") or picture.bitmap.startswith("data:image/png;base64,")
+
+
+def test_the_governing_pose_is_drawn_and_what_carries_it(report: Report[FirstPage]) -> None:
+    (there,) = pictures(report.section("checks"))
+    assert "which governs, is marked" in there.caption
+    assert there.bitmap
+    (bars,) = pictures(report.section("carries"))
+    assert "Payload" in bars.svg
 
 
 def test_the_scene_to_turn_is_in_the_page_once(report: Report[FirstPage]) -> None:
@@ -55,7 +64,8 @@ def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
 def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
     charts = report_from(Source(analysis, find(analysis), draws=True, missing="no scenes"))
-    assert len(pictures(charts.section("workspace"))) == 5
+    assert len(pictures(charts.section("workspace"))) == 1
+    assert len(pictures(charts.section("family"))) == 4
     reader = pypdf.PdfReader(io.BytesIO(render_pdf(render_html(charts, paged=True))))
     assert [len(page.images) for page in reader.pages] == [0] * len(reader.pages)
 

@@ -111,7 +111,8 @@ def test_the_checks(source: Source) -> None:
     assert "<b>hoisting</b>" in rows["Breaking load"][-2]
     assert "clearance (none is asked for)" in said(section)
     total = cells(section, "The forces")[-1]
-    assert [cell.replace("\u00a0", " ") for cell in total] == ["Sum", "0.0 N", "0.0 N", "0.0 N"]
+    assert total[0] == "Sum"
+    assert all(abs(float(cell.split("\u00a0")[0])) == 0.0 for cell in total[1:])
 
 
 def test_a_check_that_fails_is_on_page_one(found: Analysis, source: Source) -> None:

@@ -40,7 +40,7 @@ def section(source: Source) -> Section | None:
     """Return what carries the result; None where no rope is chosen for all cables."""
     found = source.analysis.carries
     if found is None:
-        return None
+        return _of_groups() if source.analysis.has_groups else None
     slopes, moves = found.sensitivities, _moves(found)
     mass = found.governing.loaded.bare[0].platform.mass_kg
     return Section.of(
@@ -53,6 +53,14 @@ def section(source: Source) -> Section | None:
         _sizes(found.sizes),
         *_way_out(found),
     )
+
+
+def _of_groups() -> Section:
+    text = (
+        "Sensitivities, reserves and the way out of the region are computed for one rope on all "
+        "cables. For ropes of groups they are not, so nothing is said of them here."
+    )
+    return Section.of("carries", "What carries the result", text)
 
 
 def _reserves(found: Carries, mass_kg: float) -> Statement:

@@ -259,6 +259,7 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
         Fact("At the position", fmt.position(found.worst_position_m)),
         Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
         Fact("Utilisation", fmt.utilisation(found.utilisation)),
+        *_reserve(analysis),
         *([Fact("Load case", most.case.name)] if analysis.study.load_cases else []),
         _mass(chosen),
         Fact("Longest, each cable", longest, "unstrained, no spare"),
@@ -267,6 +268,15 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
     )
     metric = "" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m)
     return Card("Chosen rope", size.id, product_name(chosen.grade), Facts(facts), metric)
+
+
+def _reserve(analysis: Analysis) -> Iterator[Fact]:
+    """Yield how much more payload there may be."""
+    found = analysis.carries
+    if found is not None and found.payload is not None:
+        more = fmt.percent(found.payload.value - 1.0)
+        end = "until 100\u00a0% are used" if found.payload.is_held else "until a pose is not held"
+        yield Fact("Reserve in payload", more, end)
 
 
 def _mass(chosen: Candidate) -> Fact:

@@ -30,11 +30,22 @@ def section(source: Source) -> Section:
 
 def defaults_table(analysis: Analysis) -> Table | None:
     """Return the fields left out, the first half on the left; None where there are none."""
-    defaults = (e for e in analysis.study.source.entries if e.given == "default")
-    cells = [(e.field, e.value_SI) for e in defaults if not e.field.startswith("document.")]
+    cells = [(e.field, e.value_SI) for e in _defaults(analysis) if e.value_SI != "none"]
     if not cells:
         return None
     return _halves("Fields that the configuration file leaves out.", cells)
+
+
+def none_given(analysis: Analysis) -> str:
+    """Return the fields that have no value, in a sentence."""
+    names = [e.field for e in _defaults(analysis) if e.value_SI == "none"]
+    return f"Not given, and not in the study: {fmt.listing(names)}." if names else ""
+
+
+def _defaults(analysis: Analysis) -> list[Entry]:
+    """Return the fields left out, but those that a drawing office writes on a document."""
+    entries = analysis.study.source.entries
+    return [e for e in entries if e.given == "default" and not e.field.startswith("document.")]
 
 
 def _shown(entry: Entry) -> str:

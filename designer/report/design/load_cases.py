@@ -56,8 +56,9 @@ def section(source: Source) -> Section | None:
         "14 directions finds it. Winches hold each pose, so a change of temperature changes "
         "lengths and no tension.",
         _pulleys(source),
-        "The configured family, the maps, the shares of the region that sizes serve, stiffness and "
-        "clearance are those of the static load of the study.",
+        "The configured family, the shares of the region that sizes serve, stiffness and clearance "
+        "are those of the static load of the study; the maps of the chosen rope are those of the "
+        "case named there.",
     )
 
 

@@ -208,7 +208,7 @@ def turns_table(loop: LoopSizing) -> Table:
         numbered = [*numbered[: _MOST_TURNS - _LAST_TURNS], *numbered[-_LAST_TURNS:]]
     typical = loop.iterates[0 if loop.has_diverged else -1]
     unit, scale = fmt.force_unit(typical.max_tension_N)
-    force_places = fmt.decimals([typical.max_tension_N / scale], 4)
+    force_places = fmt.decimals([typical.max_tension_N / scale], 5)
     places = fmt.decimals([1e3 * typical.diameter_m], 4)
     rows: list[Row] = []
     for turn, iterate in numbered:
@@ -220,7 +220,7 @@ def turns_table(loop: LoopSizing) -> Table:
             tension = diameter = "diverges"
         rows.append(Row((str(turn), tension, diameter)))
     columns = (Column("Turn"), Column("Largest tension", unit), Column("Diameter", "mm"))
-    caption = "Turns; turn 0 is the massless start."
+    caption = "Turns of the iteration; turn 0 is the massless start."
     if loop.has_diverged:
         caption += " It diverges: each turn asks for more than the one before."
     return Table.of(caption, columns, *rows, kind="narrow turns")

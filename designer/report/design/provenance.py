@@ -5,7 +5,7 @@ from __future__ import annotations
 from designer.analysis.analyse import Analysis, Provenance
 from designer.report import format as fmt
 from designer.report.blocks import Box, Column, Fact, Facts, Section, Subheading, Table, shown_time
-from designer.report.design.inputs import defaults_table
+from designer.report.design.inputs import defaults_table, none_given
 from designer.report.design.source import Source
 from designer.study import Study
 
@@ -29,6 +29,7 @@ def section(source: Source) -> Section:
         ),
         Subheading("defaults", "Fields left at their default") if defaults else None,
         defaults,
+        none_given(analysis) if defaults else None,
     )
 
 
@@ -55,10 +56,6 @@ def _facts(analysis: Analysis) -> Facts:
         *facts_of(analysis.provenance, study),
         Fact("Solver tolerance", tolerance, "relative residual of a solved pose"),
     ]
-    if study.workspace is not None and analysis.workspace is not None:
-        spread = study.workspace.sampling.replace("_", " ")
-        facts.append(Fact("Samples", fmt.count(analysis.workspace.census.samples), spread))
-        facts.append(Fact("Seed", str(study.workspace.seed)))
     if analysis.selection is not None:
         facts.append(Fact("Every candidate", "candidates.csv", "table, beside this report"))
     if analysis.sweep_file is not None:

@@ -78,6 +78,7 @@ def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Bl
     if source.rope is None:
         yield _facts(study, study.workspace, found)
     yield _extremes(study.workspace.region, found)
+    yield _weight_effect(found)
     yield Box.of("keep", _verdicts(found.census) if source.draws else None, _census(found.census))
     hanging = _hanging(source.analysis.built.robot, study.workspace, found, other)
     heading = Subheading("hanging", "Cables below the platform") if other is not None else None
@@ -93,8 +94,10 @@ def _served(rope: Rope, analysis: Analysis) -> Statement:
         f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
         f"'{rope.load_case}' at {fmt.position(rope.place)}."
     )
-    fine = used <= 1.0 and analysis.is_positive
-    return Statement("Every pose is held", text, "good" if fine else "doubt")
+    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    if chosen is not None and chosen.governing.loaded.lost_cable is not None:
+        text += " That is with all cables; the loss of one asks for more, see the load cases."
+    return Statement("Every pose is held", text, "good" if used <= 1.0 else "bad")
 
 
 def _hanging_share(source: Source) -> str:
@@ -114,7 +117,9 @@ def _figures(source: Source) -> tuple[Block, ...]:
     if source.maps is None:
         return ()
     first, *rest = workspace_figures(source.maps, draws_scenes=source.draws_scenes)
-    return Box.of("keep", Subheading("maps", "Maps"), replace(first, kind="space")), *rest
+    if isinstance(first, Picture):
+        first = replace(first, kind="space")
+    return Box.of("keep", Subheading("maps", "Maps"), first), *rest
 
 
 def _verdicts(census: Census) -> Picture | None:
@@ -176,6 +181,17 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
         _extreme(f"Worst pose{how}", found.sagging, is_answer=True),
         _extreme("Worst sample", found.sampled),
         _extreme("Worst pose, rope weight ignored", found.massless),
+    )
+
+
+def _weight_effect(found: WorkspaceMap) -> str:
+    if found.sagging is None or found.massless is None:
+        return ""
+    diameter = fmt.factor(found.sagging.diameter_m / found.massless.diameter_m)
+    tension = fmt.factor(found.sagging.max_tension_N / found.massless.max_tension_N)
+    return (
+        f"The effect of rope weight is a factor of {diameter} in diameter and of {tension} in "
+        "tension, each at its own worst pose."
     )
 
 

@@ -10,7 +10,7 @@ from designer.analysis.field import Field
 from designer.analysis.maps import Served, WorkspaceMaps
 from designer.analysis.rope_maps import Rope
 from designer.report import format as fmt
-from designer.report.blocks import Picture
+from designer.report.blocks import Box, Picture
 from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
 from designer.report.pictures import chart, scene
 
@@ -21,18 +21,18 @@ _NEAR = 0.005
 _IN_SPACE = "The region in space, coloured by diameter"
 
 
-def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture]:
+def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box]:
     """Yield maps and charts of the workspace, in the order in which they are shown."""
     drawn = _figures(maps, draws_scenes=draws_scenes)
     yield from (picture for picture in drawn if picture is not None)
 
 
-def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | None]:
+def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box | None]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_shares import served_chart
     from designer.report.figures.interactive import workspace_scene_html
     from designer.report.figures.scenes import workspace_scene
-    from designer.report.figures.sections import slice_chart, slice_panels
+    from designer.report.figures.sections import slice_panels
 
     if draws_scenes:
         page = workspace_scene_html(maps)
@@ -40,20 +40,18 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | N
     view = "plane" if maps.is_upright else "plan"
     place, tension, change = _place_of(maps), tension_of(maps.section), _largest_change(maps)
     if change > _LITTLE:
-        caption = f"Needed diameter {place}. White lines join poses of equal need."
-        yield chart(caption, f"A map in {view}", slice_chart(maps))
+        drawn = slice_panels(maps, (DIAMETER, tension, RATIO))
+        yield chart(panels_caption(maps), f"Three maps in {view}", drawn)
     else:
         caption = (
             f"Needed diameter and largest tension {place}. The effect of rope weight on the "
             f"tension is {fmt.percent(change, 2)} there at most."
         )
         yield chart(caption, f"Two maps in {view}", slice_panels(maps, (DIAMETER, tension)))
-    yield chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
-    if change > _LITTLE:
-        drawn = slice_panels(maps, (tension, RATIO))
-        yield chart(panels_caption(maps), f"Two maps in {view}", drawn)
+    edge = chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
     drawn = served_chart(maps.served)
-    yield chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
+    share = chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
+    yield share if edge is None else Box.of("pair keep", edge, share)
 
 
 def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
@@ -132,8 +130,9 @@ def _place_of(maps: WorkspaceMaps) -> str:
 
 
 def panels_caption(maps: WorkspaceMaps) -> str:
-    """Return the caption of the maps of tension and of its ratio to the one without sag."""
-    shown = f"Largest tension, and its ratio to that of weightless cables, {_place_of(maps)}."
+    """Return the caption of the maps of need, tension, and tension over that without sag."""
+    what = "Needed diameter, largest tension, and its ratio to that of weightless cables"
+    shown = f"{what}, {_place_of(maps)}. White lines join poses of equal need."
     ratio = RATIO.of(maps.section)
     if not np.isfinite(ratio).any():
         return shown

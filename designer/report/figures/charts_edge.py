@@ -29,6 +29,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     shown = "Needed diameter from the centre of the region through the worst pose to the edge"
     with canvas.drawing():
         figure = canvas.sheet(62.0)
+        figure.set_figwidth(palette.HALF_WIDTH_MM / 25.4)
         axes = figure.subplots()
         axes.set(xlim=(start, 0.0), ylim=(0.0, top))
         _zones(axes, profile, start)
@@ -48,7 +49,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         canvas.grid_lines(axes)
         height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
-        axes.set_xlabel("distance to the edge of the exit points' hull, along the line [m]")
+        axes.set_xlabel("distance to the exit points' hull [m]")
         return canvas.svg(figure, "edge", shown)
 
 

@@ -29,7 +29,7 @@ _FRONT: Style = {"markersize": 6.0, "markeredgewidth": 0.9, "markeredgecolor": p
 _CHOSEN: Style = _FRONT | {"markersize": 9.0, "markeredgewidth": 1.8}
 
 
-def candidates_chart(selection: SelectionResult, most: int = 25) -> str:
+def candidates_chart(selection: SelectionResult, most: int = 18) -> str:
     """Return a row for each grade: range of sizes, need, best size, as SVG.
 
     Grades that hold come first, the lightest on top; then those that end too thin, the nearest
@@ -41,7 +41,7 @@ def candidates_chart(selection: SelectionResult, most: int = 25) -> str:
     shown = own + others
     left_out = len(selection.outcomes) + len(selection.alternatives) - len(shown)
     with canvas.drawing():
-        figure = canvas.sheet(20.0 + 4.6 * max(len(shown), 1))
+        figure = canvas.sheet(20.0 + 4.2 * max(len(shown), 1))
         axes = figure.subplots()
         right = _right_end(shown)
         axes.set(xlim=(0.0, right), ylim=(len(shown) - 0.4, -0.6))

@@ -28,7 +28,8 @@ def served_chart(served: Served) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     title = "Share of the workspace that a cable serves, over its diameter"
     with canvas.drawing():
-        figure = canvas.sheet(46.0)
+        figure = canvas.sheet(62.0)
+        figure.set_figwidth(palette.HALF_WIDTH_MM / 25.4)
         axes = figure.subplots()
         axes.set(ylim=(0.0, 104.0), xlim=_served_range(served))
         sag, straight = (palette.SAG, 1), (palette.MASSLESS, -1)
@@ -55,7 +56,7 @@ def _served_range(served: Served) -> tuple[float, float]:
         most.append(1.4 * float(served.diameter_m[at]))
     low, high = 1e3 * float(both.min()), 1e3 * float(np.nanmax(most))
     room = max(0.06 * (high - low), 0.01 * high)
-    return max(low - room, 0.0), high + room
+    return max(low - 3.0 * room, 0.0), high + room
 
 
 def _curve(
@@ -70,7 +71,8 @@ def _curve(
     at = int(np.searchsorted(share, 0.45 * share[-1]))
     place = (1e3 * diameter_m[at], 45.0 * share[-1])
     ha, va = ("left", "top") if side > 0 else ("right", "bottom")
-    canvas.note(axes, name, place, (6 * side, -4 * side), ha=ha, va=va, color=colour)
+    style: Style = {"ha": ha, "va": va, "color": colour, "path_effects": canvas.halo()}
+    canvas.note(axes, name, place, (6 * side, -4 * side), **style)
 
 
 def _needed(axes: Axes, needed_m: float, what: str, colour: str, side: int) -> None:

@@ -33,8 +33,8 @@ CLASS_COLOURS = {
     "not stated": MASSLESS,
 }
 """Of the classes of a rope's material."""
-PAPER_WIDTH_MM = 170.0
-"""Column width of the printed report."""
+PAPER_WIDTH_MM, HALF_WIDTH_MM = 170.0, 84.0
+"""Column width of the printed report, and of one of two charts side by side."""
 FONT_POINTS = 8.0
 
 

@@ -17,7 +17,6 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import (
-    DIAMETER,
     RATIO,
     TENSION,
     MapQuantity,
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_WIDE_MM = 120.0
 _NARROW_MM = 112.0
 """Of the sheet of a map that has a list beside it."""
 _ZOOM = 0.6
@@ -39,20 +37,11 @@ _HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
 _GREY: Style = {"facecolor": palette.LEFT_OUT}
 
 
-def slice_chart(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
-    """Return a large map of the section of a workspace at its greatest height, as SVG.
-
-    A list of points is drawn as points, seen from above.
-    """
-    bar = {"location": "right", "shrink": 0.9, "aspect": 26}
-    with canvas.drawing():
-        figure = _slice_sheet(maps, 24.0, _WIDE_MM)
-        _slice(figure, figure.subplots(), maps, quantity, 0.045, bar)
-        return canvas.svg(figure, f"slice-{quantity.key}", f"{_place(maps)}: {quantity.title}")
-
-
 def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSION, RATIO)) -> str:
-    """Return small maps of the same section side by side, one for each quantity, as SVG."""
+    """Return maps of the section of a workspace at its greatest height side by side, as SVG.
+
+    One for each quantity. A list of points is drawn as points, seen from above.
+    """
     bar = {"location": "bottom", "shrink": 0.92, "aspect": 30}
     with canvas.drawing():
         figure = _slice_sheet(maps, 38.0, 150.0 / len(quantities))
@@ -63,7 +52,8 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
         titles = ", ".join(quantity.title for quantity in quantities)
-        return canvas.svg(figure, "slice-panels", f"{_place(maps)}: {titles}")
+        key = "-".join(["slice", *(quantity.key for quantity in quantities)])
+        return canvas.svg(figure, key, f"{_place(maps)}: {titles}")
 
 
 def stiffness_map(analysis: Analysis) -> str | None:
