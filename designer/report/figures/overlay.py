@@ -226,7 +226,8 @@ def write_clear(
         *(other.get_window_extent() for other in axes.texts if other is not label),
     )
 
-    size, points = label.get_window_extent().size, axes.figure.dpi / 72.0
+    size = np.asarray(label.get_window_extent().size, dtype=np.float64)
+    points = axes.figure.dpi / 72.0
 
     def box(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:
         toward = np.array(side[0], dtype=np.float64) * [1.0, -1.0]
