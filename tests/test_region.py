@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import qmc
 
 from designer.arrays import frozen_array
 from designer.model.region import PointList, Prism, Rectangle
+from designer.model.sobol import sobol
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
@@ -103,3 +105,12 @@ def test_a_region_measures_and_describes_itself() -> None:
     assert words[0] == "upright prism over 3 corners"
     assert words[1].startswith("upright rectangle from [")
     assert words[2] == "a list of 300 points"
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+@pytest.mark.parametrize("seed", [0, 12345])
+def test_samples_are_the_sequence_of_scipy(dimensions: int, seed: int) -> None:
+    theirs = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
+    ours = sobol(dimensions, seed, 256)
+    for _ in range(4):
+        np.testing.assert_array_equal(next(ours), theirs.random(256))

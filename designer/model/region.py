@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from designer.arrays import BoolArray, FloatArray, finite_array, frozen_array, require_number
 from designer.model import polygon
 from designer.model.border import Border, ring
+from designer.model.sobol import sobol
 
 Sampling = Literal["low_discrepancy", "grid"]
 Position = Callable[[FloatArray], str]
@@ -177,7 +178,7 @@ class Prism(Shape):
             for layer in (_grid(x, y, [height]) for height in z):
                 yield from _in_chunks(layer[self.contains(layer)])
             return
-        sequence = _sobol(3, seed)
+        sequence = sobol(3, seed, CHUNK)
         while count > 0:
             points = low + next(sequence) * (high - low)
             inside = points[self.contains(points)][:count]
@@ -294,7 +295,7 @@ class Rectangle(Shape):
             share = _grid(*_axes(np.zeros(2), np.ones(2), self.size_m / spacing))
             yield from _in_chunks(self.at(share))
             return
-        sequence = _sobol(2, seed)
+        sequence = sobol(2, seed, CHUNK)
         for start in range(0, count, CHUNK):
             yield self.at(next(sequence)[: count - start])
 
@@ -375,15 +376,6 @@ def _box_around(plan_m: FloatArray, z_m: tuple[float, float]) -> FloatArray:
 
 def _in_chunks(points: FloatArray, size: int = CHUNK) -> Iterator[FloatArray]:
     return (points[start : start + size] for start in range(0, len(points), size))
-
-
-def _sobol(dimensions: int, seed: int) -> Iterator[FloatArray]:
-    """Yield a scrambled Sobol sequence in the unit cube (`CHUNK`, dimensions), for ever."""
-    from scipy.stats import qmc
-
-    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
-    while True:
-        yield sequence.random(CHUNK)
 
 
 def _axes(low: FloatArray, high: FloatArray, steps: FloatArray) -> list[FloatArray]:

@@ -30,7 +30,7 @@ from designer.workspace.refine import LIGHT, refine_over_branches
 
 FEW_SAMPLES, MOST_SAMPLES = 64, 256
 """Poses in which a cable is lost, for each candidate and for the chosen one."""
-_FEW_AT_FIRST = 300
+FEW_AT_FIRST = 300
 """Samples that candidates are tried at first where all of them take long."""
 _NEAR = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
@@ -145,7 +145,7 @@ class Cases:
         samples are left for candidates that are searched, see `CaseFound.whole`.
         """
         is_long = len(self.each) > 1 and not is_quick(self.robot)
-        return replace(self, few=_FEW_AT_FIRST) if is_long else self
+        return replace(self, few=FEW_AT_FIRST) if is_long else self
 
     @property
     def sample_count(self) -> int:

@@ -140,7 +140,8 @@ def standing_of(
         return "undominated", than if better else "as good as the chosen one"
     number = dominator_of(burdens([entry], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
-    unsearched = "" if found.is_refined else "; holds at the samples, not searched between them"
+    at = "the samples" if all(one.is_whole for one in entry.cases) else "the samples tried first"
+    unsearched = "" if found.is_refined else f"; holds at {at}, not searched between them"
     return "dominated", f"dominated by {front[number].name}{unsearched}"
 
 

@@ -105,6 +105,46 @@ def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, proble
     assert fault.line == windy.count("\n") + 3
 
 
+LINES = {
+    "{name: a, winds: 3}": (
+        "load_cases[1].winds: unknown field 'winds' (expected one of name, mass, wrench, "
+        "dynamic_factor, acceleration, wind, ice, cable_lost, safety_factor, "
+        "termination_efficiency, region; did you mean 'wind'?)"
+    ),
+    "{name: a, cable_lost: 4}": (
+        "load_cases[1].cable_lost: there is no cable 4, the robot has 3 (expected 1 to 3 or each)"
+    ),
+    "{name: first}": (
+        "load_cases[1].name: load_cases[0] has the name 'first' already (expected a name of its "
+        "own)"
+    ),
+    "{name: a, dynamic_factor: 0.9}": (
+        "load_cases[1].dynamic_factor: 0.9 is out of range (expected at least 1: 1 is at rest; a "
+        "dropped load is another matter)"
+    ),
+    "{name: a, safety_factor: 0.9}": (
+        "load_cases[1].safety_factor: 0.9 is out of range (expected at least 1: lifts of persons "
+        "have 12)"
+    ),
+}
+
+
+@pytest.mark.parametrize("case", LINES)
+def test_the_line_that_is_printed(windy: str, faults_of: FaultsOf, case: str) -> None:
+    (fault,) = faults_of(f"{windy}load_cases:\n  - name: first\n  - {case}\n")
+    where = f"crane.yaml:{windy.count(chr(10)) + 3}: "
+    assert str(fault).split(where, 1)[1] == LINES[case]
+
+
+def test_the_line_of_wind_without_an_area(windy: str, faults_of: FaultsOf) -> None:
+    still = windy.replace("    drag: {area: 1.2 m^2, coefficient: 1.1}\n", "")
+    (fault,) = faults_of(f"{still}load_cases: [{{name: a, wind: {{speed: 20 m/s}}}}]\n")
+    assert str(fault).endswith(
+        "load_cases[0].wind: the platform has no area in the wind "
+        "(expected robot.platform.drag: {area: …, coefficient: …})"
+    )
+
+
 def test_wind_needs_area_and_drag(valid: str, faults_of: FaultsOf) -> None:
     found = faults_of(f"{valid}load_cases: [{{name: a, wind: {{speed: 20 m/s}}}}]\n")
     assert [fault.problem for fault in found] == [

@@ -31,6 +31,7 @@ from designer.report.design.candidates import (
 )
 from designer.report.design.source import Source
 from designer.report.pictures import chart, scene
+from designer.selection.cases import FEW_AT_FIRST
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import SelectionResult
 from designer.selection.usable import Usable, UsableSize
@@ -139,9 +140,12 @@ def _tried(selection: SelectionResult) -> str:
     if not candidates:
         return "No size was solved."
     held = sum(c.verification.holds for c in candidates)
+    is_whole = all(one.is_whole for c in candidates for one in c.cases)
+    few = f"{FEW_AT_FIRST} samples of each load case, those compared further in every one"
     return (
         f"{fmt.plural(len(candidates), 'size')} of {fmt.plural(len(selection.outcomes), 'grade')} "
-        f"were solved in every sample, each with its own mass, stiffness and breaking load; "
+        f"were solved in {'every sample' if is_whole else few}, each with its own mass, stiffness "
+        f"and breaking load; "
         f"{fmt.count(held)} of them hold. They were compared by "
         f"{fmt.listing(MEANINGS[o].title for o in selection.objectives)}; the first decides."
     )

@@ -258,7 +258,7 @@ def write_clear(
         *(other.get_window_extent() for other in axes.texts if other is not label),
     )
 
-    size = np.array(label.get_window_extent().size, dtype=np.float64)
+    size = np.asarray(label.get_window_extent().size, dtype=np.float64)
     points = axes.figure.dpi / 72.0
 
     def box(anchor_px: FloatArray, side: Any, distance: float) -> FloatArray:

@@ -1,0 +1,51 @@
+"""The scrambled Sobol sequence, number for number that of SciPy.
+
+SciPy has it in `scipy.stats`, which takes longer to import than a whole workspace to solve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from designer.arrays import FloatArray
+
+_BITS = 30
+_POLYNOMIALS = ((1, 0, (1,)), (2, 1, (1, 3)))
+"""Degree, coefficients and first numbers of the second and third dimension (Joe, Kuo 2008)."""
+
+
+def sobol(dimensions: int, seed: int, chunk: int) -> Iterator[FloatArray]:
+    """Yield a sequence in the unit square or cube (``chunk``, dimensions), for ever.
+
+    Scrambled by a random lower triangular matrix and a shift; Matousek, On the L2-discrepancy for
+    anchored boxes, J. Complexity 14 (1998).
+    """
+    rng = np.random.default_rng(seed).spawn(1)[0]  # as SciPy does
+    powers = 2 ** np.arange(_BITS)
+    shift = rng.integers(0, 2, (dimensions, _BITS), np.uint32) @ powers
+    scramble = np.tril(rng.integers(0, 2, (dimensions, _BITS, _BITS), np.uint32), -1)
+    scramble += np.eye(_BITS, dtype=np.uint32)
+    bits = _directions(dimensions)[..., None] >> powers.size - 1 - np.arange(_BITS) & 1
+    turned = np.einsum("dij,dkj->dki", scramble, bits) % 2 @ powers[::-1]
+    for start in range(0, 2**_BITS, chunk):
+        number = np.arange(start, start + chunk)
+        points = np.tile(shift, (chunk, 1))
+        for k in range(int(number[-1]).bit_length()):
+            points ^= ((number ^ number >> 1) >> k & 1)[:, None] * turned[:, k]
+        yield points / 2.0**_BITS
+
+
+def _directions(dimensions: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
+    """Return the direction numbers (dimensions, bits)."""
+    rows = [[1] * _BITS]
+    for degree, coefficients, first in _POLYNOMIALS[: dimensions - 1]:
+        row = list(first)
+        for k in range(degree, _BITS):
+            number = row[k - degree] ^ row[k - degree] << degree
+            for i in range(1, degree):
+                number ^= (coefficients >> degree - 1 - i & 1) * row[k - i] << i
+            row.append(number)
+        rows.append(row)
+    return np.array(rows) << _BITS - 1 - np.arange(_BITS)
