@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Callable
 from dataclasses import replace
@@ -27,12 +28,17 @@ def _option(name: str, metavar: str, help_: str, parser: Callable[[str], Any]) -
     return typer.Option(name, parser=parser, metavar=metavar, help=help_)
 
 
-def _number(option: str, dimension: Dimension) -> Callable[[str], float]:
+def _number(option: str, dimension: Dimension, least: float = -math.inf) -> Callable[[str], float]:
     def read(text: str) -> float:
         try:
-            return read_quantity(text, dimension)
+            value = read_quantity(text, dimension)
         except QuantityError as error:
             raise InputError([Fault(option, None, "", error.problem, error.expected)]) from None
+        if value < least:
+            raise InputError(
+                [Fault(option, None, "", f"{text} is too small", f"{least:g} or more")]
+            )
+        return value
 
     return read
 
@@ -72,7 +78,7 @@ def import_robot(
         _option("--mass", "MASS", "Of the platform, such as '90 kg'.", _number("--mass", MASS)),
     ] = None,
     payload: Annotated[
-        float, _option("--payload", "MASS", "Added to it.", _number("--payload", MASS))
+        float, _option("--payload", "MASS", "Added to it.", _number("--payload", MASS, 0.0))
     ] = 0.0,
     centre_of_mass: Annotated[
         Vector,
@@ -100,7 +106,7 @@ def import_robot(
             "--safety-factor",
             "NUMBER",
             "Breaking load over tension.",
-            _number("--safety-factor", NUMBER),
+            _number("--safety-factor", NUMBER, 1.0),
         ),
     ] = None,
     no_plugins: NoPlugins = False,

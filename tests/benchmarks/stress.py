@@ -10,7 +10,9 @@ decades of the sag to a reference in 60 digits (`exact_catenary`).
 
 Poses: random robots with three, six and eight cables, with rope from a millionth to a thousand
 times the load, solved in batches; all are held to both residuals, and a few of each robot to the
-reference where the cables are as many as the degrees of freedom.
+reference where the cables are as many as the degrees of freedom. The thinnest cables of random
+materials are held to the residuals and to the allowable stress, from both sides where they are
+known to be the thinnest.
 
 A number may be off by 1e-9 of the tension or length, or by a hundred times what one rounding of the
 data moves it by, if that is more: a taut steel cable turns a length in double precision into a
@@ -37,9 +39,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import exact_catenary
 
 from designer.arrays import frozen_array
-from designer.model.cable import Cable
+from designer.model.cable import Cable, Material
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
+from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
 
 RELATIVE = 1e-9
@@ -47,6 +50,8 @@ ROUNDINGS = 100.0
 RESIDUAL = 1e-9
 _CHUNK = 2**15
 _STRAIN = 1.0
+_MATERIALS = ((2.5, 4.3), (8.0, 11.5), (6.5, 9.5))
+"""Decades of density, modulus and allowable stress."""
 Lines = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -212,14 +217,36 @@ def try_poses(n: int, robots: int, each: int, exact: int, rng: np.random.Generat
         robot, cable = random_robot(n, rng)
         statics = solve_sagging(robot, random_poses(robot, each, rng), cable)
         solved = statics.is_solved
-        with np.errstate(invalid="ignore"):
-            largest = statics.largest_tension_N
-            force = np.abs(statics.equilibrium_residual_N()[..., :3]).max(axis=-1) / largest
-            closed = (statics.closure_residual_m() / statics.length_m).max(axis=-1)
-        tally.hold_residual(np.fmax(force, closed), solved)
+        tally.hold_residual(_residual(statics), solved)
         for i in rng.permutation(np.flatnonzero(solved))[:exact]:
             _hold_pose(tally, statics, i)
     return tally
+
+
+def try_sizes(n: int, robots: int, each: int, rng: np.random.Generator) -> Tally:
+    """Hold thinnest cables of random materials to both residuals and to the allowable stress."""
+    tally = Tally(f"thinnest cables, {n}")
+    for _ in range(robots):
+        robot, _ = random_robot(n, rng)
+        density, modulus, stress = (decades(rng, *ends, 1)[0] for ends in _MATERIALS)
+        material = Material(density, modulus, min(stress, 0.3 * modulus))
+        sizing = size_poses(robot, random_poses(robot, each, rng), material)
+        with np.errstate(invalid="ignore"):
+            area = np.pi / 4 * sizing.diameter_m**2
+            used = sizing.statics.largest_tension_N / (area * material.allowable_stress_Pa)
+        # What is not known to be the thinnest may be left below its limit, never above.
+        beyond = np.where(sizing.is_thinnest, np.abs(used - 1.0), np.maximum(used - 1.0, 0.0))
+        residual = np.fmax(_residual(sizing.statics), beyond)
+        tally.hold_residual(residual, sizing.statics.is_solved)
+    return tally
+
+
+def _residual(statics: Statics) -> np.ndarray:
+    """Return the larger of closure over length and of unbalanced force over the tension."""
+    with np.errstate(invalid="ignore"):
+        unbalanced = np.abs(statics.equilibrium_residual_N()[..., :3]).max(axis=-1)
+        closed = (statics.closure_residual_m() / statics.length_m).max(axis=-1)
+        return np.fmax(unbalanced / statics.largest_tension_N, closed)
 
 
 def _hold_pose(tally: Tally, statics: Statics, i: int) -> None:
@@ -294,6 +321,9 @@ def main() -> None:
         faults += tally.faults
     for n, robots, exact in ((3, given.robots, 2), (6, given.robots, 1), (8, given.robots // 4, 0)):
         tally = try_poses(n, robots, 500, exact, rng)
+        print(tally, flush=True)
+        faults += tally.faults
+        tally = try_sizes(n, robots // 2, 500, rng)
         print(tally, flush=True)
         faults += tally.faults
     if given.moorpy:

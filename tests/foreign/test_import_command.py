@@ -129,6 +129,8 @@ def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
     [
         (("--mass", "heavy"), "--mass: 'heavy' is not a number"),
         (("--mass", "-3 kg"), "robot.platform.mass: "),
+        (("--payload", "-1 kg"), "--payload: -1 kg is too small (expected 0 or more)"),
+        (("--safety-factor", "0"), "--safety-factor: 0 is too small (expected 1 or more)"),
         (("--pose", "1,2"), "--pose: '1,2' is no point"),
         (("--pose", "1,2,3 kg"), "--pose: '3 kg'"),
         (("--grade", "no-such-grade"), "no-such-grade"),
