@@ -247,6 +247,7 @@ WORDS: Mapping[str, str] = {
     "selection.grades": "Grades to choose among: all, or a list of ids from "
     "`designer catalog list`.",
     "selection.objectives": "What ropes are compared by; the first decides.",
+    "selection.limits": "What else the chosen rope is checked against.",
     "selection.groups": "Cables that may get a rope of their own: names, each with its cable "
     "numbers, counted from 1 in the order of the anchors.",
     "load_cases": "Load cases, in each of which the rope has to hold everywhere; left out, there "
