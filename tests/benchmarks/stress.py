@@ -254,7 +254,7 @@ def _hold_pose(tally: Tally, statics: Statics, i: int) -> None:
     ends = pose.attachment_points_m(robot)[i]
     arms = None if robot.is_point_mass else ends - pose.position_m[i]
     ours = np.stack([statics.length_m[i], statics.force_x_N[i], statics.force_z_N[i]], axis=-1)
-    EA, w = float(statics.axial_stiffness_N.flat[0]), float(statics.weight_N_per_m.flat[0])
+    EA, w = float(statics.axial_stiffness_N[i, 0]), float(statics.weight_N_per_m[i, 0])
     load = 9.81 * robot.platform.mass_kg
     where = robot.exit_points_m.tolist(), pose.position_m[i].tolist()
     try:
