@@ -1,33 +1,38 @@
 """How quickly the window's answers follow a change of the payload, against a whole report.
 
-Run:  python tests/benchmarks/explore.py [--report]
+Run:  xvfb-run -a -s '-screen 0 1280x800x24' python tests/benchmarks/explore.py [--report]
 
 For three and for eight cables: editing the study, then, in the worker, the pose, the coarse map
-that is shown while a slider moves, and the fine one when it rests; each the median of some turns.
-With them, how late a thread beside the worker gets its turn at worst, as a window would. With
---report the same study is also analysed, and its report written; the ratio is that time over that
-of an edit, the pose and the coarse map.
+that is shown while a slider moves, and the fine one when it rests; then, in a window of 1280 x 800
+on the display that there is, colouring the coarse map and drawing a frame of the scene, edges not
+smoothed, as while something moves; each the median of some turns. With them, how late a thread
+beside the worker gets its turn at worst, as a window would. With --report the same study is also
+analysed, and its report written; the ratio is that time over that of an edit, the pose, the coarse
+map, colouring and drawing. Without a display nothing is drawn, and it says so.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from queue import SimpleQueue
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from designer.analysis.analyse import analyse
+from designer.explore.map import MapAnswer
 from designer.explore.question import Rope
 from designer.explore.requests import Delivery, Done, Progress
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.plugins.find import find_plugins
 from designer.report.render import write_report
+from designer.resources import example_file
 
 _TURNS = 15
 _BEAT_S = 0.002
@@ -97,12 +102,14 @@ def _measure(name: str, ask: Asker, with_report: bool) -> None:
         assert session.edit(mass.path, text, continuous=True) == ()
 
     fine = ask("fine", session)  # loads the kernels
-    ask("coarse", session)
+    maps = [ask("coarse", session)]
     points = sum(grid[..., 0].size for grid in fine.grids.values())
     steps = {
         "edit": _median_s(edit),
         "pose": _median_s(lambda: (edit(), ask("here", session))),
-        "coarse map": _median_s(lambda: (edit(), ask("coarse", session, quantities=_SHOWN))),
+        "coarse map": _median_s(
+            lambda: (edit(), maps.append(ask("coarse", session, quantities=_SHOWN)))
+        ),
     }
     heart = Heartbeat()
     steps["fine map"] = _median_s(lambda: (edit(), ask("fine", session)))
@@ -113,12 +120,47 @@ def _measure(name: str, ask: Asker, with_report: bool) -> None:
     each = ", ".join(f"{step} {1e3 * took:.0f} ms" for step, took in steps.items())
     print(f"{name}, {cables} cables, fine map of {points} points: {each}")
     print(f"  a thread beside it was late by {1e3 * late_s:.0f} ms at most")
+    solve_s = steps["edit"] + steps["pose"] + steps["coarse map"]
+    colour_s, draw_s = _shown_s(name, maps) if os.environ.get("DISPLAY") else (0.0, 0.0)
+    drawn = (
+        f"colour {1e3 * colour_s:.1f} ms, draw {1e3 * draw_s:.0f} ms" if draw_s else "no display"
+    )
+    print(f"  one change of payload: solve {1e3 * solve_s:.0f} ms, {drawn}")
     if with_report:
-        change = steps["edit"] + steps["pose"] + steps["coarse map"]
-        whole = _whole_s(session)
-        print(
-            f"  analysis and report {whole:.1f} s, {whole / change:.0f} times a change of payload"
-        )
+        whole_s = _whole_s(session)
+        ratio = whole_s / (solve_s + colour_s + draw_s)
+        print(f"  analysis and report {whole_s:.1f} s, {ratio:.0f} times a change of payload")
+
+
+def _shown_s(name: str, maps: Sequence[MapAnswer]) -> tuple[float, float]:
+    """Return how long a window takes to colour a map, and to draw a frame of the scene."""
+    from PySide6.QtTest import QTest
+
+    from designer.explore.desktop.app import application
+    from designer.explore.desktop.settings import Settings
+    from designer.explore.desktop.window import Window
+
+    application()
+    with TemporaryDirectory() as folder:
+        window = Window(find_plugins(with_plugins=False), Settings(Path(folder) / "settings.ini"))
+        window.resize(1280, 800)
+        window.show()
+        window.files.open(example_file(name))
+        while not window.live.is_at_rest:
+            QTest.qWait(20)
+        window.live.forget()
+        scene = window.work.scene
+        scene.ren_win.SetMultiSamples(0)
+        colours, frames = [], []
+        for answer in maps:
+            before = time.perf_counter()
+            window.work.show_map(answer)
+            colours.append(time.perf_counter() - before)
+            scene.repaint()
+            frames.append(scene.frame_s)
+        window.session = None
+        window.close()
+    return statistics.median(colours), statistics.median(frames)
 
 
 def _whole_s(session: Session) -> float:

@@ -18,6 +18,7 @@ from designer.analysis.analyse import Analysis
 from designer.report.blocks import Report
 from designer.report.design.first_page import FirstPage
 from designer.report.design.report import design_report
+from designer.report.figures import palette
 from designer.report.render import REPORT_FILES, render_html, render_pdf, write_report
 
 pytestmark = pytest.mark.slow
@@ -76,6 +77,27 @@ def test_nothing_is_loaded_from_outside(report: Report[FirstPage]) -> None:
 
 def test_page_has_no_script_of_its_own(report: Report[FirstPage]) -> None:
     assert "script" not in loads(render_html(report)).tags
+
+
+def test_wide_tables_and_pictures_are_scrolled_by_keys(report: Report[FirstPage]) -> None:
+    html = render_html(report)
+    assert html.count('<div class="scroll" tabindex="0" role="region" aria-label="') >= 5
+    views = re.findall(r'<div class="view"([^>]*)>', html)
+    assert len(views) >= 3
+    assert all('tabindex="0" role="group" aria-label="' in view for view in views)
+    assert "tabindex" not in "".join(
+        re.findall(r'<div class="view"[^>]*>', render_html(report, paged=True))
+    )
+
+
+def test_dark_page_names_every_colour_again(report: Report[FirstPage]) -> None:
+    """Each colour of the page, and of charts their ink, guides, paper and the blue of curves."""
+    style = render_html(report)
+    light = set(re.findall(r"(--[a-z-]+): ", style[style.index(":root {") :].split("}")[0]))
+    dark = style[style.index("@media screen and (prefers-color-scheme: dark)") :]
+    assert set(re.findall(r"(--[a-z-]+): ", dark.split("}")[0])) == light
+    for colour in (palette.INK, palette.FAINT, palette.SAG, "#ffffff"):
+        assert f"stroke: {colour.lower()}" in dark
 
 
 def test_scenes_are_in_the_html_only(report: Report[FirstPage]) -> None:

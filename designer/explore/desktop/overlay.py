@@ -32,6 +32,7 @@ class Overlay(QWidget):
         self.worst: tuple[FloatArray, str] | None = None
         self.pointed: tuple[QPointF, str] | None = None
         self.note = ""
+        self.legend_px = 0  # Width of what covers the right side
 
     def texts(self) -> list[str]:
         """All that is written."""
@@ -63,7 +64,9 @@ class Overlay(QWidget):
         painter.setPen(QColor(self.theme.muted))
         for name, place in self.names:
             x, y = self._camera.pixels(place)
-            painter.drawText(QPointF(x + 6, y - 6), name)
+            width = painter.fontMetrics().horizontalAdvance(name)
+            has_room = x + 6 + width < self.width() - self.legend_px
+            painter.drawText(QPointF(x + 6 if has_room else x - 6 - width, y - 6), name)
 
     def _draw_worst(self, painter: QPainter) -> None:
         if self.worst is None:

@@ -119,7 +119,7 @@ class PanelRopes(QWidget):
         self._bar = ShareBar(self.table)
         self.table.setItemDelegateForColumn(5, self._bar)
         self.table.selectionModel().currentRowChanged.connect(self._current_changed)
-        for column, width in enumerate((76, 190, 120, 84, 52, 84, 64, 58, 66, 84, 66, 96, 60)):
+        for column, width in enumerate((72, 180, 116, 72, 60, 84, 78, 56, 80, 104, 84, 116, 60)):
             self.table.setColumnWidth(column, width)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(8, 4, 8, 4)

@@ -73,13 +73,13 @@ class Piece:
 
 
 class Lines(Piece):
-    """Polylines of one colour."""
+    """Polylines of one colour, as wide as so many pixels of the usual density."""
 
     def __init__(
         self, plotter: Any, name: str, width: float, before: float = 2.0, opacity: float = 1.0
     ) -> None:
         super().__init__(plotter, name, before)
-        self.actor.prop.line_width = width
+        self.actor.prop.line_width = width * plotter.devicePixelRatioF()
         self.actor.prop.opacity = opacity
         self._sizes: tuple[int, ...] = ()
 
@@ -104,7 +104,7 @@ class Dots(Piece):
 
     def __init__(self, plotter: Any, name: str, size_px: float, before: float = 4.0) -> None:
         super().__init__(plotter, name, before)
-        self.actor.prop.point_size = size_px
+        self.actor.prop.point_size = size_px * plotter.devicePixelRatioF()
         self.actor.prop.render_points_as_spheres = True
 
     def put(self, points_m: FloatArray) -> None:

@@ -126,6 +126,7 @@ class Scene(QtInteractor):
     def place_legend(self) -> None:
         """Put the legend into its corner."""
         self.colour_legend.move(self.width() - self.colour_legend.width() - 12, 12)
+        self.overlay.legend_px = self.colour_legend.width() + 12
 
     # What is asked for by mouse and keys
 

@@ -191,8 +191,6 @@ class Window(QMainWindow):
         self.live.forget()
         self.session, self.answers = session, {}
         self.setWindowTitle(f"{session.name}[*] – cdpr-designer")
-        for problem in session.problems:
-            self.tell(problem)
         self.ropes.show_ropes(None, None)
         self.here.show_here(None)
         self.compare.show_differences(None)
@@ -207,6 +205,8 @@ class Window(QMainWindow):
         else:
             self.show_work()
             self.statusBar().showMessage(HINT, 20_000)
+        for problem in session.problems:  # instead of the hint
+            self.tell(problem)
 
     def changed(self, *, moving: bool = False) -> None:
         """Show the session as it is now, and ask for what follows from it."""

@@ -266,7 +266,7 @@ class WorkPage(QWidget):
         azimuth, elevation = self._home(study)
         if where in sides:
             azimuth, elevation = (float(angle) for angle in np.radians(sides[where]))
-        legend_px = 0.7 * self.scene.colour_legend.width() if self.map is not None else 90.0
+        legend_px = self.scene.colour_legend.sizeHint().width()
         self.scene.camera_.fit(stage.everything_m(), azimuth, elevation, legend_px)
         self.scene.redraw()
 
