@@ -285,7 +285,7 @@ class TestCandidates:
         svg = candidates_chart(replace(selection, outcomes=copies))
         check(svg)
         found = texts(svg)
-        assert "55 more grades are not shown" in found
+        assert "62 more grades are not shown" in found
         assert sum(text.startswith(("gost", "unirope")) for text in found) == 25
 
     def test_nothing_chosen_shows_what_would_hold(self, selection: SelectionResult) -> None:
