@@ -286,7 +286,7 @@ class TestCandidates:
         check(svg)
         found = texts(svg)
         assert "62 more grades are not shown" in found
-        assert sum(text.startswith(("gost", "unirope")) for text in found) == 25
+        assert sum(text.startswith(("gost", "unirope")) for text in found) == 18
 
     def test_nothing_chosen_shows_what_would_hold(self, selection: SelectionResult) -> None:
         thin = tuple(o for o in selection.outcomes if o.best is None)
