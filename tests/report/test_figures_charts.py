@@ -285,8 +285,8 @@ class TestCandidates:
         svg = candidates_chart(replace(selection, outcomes=copies))
         check(svg)
         found = texts(svg)
-        assert "55 more grades are not shown" in found
-        assert sum(text.startswith(("gost", "unirope")) for text in found) == 25
+        assert "62 more grades are not shown" in found
+        assert sum(text.startswith(("gost", "unirope")) for text in found) == 18
 
     def test_nothing_chosen_shows_what_would_hold(self, selection: SelectionResult) -> None:
         thin = tuple(o for o in selection.outcomes if o.best is None)
