@@ -178,6 +178,10 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("selection.sheave_diameter", "default", "none"),
         Entry("selection.groups", "default", "none"),
         Entry("selection.max_distinct_products", "default", "none"),
+        *(
+            Entry(f"selection.limits.{name}", "default", "none")
+            for name in ("stiffness", "excitation", "drum_capacity")
+        ),
         Entry("load_cases", "default", "none"),
         Entry("catalogues", "default", "none"),
         Entry("measurements", "default", "none"),
