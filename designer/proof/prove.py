@@ -215,9 +215,11 @@ class _Search:
         """Solve the corners that seem to be worse than what was found."""
         order = np.argsort(-told.estimate)[:_TRIES]
         order = order[told.estimate[order] > self._found * _BETTER]
-        if not len(order) and told.solved.all():
+        bad = np.isneginf(told.estimate) & (told.bound > self._level)  # nothing is known of corners
+        unknown = np.argsort(np.where(bad, -told.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
+        tried = [told.worst[order], told.middle[unknown], told.middle[~told.solved][:_TRIES]]
+        if not sum(map(len, tried)):
             return
-        tried = [told.worst[order], told.middle[~told.solved][:_TRIES]]
         places = encloser.cover.places(np.concatenate(tried))
         used = encloser.utilisation(places)
         if used.max() > self._found * _BETTER:
