@@ -51,6 +51,8 @@ class Workspace:
         How the platform shall be turned at every position.
     floor_m : float or None
         Height along the vertical that no cable shall hang below [m]; None for no floor.
+    proof_s : float
+        Time for a proof that the chosen rope holds in all poses [s]; zero for none.
     """
 
     region: Region
@@ -61,12 +63,14 @@ class Workspace:
     clearance_m: float | None = None
     orientations: Orientations = field(default_factory=Orientations)
     floor_m: float | None = None
+    proof_s: float = 0.0
 
     def __post_init__(self) -> None:
         require_number("samples", self.samples, least=1)
         require_number("seed", self.seed, least=0)
         require_number("clearance_m", self.clearance_m, least=0.0)
         require_number("floor_m", self.floor_m)
+        require_number("proof_s", self.proof_s, least=0.0)
         require_one_of("sampling", [self.sampling], get_args(Sampling))
         require_one_of("hangs_below", [self.hangs_below], get_args(HangsBelow))
 

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
+from designer.io.config import build
+from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
 from designer.model.robot import Platform, Robot
+from designer.study import Workspace
 
 
 @pytest.fixture(scope="session")
@@ -39,6 +43,22 @@ def six_cable_robot() -> Robot:
     attachments = ring(5.0, [60, -60, 180, 60, 300, 180])
     centre = frozen_array([0.1, -0.2, -1.0])
     return Robot(frozen_array(exits), Platform(4000.0, frozen_array(attachments), centre))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def unproved() -> Iterator[None]:
+    """Studies that do not ask for a proof get none: it takes its time on every report."""
+    made = build._workspace
+
+    def without(section: WorkspaceSection | None, robot: Robot) -> Workspace | None:
+        found = made(section, robot)
+        if found is None or section is None or "proof" in section.model_fields_set:
+            return found
+        return replace(found, proof_s=0.0)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(build, "_workspace", without)
+        yield
 
 
 @pytest.fixture

@@ -21,7 +21,10 @@ from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.cable import Material
 from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
+from designer.proof.prove import Budget
+from designer.proof.servable import Servable, servable
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
@@ -155,6 +158,8 @@ class Analysis:
         The governing poses, solved again by other methods.
     carries : Carries or None
         What carries the choice of a rope for all cables.
+    servable : Servable or None
+        Which part of the region no rope can serve; None where nothing speaks for such a part.
     scratch : Scratch or None
         Folder that goes with this value, where no other was given for the samples.
     """
@@ -170,6 +175,7 @@ class Analysis:
     section_m: float | None = None
     verification: tuple[SecondAnswer, ...] = ()
     carries: Carries | None = None
+    servable: Servable | None = None
     scratch: Scratch | None = field(default=None, repr=False)
 
     @property
@@ -321,6 +327,7 @@ def analyse(
             built=built,
             load_cases=study.load_cases,
             reporter=reporter,
+            proof_s=0.0 if study.selection.groups else study.workspace.proof_s,
         )
         if study.selection.groups:
             groups = choose_groups_of(
@@ -346,8 +353,22 @@ def analyse(
         built.section_m,
         _second_answers(study, built, pose, workspace, chosen),
         None if groups is not None else carries_of(study, chosen),
+        _servable(study, built, workspace, reporter),
         scratch,
     )
+
+
+def _servable(
+    study: Study, built: AsBuilt, found: WorkspaceMap | None, reporter: Reporter
+) -> Servable | None:
+    """Bound the part that no rope can serve, where samples say that there may be one."""
+    if found is None or study.workspace is None or study.workspace.proof_s == 0.0:
+        return None
+    doubtful = (Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND, Verdict.RANK_DEFICIENT)
+    if not any(found.census.statuses[verdict.label] for verdict in doubtful):
+        return None
+    with reporter.task("impossible", 1):
+        return servable(built.robot, study.workspace.space, Budget(study.workspace.proof_s))
 
 
 def _second_answers(

@@ -17,6 +17,8 @@ from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
 from designer.model.space import turn_of
 from designer.model.verdict import Verdict
+from designer.proof.prove import Proof
+from designer.proof.servable import Servable
 from designer.selection.qualities import Qualities
 from designer.sizing.newton import Sizing
 from designer.statics.rest import RestingPlaces
@@ -46,12 +48,14 @@ def result_dict(analysis: Analysis) -> Json:
                 **_workspace(analysis.workspace),
                 "orientations": _orientations(study),
                 "section_m": analysis.section_m,
+                "servable": _servable(analysis.servable),
                 **_qualities(analysis.qualities),
             }
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
         **carries_dict(analysis.carries),
+        "proof": _proof(analysis),
         "verification": [
             {
                 "method": one.method,
@@ -268,6 +272,28 @@ def _why_infeasible(found: WorkspaceMap) -> str:
 def _selection(analysis: Analysis) -> Json:
     assert analysis.selection is not None
     return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
+
+
+def _servable(found: Servable | None) -> Json | None:
+    """Return which shares of the volume are proved to be served by no rope, and by some."""
+    if found is None:
+        return None
+    return {"impossible": found.impossible, "possible": found.possible, "boxes": found.boxes}
+
+
+def _proof(analysis: Analysis) -> Json:
+    """Return what is proved of the chosen rope; off where nothing was to be."""
+    case = None if analysis.selection is None else analysis.selection.proof
+    found = Proof("off") if case is None else case.found
+    return {
+        "status": found.status,
+        "utilisation_bound": _number(found.bound),
+        "utilisation_found": _number(found.found),
+        "fraction_proved": found.fraction,
+        "boxes": found.boxes,
+        "load_case": case.load_case if case is not None and case.load_case else None,
+        "reason": found.reason or None,
+    }
 
 
 def _extreme(extreme: Extreme | None) -> Json | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -48,6 +49,8 @@ def lengths(
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = study_of(config, plugins)
+    if study.workspace is not None:  # lengths need the rope, no proof of it
+        study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
     table = read_poses(poses, study.robot)
     catalogue = catalogue_of(study, plugins)
     announce_compiling()

@@ -53,6 +53,7 @@ BOUNDS: Mapping[str, Bound] = {
     "length noise": Bound(LENGTH, 1e-9, 1e3, "no winch measures finer, or so badly"),
     "tension noise": Bound(FORCE, 1e-6, 1e8, "no load cell measures finer, or so badly"),
     "search time": Bound(TIME, 0.0, 1e6, "nobody waits for weeks"),
+    "proof time": Bound(TIME, 0.0, 1e6, "nobody waits for weeks; 0 s is no proof"),
     "sheave": Bound(LENGTH, 1e-3, 15.0, "the sheaves of mine hoists have up to 9 m"),
     "rope diameter": Bound(LENGTH, 1e-4, 0.5, "from a thread to a cable of a bridge"),
     "mass": Bound(MASS, 1e-6, 1e8, "from a grain to a ship"),

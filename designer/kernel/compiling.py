@@ -1,4 +1,4 @@
-"""How the kernels are compiled: two decorators, and whether the machine code is cached."""
+"""How the kernels are compiled: decorators, and whether the machine code is cached."""
 
 from __future__ import annotations
 
@@ -29,15 +29,32 @@ def kernel(function: Function) -> Function:
     compiled: Any = numba.njit(**options)(function)
     # Numba takes cached code for fresh as long as the function's own file is unchanged, although
     # it contains what the function calls; here any change in this folder makes it stale.
-    compiled._cache._cache_file._source_stamp = _stamp()
+    compiled._cache._cache_file._source_stamp = _stamp("kernel")
+    result: Function = compiled
+    return result
+
+
+def exact(function: Function) -> Function:
+    """Compile arithmetic that is rounded as it is written, which proofs rest on."""
+    compiled: Function = numba.njit(
+        error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True
+    )(function)
+    return compiled
+
+
+def exact_kernel(function: Function) -> Function:
+    """Compile a loop over boxes the same way; otherwise as `kernel`."""
+    compiled: Any = numba.njit(nogil=True, cache=True, error_model="numpy")(function)
+    compiled._cache._cache_file._source_stamp = _stamp("kernel", "proof/enclosure")
     result: Function = compiled
     return result
 
 
 @cache
-def _stamp() -> str:
-    """Return a digest of all sources in this folder."""
-    sources = sorted(Path(__file__).parent.glob("*.py"))
+def _stamp(*rooms: str) -> str:
+    """Return a digest of all sources in these folders."""
+    folders = [Path(__file__).parents[1] / room for room in rooms]
+    sources = [source for folder in folders for source in sorted(folder.glob("*.py"))]
     return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
@@ -61,6 +78,8 @@ class _FirstCompile:
 
     def notify(self, event: Any) -> None:
         function = event.data["dispatcher"].py_func
-        if not self._is_told and function.__module__.startswith(__package__):
+        if not self._is_told and function.__module__.startswith(
+            ("designer.kernel.", "designer.proof.")
+        ):
             self._is_told = True
             self._tell()

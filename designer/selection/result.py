@@ -10,6 +10,7 @@ from designer.model.cable import Cable, Material
 from designer.model.load_case import STATIC
 from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import Figures
+from designer.selection.proven import CaseProof
 from designer.selection.usable import Usable
 from designer.selection.verify import Verification
 from designer.study import Objective
@@ -154,6 +155,9 @@ class SelectionResult:
         Of the costs; None where nothing has a price.
     not_tried : tuple of NotTried
         What was not solved, and why.
+    proof : CaseProof or None
+        What is proved of the chosen product, in the load case that governs; None where nothing was
+        to be.
     usable : Usable or None
         What the sizes of the chosen grade serve; where none was chosen, of the grade that serves
         most. None where nothing was tried.
@@ -167,6 +171,7 @@ class SelectionResult:
     currency: str | None = None
     not_tried: tuple[NotTried, ...] = ()
     usable: Usable | None = None
+    proof: CaseProof | None = None
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

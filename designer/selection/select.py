@@ -8,19 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.progress import Reporter, Silent
+from designer.proof.prove import Budget
 from designer.selection.cases import Cases, searched, searched_all, together, worst_of_each
 from designer.selection.compare import Entry, best_of, settle, standing_of
 from designer.selection.continuous import continuous_optimum
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency, cost, is_allowed, products_of
+from designer.selection.proven import CaseProof, prove_governing
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.usable import Usable, usable
 from designer.selection.verify import Verification, verify_sizes
@@ -37,18 +39,20 @@ def select(
     built: AsBuilt | None = None,
     load_cases: Sequence[LoadCase] = (),
     reporter: Reporter | None = None,
+    proof_s: float = 0.0,
 ) -> SelectionResult:
     """Choose the best product among the grades that the study allows.
 
     ``grades`` is the whole catalogue, which ``selection.grades`` narrows; ``built`` tells by how
     much cables on this machine differ from their data sheet. A product holds that holds in every
-    load case; without any it is the static one.
+    load case; without any it is the static one. It is tried for ``proof_s`` to prove that the best
+    holds in all poses [s].
     """
     built, reporter = built or AsBuilt(robot), reporter or Silent()
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     named = selection.grades
     allowed = [g for g in grades if is_allowed(g, named)]
-    trial = _Trial(cases, selection, built, reporter, common_currency(allowed))
+    trial = _Trial(cases, selection, built, reporter, common_currency(allowed), proof_s)
     outcomes, not_tried = trial.outcomes(allowed)
     if named is None:
         not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
@@ -67,6 +71,7 @@ def select(
         currency=trial.currency,
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen),
+        proof=None if chosen is None else trial.proofs.get(id(chosen.size)),
     )
 
 
@@ -120,6 +125,8 @@ class _Trial:
     built: AsBuilt
     reporter: Reporter
     currency: str | None
+    proof_s: float = 0.0
+    proofs: dict[int, CaseProof] = field(default_factory=dict)
 
     def outcomes(self, grades: Sequence[Grade]) -> tuple[list[GradeOutcome], list[NotTried]]:
         """Try all sizes of these grades."""
@@ -136,12 +143,16 @@ class _Trial:
                 advance(1)
                 return self.searched(entry, in_all=id(entry) in thorough)
 
-            while True:  # until the best has been searched in every load case, and is still that
+            while True:  # until the best is searched in every load case, not refuted, still best
                 front = settle(entries, self.selection.objectives, search)
-                if not front or id(front[0]) in thorough or len(front[0].cases) == 1:
+                if not front:
                     break
-                thorough.add(id(front[0]))
-                front[0].verification = replace(front[0].verification, is_refined=False)
+                best = front[0]
+                if id(best) not in thorough and len(best.cases) > 1:
+                    thorough.add(id(best))
+                    best.verification = replace(best.verification, is_refined=False)
+                elif not self._proves(best):
+                    break
         found = []
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
@@ -150,6 +161,17 @@ class _Trial:
                     found.append(self._outcome(grade, own, front))
                 advance(1)
         return found, not_tried
+
+    def _proves(self, entry: Entry) -> bool:
+        """Prove that a candidate holds in all poses; tell whether a worse pose was found."""
+        if self.proof_s == 0.0 or id(entry.size) in self.proofs:
+            return False
+        with self.reporter.task("proof", 100) as advance:
+            proof, entry.cases = prove_governing(entry.cases, Budget(self.proof_s), advance)
+        self.proofs[id(entry.size)] = proof
+        entry.verification = most = together(entry.cases)
+        entry.figures = replace(entry.figures, max_tension_N=most.max_tension_N)
+        return proof.found.worst is not None
 
     def searched(self, entry: Entry, *, in_all: bool = False) -> Verification:
         """Search for the extremes of a candidate between the samples.

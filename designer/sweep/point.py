@@ -71,6 +71,8 @@ class Base:
             name.split(".")[1:2] == [quality] for name in self.keep for quality in _OF_THE_CHOICE
         ):
             study = replace(study, selection=None, load_cases=())
+        if "proof" not in parts and study.workspace is not None:
+            study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
         return analyse(study, _catalogue(study.catalogues, self.with_plugins)).to_dict()
 
 

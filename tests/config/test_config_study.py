@@ -168,6 +168,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.hangs_below", "default", "include"),
         Entry("workspace.clearance", "default", "none"),
         Entry("workspace.floor", "default", "none"),
+        Entry("workspace.proof", "default", "20 s"),
         Entry("workspace.orientation", "default", "none"),
         Entry("workspace.orientations", "default", "none"),
         Entry("workspace.orientation_range", "default", "none"),
@@ -265,6 +266,7 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     assert study.workspace.hangs_below == "exclude"
     assert study.workspace.clearance_m == pytest.approx(0.1)
     assert study.workspace.floor_m == -250.0
+    assert study.workspace.proof_s == 20.0
     assert study.robot.is_upright
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)

@@ -169,6 +169,7 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
         hangs_below=section.hangs_below,
         clearance_m=section.clearance,
         floor_m=section.floor,
+        proof_s=section.proof,
         orientations=_orientations(section),
     )
 

@@ -100,6 +100,10 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "Least distance that cables shall keep from each other and from the platform.",
     ),
     "workspace.floor": ("Floor", "Height that no cable may hang below."),
+    "workspace.proof": (
+        "Time for the proof",
+        "How long to try to prove that the chosen rope holds in all poses; 0 for not at all.",
+    ),
     "workspace.orientation.rotation_vector": ("Turn", f"{_TURN}, at every position."),
     "workspace.orientation.euler.angles": ("Euler angle", "Of the platform at every position."),
     "workspace.orientations.rotation_vector": ("Turn", f"{_TURN}, one of several."),

@@ -271,6 +271,7 @@ class WorkspaceSection(Section):
     hangs_below: HangsBelow = "include"
     clearance: fields.Clearance | None = None
     floor: fields.Length | None = None
+    proof: fields.ProofTime = 20.0
     orientation: OrientationSection | None = None
     orientations: TurnList | None = None
     orientation_range: OrientationRangeSection | None = None

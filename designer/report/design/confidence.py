@@ -11,6 +11,7 @@ from designer.report import format as fmt
 from designer.report.blocks import Statement
 from designer.report.design.checks import failing_checks
 from designer.report.design.load_cases import loads_statement
+from designer.report.design.proof import proofs
 from designer.report.design.scope import (
     orientation_statement,
     pose_statement,
@@ -42,6 +43,7 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         yield verification_statement(analysis.verification)
     yield from _margin(analysis, findings)
     yield from _sampling(analysis)
+    yield from proofs(analysis)
     yield from orientation_statement(analysis.study)
     yield from _hanging(analysis, findings)
     yield from _slack(analysis)

@@ -1,0 +1,144 @@
+"""Boxes that cover a space of poses: three coordinates of position, then three or none of turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.region import PointList, Prism, Rectangle
+from designer.model.space import Space
+
+_BEYOND = 1e-12
+"""Relative: by so much a region is made larger before boxes are cut at its border."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cover:
+    """The positions of a region by three coordinates, in one orientation or a range of them.
+
+    Parameters
+    ----------
+    origin_m : array (3,)
+        Position where all coordinates are zero [m].
+    axes : array (3, 3)
+        Its change with each of them, columns.
+    low, high : array (n_boxes, 3 or 6)
+        Boxes that cover it at the start [m or share, rad].
+    sides : array (n_sides, 3)
+        It is where ``sides[:, :2] @ coordinates[:2] + sides[:, 2]`` ≤ 0; none for a box.
+    turn_rad : array (3,)
+        Orientation, where that is no coordinate [rad].
+    """
+
+    origin_m: FloatArray
+    axes: FloatArray
+    low: FloatArray
+    high: FloatArray
+    sides: FloatArray
+    turn_rad: FloatArray
+
+    def places(self, coordinates: FloatArray) -> FloatArray:
+        """Return the places (n, 6) of coordinates (n, 3 or 6) [m, rad]."""
+        position = self.origin_m + coordinates[:, :3] @ self.axes.T
+        turn = coordinates[:, 3:]
+        if turn.shape[1] == 0:
+            turn = np.broadcast_to(self.turn_rad, position.shape)
+        return np.hstack([position, turn])
+
+    def cut(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Cut boxes at the border of the region.
+
+        Parameters
+        ----------
+        low, high : array (n, k)
+            Boxes.
+
+        Returns
+        -------
+        low, high : array (n, k)
+            The smallest boxes around what is left; low above high where that is nothing.
+        corners : array (n, n_corners, 2)
+            Corners of what is left, first two coordinates; some stand there more than once.
+        """
+        x, y = np.stack([low[:, :2], high[:, :2]], axis=-1).transpose(1, 0, 2)
+        plan = np.stack([x[:, [0, 1, 1, 0]], y[:, [0, 0, 1, 1]]], axis=-1)
+        for side in self.sides:
+            plan = _cut_at(plan, side)
+        low, high = low.copy(), high.copy()
+        with np.errstate(invalid="ignore"):
+            low[:, :2] = np.fmin.reduce(plan, axis=1)
+            high[:, :2] = np.fmax.reduce(plan, axis=1)
+        gone = np.isnan(low[:, 0])
+        low[gone], high[gone] = 1.0, 0.0
+        return low, high, np.where(np.isnan(plan), np.nan_to_num(plan[:, :1]), plan)
+
+    def share(self, low: FloatArray, high: FloatArray, corners: FloatArray) -> FloatArray:
+        """Return the volumes of cut boxes (n,), flat directions left out."""
+        flat = (self.high == self.low).all(axis=0)
+        size = np.where(flat, 1.0, high - low)
+        if not flat[:2].any():
+            size[:, 1] = 1.0
+            x, y = corners[..., 0], corners[..., 1]
+            after_x, after_y = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
+            size[:, 0] = 0.5 * np.abs(np.sum(x * after_y - after_x * y, axis=1))
+        return np.asarray(np.prod(size, axis=1))
+
+
+def covers_of(space: Space) -> list[Cover]:
+    """Return what covers a space: one for each orientation of a list, one for a range."""
+    ends = space.orientations.range_rad
+    made = []
+    for turn in space.orientations.turns_rad[: 1 if ends is not None else None]:
+        origin, axes, low, high, sides = _positions(space.region)
+        if ends is not None:
+            low = np.hstack([low, np.broadcast_to(ends[0], low.shape)])
+            high = np.hstack([high, np.broadcast_to(ends[1], high.shape)])
+        made.append(Cover(origin, axes, low, high, sides, turn))
+    return made
+
+
+def _positions(
+    region: Prism | Rectangle | PointList,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    none = np.zeros((0, 3))
+    if isinstance(region, PointList):
+        return np.zeros(3), np.eye(3), region.points_m, region.points_m, none
+    if isinstance(region, Rectangle):
+        edge = region.ends_m[1] - region.ends_m[0]
+        axes = np.array([[edge[0], 0.0, 0.0], [edge[1], 0.0, 0.0], [0.0, 0.0, 1.0]])
+        low, high = np.array([[0.0, 0.0, region.z_m[0]]]), np.array([[1.0, 0.0, region.z_m[1]]])
+        return np.array([*region.ends_m[0], 0.0]), axes, low, high, none
+    low, high = region.bounds_m
+    corners = region.polygon_m
+    edge = np.roll(corners, -1, axis=0) - corners
+    length = np.hypot(*edge.T)
+    edge, corners = edge[length > 0.0], corners[length > 0.0]
+    outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / length[length > 0.0, None]
+    beyond = _BEYOND * np.abs(region.bounds_m).max()
+    sides = np.column_stack([outward, -np.einsum("ij,ij->i", outward, corners) - beyond])
+    return np.zeros(3), np.eye(3), low[None], high[None], sides
+
+
+def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:
+    """Cut convex polygons (n, n_corners, 2), NaN where there is no corner, at a straight line."""
+    height = plan @ side[:2] + side[2]
+    order = np.argsort(np.isnan(height), axis=1, kind="stable")  # corners first, in their order
+    plan = np.take_along_axis(plan, order[..., None], axis=1)
+    height = np.take_along_axis(height, order, axis=1)
+    last = np.maximum((~np.isnan(height)).sum(axis=1) - 1, 0)
+    rows = np.arange(len(plan))
+    before, before_height = np.roll(plan, 1, axis=1), np.roll(height, 1, axis=1)
+    before[:, 0], before_height[:, 0] = plan[rows, last], height[rows, last]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        crosses = (height <= 0.0) != (before_height <= 0.0)
+        crosses &= ~np.isnan(height) & ~np.isnan(before_height)
+        share = before_height / (before_height - height)
+        crossing = before + share[..., None] * (plan - before)
+    out = np.full((len(plan), 2 * plan.shape[1], 2), np.nan)
+    out[:, 0::2] = np.where(crosses[..., None], crossing, np.nan)
+    with np.errstate(invalid="ignore"):
+        out[:, 1::2] = np.where((height <= 0.0)[..., None], plan, np.nan)
+    order = np.argsort(np.isnan(out[..., 0]), axis=1, kind="stable")
+    return np.take_along_axis(out, order[..., None], axis=1)[:, : plan.shape[1] + 1]

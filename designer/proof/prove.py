@@ -1,0 +1,273 @@
+"""The largest tension that there is: bounds over boxes, halved until they are near what was found.
+
+Each box is solved in its middle by the product's solver, whose answer `enclosure.box` encloses.
+Where a box's bound is not near enough to the largest utilisation found, it is halved; its
+worst corner is solved as well, and becomes what was found where it is worse.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray
+from designer.model.cable import Cable
+from designer.model.robot import Robot
+from designer.model.space import Space
+from designer.proof.cover import Cover, covers_of
+from designer.proof.encloser import FIRST_RAISE, Encloser, Told, why_not
+
+Status = Literal["proved", "partial", "refuted", "off"]
+
+WITHIN = 1e-3
+"""Relative distance of the bound from what was found, at which the search rests."""
+_BATCH, _SLOW_BATCH = 4096, 512
+_LONG, _FEWEST = 0.05, 64
+"""Share of the time from which on a batch is too long, and its least size."""
+_TRIES = 32
+"""Corners of a batch that are solved, the worst first."""
+_BETTER = 1.0 + 1e-9
+_SHRINKS = 0.7
+"""Of what a box needs its least tensions raised by, to try in its halves."""
+_SMALLEST = 1e-9
+"""Share of the region's extent below which a box is not halved any more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What a proof may take."""
+
+    seconds: float = np.inf
+    boxes: float = np.inf
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proof:
+    """What is proved of the largest utilisation.
+
+    Parameters
+    ----------
+    status : str
+        ``proved``: in each pose there is an equilibrium with no tension above the bound, and the
+        cable holds; ``partial``: for a share of the poses; ``refuted``: a pose was found that the
+        cable does not hold; ``off``: nothing was tried.
+    bound, found : float
+        Largest over allowable tension: proved, infinite where it is not for all poses; and found.
+    worst : array (6,) or None
+        The pose of the latter, where it is worse than what had been found before [m, rad].
+    fraction : float
+        Share of the poses, by volume, for which it is proved that the cable holds.
+    boxes : int
+        How many were tried.
+    seconds : float
+        How long it took [s].
+    reason : str
+        Why nothing was tried.
+    """
+
+    status: Status
+    bound: float = np.inf
+    found: float = np.nan
+    worst: FloatArray | None = None
+    fraction: float = 0.0
+    boxes: int = 0
+    seconds: float = 0.0
+    reason: str = ""
+
+
+def prove(
+    robot: Robot,
+    cable: Cable,
+    space: Space,
+    found: float,
+    budget: Budget,
+    *,
+    within: float = WITHIN,
+    enough: float = 1.0,
+    progress: Callable[[float], None] = lambda _: None,
+) -> Proof:
+    """Prove a bound on the largest utilisation of a cable in all poses of a space.
+
+    Parameters
+    ----------
+    robot, cable, space
+        The robot, one cable for all its exit points, and where it shall be able to go.
+    found : float
+        Largest over allowable tension that is known of.
+    budget : Budget
+        What it may take.
+    within : float
+        Relative distance of bound and found at which to rest.
+    enough : float
+        Utilisation up to which the cable holds; just above one where it is sized for that.
+    progress : callable
+        Called with the share of the volume that is proved.
+    """
+    reason = why_not(robot)
+    if reason:
+        return Proof("off", found=found, reason=reason)
+    search = _Search(robot, cable, covers_of(space), found, within, enough)
+    search.step(1)  # compiles, which is not counted
+    began = now = time.monotonic()
+    while search.is_open and search.boxes < budget.boxes:
+        if now - began >= budget.seconds or search.is_refuted:
+            break
+        search.step(int(min(budget.boxes - search.boxes, search.batch)))
+        progress(search.fraction)
+        before, now = now, time.monotonic()
+        if now - before > _LONG * budget.seconds:
+            search.batch = max(search.batch // 2, _FEWEST)
+    return search.result(now - began)
+
+
+class _Search:
+    """Boxes that are still open, and what is known so far."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        cable: Cable,
+        covers: Sequence[Cover],
+        found: float,
+        within: float,
+        enough: float,
+    ) -> None:
+        self._enclosers = [Encloser(robot, cable, cover) for cover in covers]
+        self._within, self._enough = within, enough
+        self._found, self._worst = found, None
+        self.batch = _SLOW_BATCH if robot.is_redundant else _BATCH
+        self.boxes = 0
+        self._proved_bound = 0.0
+        self._stuck = 0.0
+        self._held = 0.0
+        parts = []
+        for k, cover in enumerate(covers):
+            low, high, corners = cover.cut(cover.low, cover.high)
+            parts.append((low, high, np.full(len(low), k), cover.share(low, high, corners)))
+        self._low, self._high, self._cover, self._volume = map(
+            np.concatenate, zip(*parts, strict=True)
+        )
+        self._bound = np.full(len(self._low), np.inf)
+        self._raise = np.full(len(self._low), FIRST_RAISE)
+        self._extent = self._high.max(axis=0) - self._low.min(axis=0)
+        self._total = float(self._volume.sum())
+
+    @property
+    def is_open(self) -> bool:
+        return len(self._bound) > 0
+
+    @property
+    def is_refuted(self) -> bool:
+        return self._found > self._enough
+
+    @property
+    def _level(self) -> float:
+        """Bound of a box at which it is left alone."""
+        near = self._found * (1.0 + self._within)
+        return near if self.is_refuted else min(near, self._enough)
+
+    @property
+    def fraction(self) -> float:
+        open_held = self._volume[self._bound <= self._enough].sum()
+        return min((self._held + float(open_held)) / self._total, 1.0)
+
+    def step(self, most: int) -> None:
+        """Bound the boxes that matter most, halve those whose bound is too high."""
+        at = self._next(most)
+        low, high, cover, volume, raised = (
+            values[at] for values in (self._low, self._high, self._cover, self._volume, self._raise)
+        )
+        self._keep(np.delete(np.arange(len(self._bound)), at))
+        bound, cut = np.empty(len(at)), np.empty(len(at), dtype=np.int64)
+        for k in np.unique(cover):
+            some = np.flatnonzero(cover == k)
+            told = self._enclosers[k].bound(low[some], high[some], raised[some], self._level)
+            bound[some], cut[some] = told.bound, told.cut
+            raised[some] = np.where(np.isnan(told.needs), raised[some], _SHRINKS * told.needs)
+            self._try(self._enclosers[k], told)
+        self.boxes += len(at)
+        good = bound <= self._level
+        self._proved_bound = max(self._proved_bound, bound[good].max(initial=0.0))
+        self._held += float(volume[good].sum())
+        rows = np.arange(len(at))
+        tiny = high[rows, cut] - low[rows, cut] <= _SMALLEST * self._extent[cut]
+        self._stuck = max(self._stuck, bound[~good & tiny].max(initial=0.0))
+        left = ~good & ~tiny
+        self._halve(*(values[left] for values in (low, high, cover, bound, raised, cut)))
+
+    def _next(self, most: int) -> IntArray:
+        """Return the boxes that are not known to hold, the largest first; else the worst."""
+        if len(self._bound) <= most:
+            return np.arange(len(self._bound))
+        unknown = self._bound > self._enough
+        key = np.where(unknown, 2.0 + self._volume / self._volume.max(), self._bound)
+        return np.argpartition(-key, most)[:most]
+
+    def _keep(self, at: IntArray) -> None:
+        for name in ("_low", "_high", "_cover", "_volume", "_bound", "_raise"):
+            setattr(self, name, getattr(self, name)[at])
+
+    def _try(self, encloser: Encloser, told: Told) -> None:
+        """Solve the corners that seem to be worse than what was found."""
+        order = np.argsort(-told.estimate)[:_TRIES]
+        order = order[told.estimate[order] > self._found * _BETTER]
+        bad = np.isneginf(told.estimate) & (told.bound > self._level)  # nothing is known of corners
+        unknown = np.argsort(np.where(bad, -told.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
+        tried = [told.worst[order], told.middle[unknown], told.middle[~told.solved][:_TRIES]]
+        if not sum(map(len, tried)):
+            return
+        places = encloser.cover.places(np.concatenate(tried))
+        used = encloser.utilisation(places)
+        if used.max() > self._found * _BETTER:
+            self._found, self._worst = float(used.max()), places[used.argmax()]
+
+    def _halve(
+        self,
+        low: FloatArray,
+        high: FloatArray,
+        cover: IntArray,
+        bound: FloatArray,
+        raised: FloatArray,
+        cut: IntArray,
+    ) -> None:
+        rows = np.arange(len(low))
+        middle = 0.5 * (low[rows, cut] + high[rows, cut])
+        first, second = high.copy(), low.copy()
+        first[rows, cut] = second[rows, cut] = middle
+        for a, b in ((low, first), (second, high)):
+            for k in np.unique(cover):
+                some = np.flatnonzero(cover == k)
+                self._add(int(k), a[some], b[some], bound[some], raised[some])
+
+    def _add(
+        self, k: int, low: FloatArray, high: FloatArray, bound: FloatArray, raised: FloatArray
+    ) -> None:
+        cover = self._enclosers[k].cover
+        low, high, corners = cover.cut(low, high)
+        left = (low <= high).all(axis=1)
+        low, high, corners = low[left], high[left], corners[left]
+        more = (
+            ("_low", low), ("_high", high), ("_cover", np.full(len(low), k)),
+            ("_volume", cover.share(low, high, corners)), ("_bound", bound[left]),
+            ("_raise", raised[left]),
+        )  # fmt: skip
+        for name, values in more:
+            setattr(self, name, np.concatenate([getattr(self, name), values]))
+
+    def result(self, seconds: float) -> Proof:
+        open_bound = max(self._stuck, self._bound.max(initial=0.0))
+        bound = max(self._proved_bound, open_bound, self._found)
+        status: Status = "proved" if bound <= self._enough else "partial"
+        return Proof(
+            "refuted" if self.is_refuted else status,
+            bound=bound,
+            found=self._found,
+            worst=self._worst,
+            fraction=1.0 if status == "proved" else self.fraction,
+            boxes=self.boxes,
+            seconds=seconds,
+        )

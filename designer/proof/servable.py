@@ -1,0 +1,162 @@
+r"""Which part of a region no rope can serve, and which part some rope can: volumes from both sides.
+
+Whatever the rope, the wrench of cable i lies in the cone of two rays: that of the straight cable,
+with the vector e_i to the exit point, and that of a force straight down at its attachment
+(`designer.kernel.cone`). A wrench y of force f and moment m that is not above zero with any of
+them, and above zero with the load, proves that nothing holds the pose (Farkas' lemma):
+
+    e_i · g_i ≤ 0,    g_i = f + m × r_i,    g_i not below level,    y · load > 0.
+
+In one orientation only e_i changes with the position, linearly: one y does for a whole box if it
+does at its corners. It is found by a linear programme, which makes the products as clear as they
+can be, and is then evaluated with room for rounding.
+
+That a box can be served is proved with a rope that weighs next to nothing and bears any tension.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
+from designer.model.robot import Poses, Robot
+from designer.model.space import Space
+from designer.proof.cover import Cover, covers_of
+from designer.proof.encloser import Encloser, why_not
+from designer.proof.prove import Budget
+from designer.statics.geometry import upright_exit_points_m, upright_poses
+
+_LIGHT, _STRONG = 1e-6, 1e9
+"""Weight of the rope over the load, and its strength."""
+_CLEAR = 1e-10
+"""Product of unit vectors beyond which rounding cannot have changed its sign."""
+_BATCH = 256
+_TWO_SIDES = np.array(list(product((0, 1), repeat=3)))
+
+
+@dataclass(frozen=True, slots=True)
+class Servable:
+    """Shares of a space, by volume.
+
+    Parameters
+    ----------
+    impossible : float
+        Proved that no rope holds the platform there.
+    possible : float
+        Proved that some rope does, if it is light and strong enough.
+    boxes : int
+        How many were tried.
+    """
+
+    impossible: float
+    possible: float
+    boxes: int
+
+
+def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
+    """Bound the part of a space that no rope can serve; None where that is not to be had.
+
+    That is over pulleys, where the orientation has a range, and without a load.
+    """
+    load_N = float(np.linalg.norm(robot.loads_N()[0, :3]))
+    if why_not(robot) or space.orientations.range_rad is not None or load_N == 0.0:
+        return None
+    size = float(np.ptp(np.vstack([robot.exit_points_m, space.region.bounds_m]), axis=0).max())
+    density = _LIGHT * load_N / size / STANDARD_GRAVITY_M_PER_S2
+    rope = Cable(np.nan, density, np.inf, _STRONG * load_N)
+    covers = [_Part(robot, rope, cover) for cover in covers_of(space)]
+    began, boxes = time.monotonic(), 0
+    while boxes < budget.boxes and time.monotonic() - began < budget.seconds:
+        part = max(covers, key=lambda one: one.largest)
+        if part.largest == 0.0:
+            break
+        boxes += part.step(int(min(_BATCH, budget.boxes - boxes)))
+    whole = sum(part.whole for part in covers)
+    impossible, possible = sum(part.no for part in covers), sum(part.yes for part in covers)
+    return Servable(impossible / whole, possible / whole, boxes)
+
+
+class _Part:
+    """Boxes of one orientation that are not decided yet, and the volumes of those that are."""
+
+    def __init__(self, robot: Robot, rope: Cable, cover: Cover) -> None:
+        self._robot, self._cover = robot, cover
+        self._encloser = Encloser(robot, rope, cover)
+        self._low, self._high, corners = cover.cut(cover.low, cover.high)
+        self._volume = cover.share(self._low, self._high, corners)
+        self.whole = float(self._volume.sum())
+        self.no = self.yes = 0.0
+
+    @property
+    def largest(self) -> float:
+        return float(self._volume.max(initial=0.0))
+
+    def step(self, most: int) -> int:
+        """Decide the largest boxes, halve the others; return how many there were."""
+        at = np.argsort(-self._volume)[:most]
+        low, high, volume = self._low[at], self._high[at], self._volume[at]
+        told = self._encloser.bound(low, high, np.zeros(len(at)), 1.0)
+        yes = np.isfinite(told.bound)
+        no = ~yes & self._is_impossible(low, high, ~told.solved)
+        self.yes += float(volume[yes].sum())
+        self.no += float(volume[no].sum())
+        left = ~yes & ~no & ((high - low).max(axis=1) > 0.0)
+        cut = np.where(told.solved, told.cut, (high - low)[:, :3].argmax(axis=1))[left]
+        low, high = low[left], high[left]
+        rows = np.arange(len(low))
+        first, second = high.copy(), low.copy()
+        first[rows, cut] = second[rows, cut] = 0.5 * (low[rows, cut] + high[rows, cut])
+        low, high = np.concatenate([low, second]), np.concatenate([first, high])
+        low, high, corners = self._cover.cut(low, high)
+        some = (low <= high).all(axis=1)
+        rest = np.delete(np.arange(len(self._volume)), at)
+        self._low = np.concatenate([self._low[rest], low[some]])
+        self._high = np.concatenate([self._high[rest], high[some]])
+        more = self._cover.share(low[some], high[some], corners[some])
+        self._volume = np.concatenate([self._volume[rest], more])
+        return len(at)
+
+    def _is_impossible(self, low: FloatArray, high: FloatArray, asked: BoolArray) -> BoolArray:
+        """Tell of which boxes (n, 3) it is proved that no rope holds any of their poses."""
+        out = np.zeros(len(low), dtype=np.bool_)
+        for k in np.flatnonzero(asked):
+            corners = np.where(_TWO_SIDES, high[k], low[k])
+            out[k] = self._separates(self._cover.places(corners))
+        return out
+
+    def _separates(self, places: FloatArray) -> bool:
+        """Tell whether one wrench separates the load from the cones of all of these poses."""
+        from scipy.optimize import linprog
+
+        robot, poses = self._robot, upright_poses(self._robot, Poses.at(places))
+        rotation = np.broadcast_to(poses.rotation, (len(places), 3, 3))[0]
+        levers = robot.attachments_m @ rotation.T
+        reach = float(np.linalg.norm(levers, axis=1).max()) or 1.0
+        vectors = upright_exit_points_m(robot) - poses.position_m[:, None] - levers
+        down = np.broadcast_to([0.0, 0.0, -1.0], (1, *levers.shape))
+        forces = np.concatenate([vectors, down])
+        moments = np.cross(levers, forces) / reach
+        rays = np.concatenate([forces, moments], axis=-1)[..., robot.balance_rows]
+        rays = rays.reshape(-1, len(robot.balance_rows))
+        size = np.linalg.norm(rays, axis=1, keepdims=True)
+        rays = np.divide(rays, size, out=np.zeros_like(rays), where=size > 0.0)
+        load = robot.loads_N()[0].copy()
+        load[3:] += np.cross(rotation @ robot.platform.centre_of_mass_m, robot.centre_pull_N)
+        load[3:] /= reach
+        load = load[robot.balance_rows] / np.linalg.norm(load[robot.balance_rows])
+        m = len(load)
+        # Largest margin z: rays · y + z ≤ 0 and load · y ≥ z, components of y at most one.
+        A = np.vstack([np.column_stack([rays, np.ones(len(rays))]), np.append(-load, 1.0)])
+        found = linprog(
+            np.append(np.zeros(m), -1.0), A_ub=A, b_ub=np.zeros(len(A)),
+            bounds=[(-1.0, 1.0)] * m + [(None, 1.0)],
+        )  # fmt: skip
+        if found.x is None:
+            return False
+        y = found.x[:m]
+        return bool((rays @ y).max() < -_CLEAR and load @ y > _CLEAR)

@@ -1,0 +1,78 @@
+"""Boxes that cover a region: nothing is lost or counted twice where they are cut and halved."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from designer.arrays import FloatArray
+from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.space import Orientations, Space
+from designer.proof.cover import Cover, covers_of
+from designer.proof.encloser import _turning_axes
+
+_TRIANGLE = Prism(np.array([[0.0, 0.0], [5.0, 0.5], [2.0, 4.0]]), (-3.0, -1.0))
+_BOX = Prism.box((0.0, 2.0), (1.0, 4.0), (5.0, 5.5))
+_WALL = Rectangle(np.array([[1.0, 1.0], [4.0, 5.0]]), (0.0, 2.0))
+
+
+def _halved(cover: Cover, times: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    low, high, corners = cover.cut(cover.low, cover.high)
+    for turn in range(times):
+        d = [0, 2, 1][turn % 3]
+        if cover.axes[:, d].max() == 0.0:
+            continue
+        middle = 0.5 * (low[:, d] + high[:, d])
+        first, second = high.copy(), low.copy()
+        first[:, d] = second[:, d] = middle
+        low, high, corners = cover.cut(np.concatenate([low, second]), np.concatenate([first, high]))
+        left = (low <= high).all(axis=1)
+        low, high, corners = low[left], high[left], corners[left]
+    return low, high, corners
+
+
+@pytest.mark.parametrize("region", [_TRIANGLE, _BOX, _WALL])
+def test_the_parts_have_the_size_of_the_whole(region: Prism | Rectangle) -> None:
+    (cover,) = covers_of(Space(region, Orientations()))
+    low, high, corners = _halved(cover, 8)
+    whole = cover.share(*cover.cut(cover.low, cover.high))
+    assert cover.share(low, high, corners).sum() == pytest.approx(whole.sum(), rel=1e-9)
+    if region.volume_m3 is not None:
+        assert whole.sum() == pytest.approx(region.volume_m3, rel=1e-9)
+
+
+@pytest.mark.parametrize("region", [_TRIANGLE, _BOX, _WALL])
+def test_every_pose_lies_in_a_box(region: Region) -> None:
+    (cover,) = covers_of(Space(region, Orientations()))
+    low, high, _ = _halved(cover, 7)
+    points = region.inside_m(np.random.default_rng(1), 500)
+    coordinates = np.linalg.lstsq(cover.axes, (points - cover.origin_m).T, rcond=None)[0].T
+    slack = 1e-12
+    inside = (coordinates[:, None] >= low - slack) & (coordinates[:, None] <= high + slack)
+    assert inside.all(axis=2).any(axis=1).all()
+    np.testing.assert_allclose(cover.places(coordinates)[:, :3], points, atol=1e-12)
+
+
+def test_a_list_is_boxes_without_size() -> None:
+    points = np.random.default_rng(2).uniform(size=(5, 3))
+    turns = Orientations(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.5]]))
+    covers = covers_of(Space(PointList(points), turns))
+    assert [len(cover.low) for cover in covers] == [5, 5]
+    assert sum(cover.share(*cover.cut(cover.low, cover.high)).sum() for cover in covers) == 10.0
+    assert covers[1].places(points)[:, 5] == pytest.approx(0.5)
+
+
+def test_the_axes_of_turning_are_the_slopes_of_the_rotation() -> None:
+    rng = np.random.default_rng(3)
+    for size in (0.0, 1e-3, 0.3, 2.0):
+        turn, arm, step = size * rng.normal(size=3), rng.normal(size=3), 1e-6
+        axes = _turning_axes(turn[None])[0]
+        for d in range(3):
+            ahead, behind = (
+                Rotation.from_rotvec(turn + sign * step * np.eye(3)[d]).apply(arm)
+                for sign in (1.0, -1.0)
+            )
+            now = Rotation.from_rotvec(turn).apply(arm)
+            slope = (ahead - behind) / (2.0 * step)
+            np.testing.assert_allclose(np.cross(axes[:, d], now), slope, atol=1e-9)
