@@ -11,7 +11,7 @@ about a turned lever, and the weight P about the turned lever c of the centre of
 
 F_i acts on the cable, so K is what the platform resists with. In equilibrium K is symmetric; it is
 positive definite where the equilibrium is stable. With straight cables of no weight this is the
-stiffness of Behzadipour and Khajepour, J. Mech. Des. 128 (2006), doi:10.1115/1.1999890; here the
+stiffness of Behzadipour and Khajepour, J. Mech. Des. 128 (2006), pages 303 to 310; here the
 cables' own tangents bring in the sag.
 """
 
