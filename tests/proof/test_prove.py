@@ -22,6 +22,8 @@ LEVEL = Orientations()
 PAPER_M = 0.05123027498765374
 """Diameter that the paper's robot needs in the region of the shipped study."""
 
+pytestmark = pytest.mark.slow  # compiling alone takes half a minute
+
 
 def _paper_space(robot: Robot) -> Space:
     return Space(Prism.over(robot.exit_points_m, 10.35, (-200.0, -40.0)), LEVEL)
@@ -68,7 +70,6 @@ def test_a_rope_that_fails_is_refuted(fast_robot: Robot, steel: Material) -> Non
     assert _used(fast_robot, thin, proof.worst[None])[0] == pytest.approx(proof.found)
 
 
-@pytest.mark.slow
 def test_the_twin_needs_no_thicker_cable_anywhere(fast_robot: Robot, steel: Material) -> None:
     points = _paper_space(fast_robot).region.inside_m(np.random.default_rng(2), 4)
     rng = np.random.default_rng(3)
@@ -90,7 +91,6 @@ def _random_square(rng: np.random.Generator) -> tuple[Robot, Space]:
     return robot, Space(Prism.box(*sides), Orientations(turns))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_random_platforms_stay_below_their_bound(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -106,7 +106,6 @@ def test_random_platforms_stay_below_their_bound(seed: int) -> None:
     assert _used(robot, cable, space.places(space.region.inside_m(rng, 500))).max() <= proof.bound
 
 
-@pytest.mark.slow
 def test_a_range_of_turns_stays_below_its_bound() -> None:
     rng = np.random.default_rng(9)
     robot, _ = _random_square(rng)
@@ -122,7 +121,6 @@ def test_a_range_of_turns_stays_below_its_bound() -> None:
     assert used.max() <= proof.found <= proof.bound <= 1.05 * proof.found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("least_N", [0.0, 200.0])
 def test_a_redundant_robot_stays_below_its_bound(least_N: float) -> None:
     exits = frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]])

@@ -73,6 +73,7 @@ def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.Monk
     assert ours.utilisation <= caught.proof.found.bound <= 1.0015 * theirs.utilisation
 
 
+@pytest.mark.slow
 def test_the_proof_is_in_the_result() -> None:
     analysis = analyse(_study(200, 1000.0))
     assert analysis.selection is not None

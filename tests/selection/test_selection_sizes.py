@@ -49,7 +49,10 @@ def cases(fast_robot, six_cable_robot):
 NAMES = ["three", "three, high", "exclude", "six", "tilt", "pulleys"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow) if name == "six" else name for name in NAMES],
+)
 def test_agrees_with_one_size_at_a_time(name: str, fast_robot, six_cable_robot) -> None:
     robot, workspace = cases(fast_robot, six_cable_robot)[name]
     tried = cables()
