@@ -306,7 +306,7 @@ def test_report_without_a_product_is_a_negative_answer(designer) -> None:
     assert told.status == 1, told.err
     result = json.loads(Path("deep/out/result.json").read_text())
     assert result["selection"]["chosen"] is None
-    assert "too thin" in result["selection"]["reason"]
+    assert "the largest size sold of every grade is insufficient" in result["selection"]["reason"]
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ import numpy as np
 from designer.analysis.sensitivities import outward, with_payload
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import loss_demand, rope_demand
@@ -88,10 +88,10 @@ def payload_reserve(cases: Sequence[CaseFound]) -> Reserve | None:
 def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None:
     """Return by how much the sides of the region may move outward; None where none was found.
 
-    Heights stay. Load cases with a region of their own do not count; a list of points has no sides.
+    Heights stay. Load cases with a region of their own do not count; only some regions have sides.
     """
     moving = [case for case in cases if case.case.region is None]
-    if isinstance(region, PointList) or not moving:
+    if not isinstance(region, Prism | Rectangle) or not moving:
         return None
 
     def wider(case: CaseFound, margin_m: float) -> tuple[Loaded, Workspace]:

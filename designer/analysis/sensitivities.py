@@ -17,7 +17,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.statics.geometry import load_wrench_N
 from designer.statics.slopes import Slopes, utilisation_slopes
@@ -219,16 +219,14 @@ def with_exit_moved(one: Loaded, cable: int, axis: int, by_m: float) -> Loaded:
 def outward(region: Region, position_m: FloatArray) -> FloatArray:
     """Return how a position moves as the sides of its region move outward by a metre (3,).
 
-    Zero within the region, and in a list of points; in a corner, along with both sides.
+    Zero within the region, and where it has no sides; in a corner, along with both sides.
     """
-    if isinstance(region, PointList):
-        return np.zeros(3)
     if isinstance(region, Rectangle):
         share = float(region.shares(position_m)[0])
         way = np.append((region.ends_m[1] - region.ends_m[0]) / region.size_m[0], 0.0)
         near = [abs(share - end) <= _ON_A_SIDE for end in (0.0, 1.0)]
         return np.asarray((near[1] * 1.0 - near[0] * 1.0) * way)
-    return _out_of_prism(region, position_m)
+    return _out_of_prism(region, position_m) if isinstance(region, Prism) else np.zeros(3)
 
 
 def _out_of_prism(region: Prism, position_m: FloatArray) -> FloatArray:

@@ -107,7 +107,7 @@ def prove(
     progress : callable
         Called with the share of the volume that is proved.
     """
-    reason = why_not(robot)
+    reason = why_not(robot, space.region)
     if reason:
         return Proof("off", found=found, reason=reason)
     search = _Search(robot, cable, covers_of(space), found, within, enough)

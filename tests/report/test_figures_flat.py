@@ -35,7 +35,7 @@ def analysed(study: Study, folder: Path) -> Analysis:
     path = folder / "sweep.nc"
     found = map_workspace(study.robot, study.workspace, study.material, file=path)
     pose = analyse_pose(study)
-    return Analysis(study, Catalogue((), (), ()), Provenance.now(), pose, found, path, None)
+    return Analysis(study, Catalogue((), (), ()), Provenance.now(), pose, found, None)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from designer.analysis.analyse import Analysis
 from designer.proof.prove import Proof
 from designer.report import format as fmt
-from designer.report.blocks import Fact, Facts, Section, Statement
+from designer.report.blocks import Section, Statement
 from designer.report.design.source import Source
 from designer.selection.proven import CaseProof
 
@@ -18,22 +18,13 @@ def section(source: Source) -> Section | None:
     case = _case(source.analysis)
     if case is None or case.found.status == "off":
         return None
-    found = case.found
-    bound = fmt.utilisation(_up(found.bound)) if found.status == "proved" else "none for all poses"
-    facts = [
-        Fact("Largest utilisation found", fmt.utilisation(found.found)),
-        Fact("Proved bound", bound),
-        Fact("Share of the volume proved to hold", fmt.percent(_down(found.fraction))),
-        Fact("Boxes of poses", fmt.count(found.boxes)),
-        *([Fact("Load case", case.load_case)] if case.load_case else []),
-    ]
     return Section.of(
         "proof",
         "Proof",
         proof_statement(case),
-        Facts(tuple(facts)),
-        "The region is divided into boxes of poses. In each, all pulls and poses are enclosed by "
-        "intervals that are rounded outward; where an equilibrium is then certain to exist, its "
+        f"The region is divided into boxes of poses, {fmt.count(case.found.boxes)} of them. In "
+        "each, all pulls and poses are enclosed by intervals that are rounded outward; where an "
+        "equilibrium is then certain to exist, its "
         "tensions are bounded by their enclosure (test of Krawczyk). Boxes whose bound is not "
         "within 0.1\u00a0% of the largest utilisation found are halved. Proved is that an "
         "equilibrium without larger tensions exists in each pose, for the figures of robot and "

@@ -37,13 +37,11 @@ def facts_of(provenance: Provenance, study: Study, *data: Fact) -> tuple[Fact, .
     """Return program, libraries, config and time, as both kinds of report show them."""
     libraries = ", ".join(f"{name} {version}" for name, version in provenance.libraries)
     return (
-        Fact("Program", f"cdpr-designer {provenance.version}"),
-        Fact("Libraries", libraries),
+        Fact("Program", f"cdpr-designer {provenance.version}", f"with {libraries}"),
         Fact("Configuration", study.source.path.name),
         Fact("SHA-256 of the configuration", study.source.sha256),
         *data,
-        Fact("Computed", shown_time(provenance.created)),
-        Fact("On", provenance.system),
+        Fact("Computed", shown_time(provenance.created), f"on {provenance.system}"),
     )
 
 
@@ -56,8 +54,9 @@ def _facts(analysis: Analysis) -> Facts:
         *facts_of(analysis.provenance, study),
         Fact("Solver tolerance", tolerance, "relative residual of a solved pose"),
     ]
-    if analysis.selection is not None:
-        facts.append(Fact("Every candidate", "candidates.csv", "table, beside this report"))
+    files = ["every candidate in candidates.csv"] if analysis.selection is not None else []
     if analysis.sweep_file is not None:
-        facts.append(Fact("Every sample", analysis.sweep_file.name, "NetCDF, beside this report"))
+        files.append(f"every sample in {analysis.sweep_file.name}")
+    if files:
+        facts.append(Fact("Beside this report", fmt.listing(files)))
     return Facts(tuple(facts))

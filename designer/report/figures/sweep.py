@@ -42,7 +42,7 @@ class Axis:
         title = f"{name} [{unit}]" if unit else name
         if values.dtype.kind == "f":
             return cls(title, values)
-        labels, places = np.unique(values.astype(str), return_inverse=True)
+        labels, places = np.unique([str(one) for one in values.tolist()], return_inverse=True)
         return cls(title, places.astype(float), tuple(map(str, labels)))
 
     def tick(self, axes: Axes, which: str) -> None:
