@@ -9,7 +9,7 @@ import numpy as np
 from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
-from designer.report.blocks import Statement
+from designer.report.blocks import Picture, Statement
 from designer.report.sweep import pareto_front, sweep_report
 from designer.sweep.store import read_store
 
@@ -37,6 +37,7 @@ def test_numbers_and_texts_have_their_place(tmp_path: Path) -> None:
     head = page.section("answer").blocks[0]
     assert isinstance(head, Statement)
     assert head.title == "66.7\N{NO-BREAK SPACE}% of the studies have an answer"
-    svg = str(page.section("fields").blocks)
-    assert "5 m" in svg
-    assert "robot.platform.mass" in svg.replace("&#10;", "").replace("\n", "")
+    picture = page.section("fields").blocks[0]
+    assert isinstance(picture, Picture)
+    assert "5 m" in picture.svg
+    assert "robot.platform.mass" in picture.svg.replace("\n", "")
