@@ -18,7 +18,7 @@ _WORST = (243.0, 10.35, -40.0)
 """Of the plane z = −40 m in the triangle inset by 10.35 m, found by our search."""
 
 # Sample `cogiro` of github.com/cable-robots/cdpyr, each cable with the attachment that it holds
-_COGIRO = Robot(
+COGIRO = Robot(
     frozen_array(
         [
             [-7.11966, 5.47261, 5.41063],
@@ -75,7 +75,7 @@ def _cogiro() -> Sequence[Figure]:
 
     cable = Material(7800.0, 100e9, 1e9).cable(0.004)
     start = Poses.at([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
-    found = solve_forward(_COGIRO, cable, frozen_array(_COGIRO_LENGTHS_M), start)
+    found = solve_forward(COGIRO, cable, frozen_array(_COGIRO_LENGTHS_M), start)
     tensions = zip(_COGIRO_TENSIONS_N, found.statics.exit_tension_N, strict=True)
     place = zip(
         "xyz", (1.100564e-2, -1.002498e-2, 1.317075894), found.poses.position_m, strict=True
