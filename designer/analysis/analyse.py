@@ -16,11 +16,10 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
-from designer.analysis.verification import SecondAnswer, verify, verify_cables
+from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.cable import Material
-from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
@@ -33,7 +32,7 @@ from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import LoopSizing, size_by_loop
 from designer.sizing.newton import Sizing, size_poses
-from designer.statics.inverse import MasslessStatics, solve_massless, solve_sagging
+from designer.statics.inverse import MasslessStatics, solve_massless
 from designer.statics.rest import RestingPlaces, resting_places
 from designer.study import Study, as_built_by, require_enough_cables
 from designer.workspace.hanging import HangingCables
@@ -275,6 +274,8 @@ def analyse(
     catalogue: Catalogue | None = None,
     folder: Path | None = None,
     reporter: Reporter = SILENT,
+    *,
+    explains: bool = True,
 ) -> Analysis:
     """Size the pose, sweep the workspace, choose a product.
 
@@ -288,6 +289,9 @@ def analyse(
         Existing folder that receives ``workspace.nc``; a temporary one if left out.
     reporter : Reporter
         Shows progress.
+    explains : bool
+        False leaves out what changes no answer and takes its time: second answers, what carries
+        the result, which part of the region no rope can serve.
 
     Raises
     ------
@@ -330,13 +334,9 @@ def analyse(
             proof_s=0.0 if study.selection.groups else study.workspace.proof_s,
         )
         if study.selection.groups:
+            grades, single = catalogue.grades, chosen.chosen
             groups = choose_groups_of(
-                study.workspace,
-                study.selection,
-                catalogue.grades,
-                built,
-                chosen.chosen,
-                reporter,
+                study.workspace, study.selection, grades, built, single, reporter
             )
     qualities = None
     if study.workspace is not None and workspace is not None:
@@ -351,9 +351,9 @@ def analyse(
         groups,
         qualities,
         built.section_m,
-        _second_answers(study, built, pose, workspace, chosen),
-        None if groups is not None else carries_of(study, chosen),
-        _servable(study, built, workspace, reporter),
+        second_answers(study, built, pose, workspace, chosen) if explains else (),
+        carries_of(study, chosen) if explains and groups is None else None,
+        _servable(study, built, workspace, reporter) if explains else None,
         scratch,
     )
 
@@ -369,30 +369,6 @@ def _servable(
         return None
     with reporter.task("impossible", 1):
         return servable(built.robot, study.workspace.space, Budget(study.workspace.proof_s))
-
-
-def _second_answers(
-    study: Study,
-    built: AsBuilt,
-    pose: PoseAnalysis | None,
-    workspace: WorkspaceMap | None,
-    chosen: SelectionResult | None,
-) -> tuple[SecondAnswer, ...]:
-    """Verify the configured pose, the worst pose, and that of the chosen rope."""
-    found: list[SecondAnswer] = []
-    if pose is not None:
-        found += verify("configured pose", pose.material, pose.sizing)
-    if workspace is not None and workspace.sagging is not None:
-        material = built.material(study.material)
-        sizing = size_poses(built.robot, workspace.sagging.pose, material)
-        found += verify("worst pose", material, sizing)
-    if chosen is not None and chosen.chosen is not None:
-        most = chosen.chosen.governing
-        place = chosen.chosen.verification.worst_position_m
-        statics = solve_sagging(most.loaded.robot, Poses.at(place), most.loaded.cable)
-        if statics.is_solved:
-            found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))
-    return tuple(found)
 
 
 def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:

@@ -6,13 +6,22 @@ They have in common where cables begin and end, and the straight cables that the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from designer.model.cable import Material
+from designer.model.robot import Poses
 from designer.physics.quadrature import end_position_m
-from designer.sizing.newton import Sizing
-from designer.statics.inverse import Statics
+from designer.sizing.newton import Sizing, size_poses
+from designer.statics.inverse import Statics, solve_sagging
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import PoseAnalysis
+    from designer.effects.design import AsBuilt
+    from designer.selection.result import SelectionResult
+    from designer.study import Study
+    from designer.workspace.result import WorkspaceMap
 
 _SAME_DIAMETER = 1e-6
 """Of the diameter: what the optimisers reach."""
@@ -61,6 +70,30 @@ class SecondAnswer:
         """Whether the two agree, or there is nothing to compare."""
         off = -self.difference if self.may_be_more else abs(self.difference)
         return bool(self.remark) or off <= self.tolerance
+
+
+def second_answers(
+    study: Study,
+    built: AsBuilt,
+    pose: PoseAnalysis | None,
+    workspace: WorkspaceMap | None,
+    chosen: SelectionResult | None,
+) -> tuple[SecondAnswer, ...]:
+    """Verify the configured pose, the worst pose, and that of the chosen rope."""
+    found: list[SecondAnswer] = []
+    if pose is not None:
+        found += verify("configured pose", pose.material, pose.sizing)
+    if workspace is not None and workspace.sagging is not None:
+        material = built.material(study.material)
+        sizing = size_poses(built.robot, workspace.sagging.pose, material)
+        found += verify("worst pose", material, sizing)
+    if chosen is not None and chosen.chosen is not None:
+        most = chosen.chosen.governing
+        place = chosen.chosen.verification.worst_position_m
+        statics = solve_sagging(most.loaded.robot, Poses.at(place), most.loaded.cable)
+        if statics.is_solved:
+            found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))
+    return tuple(found)
 
 
 def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:

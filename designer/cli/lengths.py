@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -49,8 +48,6 @@ def lengths(
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = study_of(config, plugins)
-    if study.workspace is not None:  # lengths need the rope, no proof of it
-        study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
     table = read_poses(poses, study.robot)
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
@@ -59,7 +56,7 @@ def lengths(
     from designer.analysis.lengths import lengths_of
 
     with ProgressBars() as bars:
-        found = lengths_of(analyse(study, catalogue, reporter=bars), table.poses)
+        found = lengths_of(analyse(study, catalogue, reporter=bars, explains=False), table.poses)
     if found is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         raise typer.Exit(NEGATIVE_ANSWER)
