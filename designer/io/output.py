@@ -42,11 +42,11 @@ def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
         If ``folder`` is a file, cannot be written, or has a folder where a file is to go.
     """
     with undone_at_end() as undo:
-        with _explained(folder):
+        with explained(folder):
             building = _begin(folder, undo)
-        with _explained(folder, only=_FULL):
+        with explained(folder, only=_FULL):
             yield building
-        with _explained(folder), undone_at_end() as back:
+        with explained(folder), undone_at_end() as back:
             aside = _move(building, folder, outdated, back)
             back.forget()
             # In one step: from here on a run that is killed has nothing to give back.
@@ -54,7 +54,7 @@ def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
 
 
 @contextmanager
-def _explained(folder: Path, only: Container[int | None] | None = None) -> Iterator[None]:
+def explained(folder: Path, only: Container[int | None] | None = None) -> Iterator[None]:
     """Turn the system's refusal to write, or only some kinds of it, into a line for the user."""
     try:
         yield
@@ -179,7 +179,7 @@ def write_file(path: Path, text: str) -> None:
     OutputError
         If it cannot be written.
     """
-    with _explained(path):
+    with explained(path):
         write_whole(path, text.encode())
 
 

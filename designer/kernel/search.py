@@ -100,7 +100,7 @@ def search_range(
         first = n + 3 + _RANDOM_STARTS
         for attempt in range(first + 2 * n):
             if best == -np.inf and (is_proved or attempt >= first):
-                # Nor does any section hold within its strength.
+                # Nor does the section that is asked for hold then, within its strength.
                 out.verdict[at] = NO_FINITE_CABLE if is_proved and sizing else out.verdict[at]
                 break
             if attempt < first:

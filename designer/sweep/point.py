@@ -22,6 +22,11 @@ from designer.study import Study, require_enough_cables
 
 Change = tuple[tuple[Key, ...], Node]
 
+_EXPLAINING = (
+    "verification", "sensitivities", "reserve", "sizes_beside", "first_failures",
+    "workspace.servable",
+)  # fmt: skip
+"""What changes no answer, and is computed only where it is kept."""
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
 """Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
 
@@ -71,9 +76,12 @@ class Base:
             name.split(".")[1:2] == [quality] for name in self.keep for quality in _OF_THE_CHOICE
         ):
             study = replace(study, selection=None, load_cases=())
+        # A proof may take its whole budget for each of thousands of studies.
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        return analyse(study, _catalogue(study.catalogues, self.with_plugins)).to_dict()
+        explains = any(name.startswith(_EXPLAINING) for name in self.keep)
+        grades = _catalogue(study.catalogues, self.with_plugins)
+        return analyse(study, grades, explains=explains).to_dict()
 
 
 @cache

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import AfterValidator, Field, ValidationError
 
 from designer import __version__
 from designer.documents.document import Document, FileKind, read_document
 from designer.documents.faults import schema_faults
-from designer.documents.fields import FreeMapping, Text, WholeNumber, list_of
-from designer.documents.node import Key, Node, path_keys
+from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
+from designer.documents.node import Key, Node, path_keys, path_text
 from designer.documents.section import Section
 from designer.errors import Fault, InputError
 from designer.spelling import did_you_mean
@@ -27,7 +28,7 @@ SWEEP = FileKind("a sweep, with study, vary and keep", "study: crane.yaml")
 _LISTED = "a list of values, or {from: 100 kg, to: 300 kg, count: 21}"
 _KEPT = "a list of paths into result.json, such as [selection.chosen.utilisation]"
 Count = Annotated[int, WholeNumber(1, MOST_POINTS)]
-Paths = Annotated[tuple[Text, ...], list_of(1, 100, _KEPT)]
+Paths = Annotated[tuple[Text, ...], list_of(1, 100, _KEPT), AfterValidator(different)]
 Goals = Annotated[tuple[Text, ...], list_of(0, 100, _KEPT)]
 
 
@@ -64,6 +65,8 @@ def read_sweep(path: Path, with_plugins: bool = True) -> tuple[Plan, Base]:
     varied = {name: _varied(document, name, section.sampling, faults) for name in section.vary}
     _refuse(faults)
     known = {name: one for name, one in varied.items() if one is not None}
+    faults += _faults_of_points(document, section, known)
+    _refuse(faults)
     study_path = path.parent / section.study
     base = Base(read_document(study_path), section.keep, with_plugins)
     faults += _faults_of_fields(document, base, known)
@@ -92,6 +95,21 @@ def _faults_of_sampling(document: Document, section: SweepSection) -> Iterator[F
         yield document.fault(("points",), "is missing", f"how many, for {section.sampling}")
 
 
+def _faults_of_points(
+    document: Document, section: SweepSection, varied: Mapping[str, Range | Choice]
+) -> Iterator[Fault]:
+    """Yield a fault where two columns of the store would have one name, or there are too many."""
+    taken = {*section.keep, "done", "reason"}
+    for name, one in varied.items():
+        if path_text(one.keys) in taken:
+            yield document.fault(("vary", name), "is named twice, or is the name of a result", "")
+        taken.add(path_text(one.keys))
+    each = [one.count or 1 if isinstance(one, Range) else len(one.nodes) for one in varied.values()]
+    if section.sampling == "grid" and math.prod(each) > MOST_POINTS:
+        expected = f"{MOST_POINTS:,} at most, or latin_hypercube"
+        yield document.fault(("vary",), f"the grid has {math.prod(each):.3g} points", expected)
+
+
 def _varied(
     document: Document, name: str, sampling: str, faults: list[Fault]
 ) -> Range | Choice | None:
@@ -104,7 +122,8 @@ def _varied(
     if isinstance(node.content, tuple) and node.content:
         return _choice(path_keys(name), node.content)
     if not isinstance(node.content, dict):
-        faults.append(document.fault(place, f"{describe(node.data())} is no list", _LISTED))
+        found = "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
+        faults.append(document.fault(place, found, _LISTED))
         return None
     low, high, count = (split_quantity(_text(node.child(key))) for key in ("from", "to", "count"))
     unknown = [key for key in node.content if key not in ("from", "to", "count")]

@@ -17,6 +17,7 @@ import numpy as np
 
 from designer import __version__
 from designer.errors import Fault, InputError, OutputError
+from designer.io.output import explained
 from designer.sweep.plan import Plan
 
 if TYPE_CHECKING:
@@ -47,12 +48,17 @@ class Store:
 
     def write(self, points: range, found: Sequence[tuple[Sequence[Any], str]]) -> None:
         """Write the results of a chunk: what is kept of each point, and why there is nothing."""
-        place = slice(points.start, points.stop)
+        place, reasons = slice(points.start, points.stop), [why for _, why in found]
         for k, name in enumerate(self._plan.keep):
             kind = self._plan.kinds[name]
             values = [_as_kind(kept[k], kind) for kept, _ in found]
             self._array(name)[place] = np.array(values, dtype=object if kind is str else float)
-        self._array("reason")[place] = np.array([why for _, why in found], dtype=object)
+            for at, (kept, _) in enumerate(found):
+                if kind is float and isinstance(kept[k], str):
+                    reasons[at] += f"; {name} is a text here, and was none of the study as it is"
+        self._array("reason")[place] = np.array(
+            [why.removeprefix("; ") for why in reasons], dtype=object
+        )
         self._array("done")[place] = True
 
 
@@ -77,7 +83,7 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
     from filelock import FileLock, Timeout
 
     if not path.exists():
-        with told_if_unwritable(path):
+        with explained(path):
             _lay_out(path, plan)
     try:
         digest = zarr.open_group(path, mode="r").attrs.get("digest")
@@ -86,7 +92,7 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
     if digest != plan.digest:
         problem = "is the store of another sweep, study, catalogue or version"
         raise InputError([_fault(path, problem)])
-    with told_if_unwritable(path):
+    with explained(path):
         lock = FileLock(path / ".lock")
         try:
             lock.acquire(timeout=0)
@@ -98,15 +104,6 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
 
 def _fault(path: Path, problem: str) -> Fault:
     return Fault(str(path), None, "", problem, "that of this sweep, or another -o")
-
-
-@contextmanager
-def told_if_unwritable(path: Path) -> Iterator[None]:
-    """Turn the system's refusal to write into one line; what is stored stays."""
-    try:
-        yield
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def _lay_out(path: Path, plan: Plan) -> None:

@@ -72,6 +72,17 @@ def test_a_point_that_is_no_study_is_kept_with_its_reason(tmp_path: Path) -> Non
     )
 
 
+def test_a_text_where_a_number_was_expected_is_told(tmp_path: Path) -> None:
+    study = STUDY.replace("pose: [10, 6, 4]", "pose: [10, 6, 12]")  # nothing to be the thinnest
+    sweep = SWEEP.replace("pose.sagging.status", "pose.sagging.thinnest")
+    swept(written(tmp_path, sweep, study), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    assert found["pose.sagging.thinnest"].isnull().all()
+    held = found["pose.optimum.diameter_m"].notnull().values
+    assert held.sum() == 6
+    assert all("pose.sagging.thinnest is a text here" in why for why in found.reason.values[held])
+
+
 class Dying(Executor):
     """Ends as a pool does whose process is killed, at chosen submissions; else solves."""
 
