@@ -29,8 +29,10 @@ def readings_of(machine: Machine, poses: Poses, measured: Measured | None = None
     if machine.robot.is_redundant:
         length, tension, span = solve_taut(machine.robot, poses, machine.cable, force)
         return Readings(length - straightened_m(machine, tension, span), tension)
-    solve = solve_sagging if machine.robot.is_square else solve_underactuated
-    statics = solve(machine.robot, poses, machine.cable, force)
+    if machine.robot.is_square:  # hangs in the way that it was tightened to, better ones or not
+        statics = solve_sagging(machine.robot, poses, machine.cable, force, seeks_better=False)
+    else:
+        statics = solve_underactuated(machine.robot, poses, machine.cable, force)
     length, tension = statics.length_m, statics.exit_tension_N
     if machine.flexural_rigidity_N_m2:
         span = statics.geometry().horizontal_distance_m
