@@ -11,7 +11,8 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
-from designer.grades.registry import Catalogue, load_catalogue
+from designer.grades.kept import kept_catalogue
+from designer.grades.registry import Catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
@@ -156,10 +157,6 @@ class Question:
         return self.built.cable(allowance.cable(grade, size))
 
 
-_shelf: list[tuple[object, Catalogue]] = []
-"""The catalogue that was read last, and of what."""
-
-
 def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
     """Return the catalogue of a study, read anew only where its files have changed.
 
@@ -168,21 +165,9 @@ def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
     InputError
         If a file that the study names is faulty, or there is no grade that it names.
     """
-    key = (id(plugins), tuple((path, _changed_at(path)) for path in study.catalogues))
-    if not _shelf or _shelf[0][0] != key:
-        _shelf[:] = [(key, load_catalogue(study.catalogues, plugins=plugins))]
-    catalogue = _shelf[0][1]
+    catalogue = kept_catalogue(study.catalogues, plugins)
     catalogue.require_grades_of(study)
     return catalogue
-
-
-def _changed_at(path: Path) -> tuple[float, ...]:
-    """Return when a file, or those of a folder, were changed; nothing where there is none."""
-    try:
-        files = sorted(path.rglob("*")) if path.is_dir() else [path]
-        return tuple(one.stat().st_mtime for one in files)
-    except OSError:
-        return ()
 
 
 def first_place(study: Study | None) -> FloatArray:

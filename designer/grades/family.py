@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from designer.grades.registry import load_catalogue
+from designer.grades.kept import kept_catalogue
 from designer.model.cable import Material
 from designer.plugins.find import Plugins
 from designer.study import GradeFamily
@@ -28,7 +28,7 @@ def family_of(wanted: GradeFamily, catalogues: Sequence[Path], plugins: Plugins)
         If there is no such grade, or if it lacks figures.
     """
     readable = [path for path in catalogues if path.exists()]
-    catalogue = load_catalogue(readable, plugins=plugins)
+    catalogue = kept_catalogue(readable, plugins)
     grade = next((g for g in catalogue.grades if g.id == wanted.grade), None)
     if grade is None:
         raise GradeError(*catalogue.explain_unknown(wanted.grade))

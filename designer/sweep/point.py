@@ -10,11 +10,12 @@ from typing import Any
 
 from designer.analysis.analyse import analyse, analyse_pose
 from designer.analysis.result_json import Json, size_dict
-from designer.api import catalogue
 from designer.documents.document import Document
 from designer.documents.node import Key, Node
+from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.errors import DesignerError, InputError
+from designer.grades.kept import kept_catalogue
 from designer.grades.registry import Catalogue
 from designer.io.config.reader import checked, study_of
 from designer.plugins.find import Plugins, find_plugins
@@ -50,15 +51,17 @@ class Base:
         root = self.document.root
         for keys, node in changes:
             root = root.with_value(keys, node)
-        plugins = _plugins(self.with_plugins)
-        known = load_effects(plugins)
+        plugins, known = _plugins(self.with_plugins)
         document = replace(self.document, root=root)
         path = Path(document.name)
         return study_of(checked(document, known), document, path, known, plugins)
 
     def catalogue(self) -> Catalogue:
         """Return the grades that its studies choose from."""
-        return _catalogue(self.study().catalogues, self.with_plugins)
+        return self._catalogue(self.study())
+
+    def _catalogue(self, study: Study) -> Catalogue:
+        return kept_catalogue(study.catalogues, _plugins(self.with_plugins)[0])
 
     def result(self, study: Study) -> Json:
         """Return as much of ``result.json`` as what is kept of it asks for."""
@@ -80,18 +83,14 @@ class Base:
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
         explains = any(name.startswith(_EXPLAINING) for name in self.keep)
-        grades = _catalogue(study.catalogues, self.with_plugins)
+        grades = self._catalogue(study)
         return analyse(study, grades, explains=explains).to_dict()
 
 
 @cache
-def _plugins(with_plugins: bool) -> Plugins:
-    return find_plugins(with_plugins)
-
-
-@cache
-def _catalogue(paths: tuple[Path, ...], with_plugins: bool) -> Catalogue:
-    return catalogue(paths, with_plugins=with_plugins)
+def _plugins(with_plugins: bool) -> tuple[Plugins, KnownEffects]:
+    plugins = find_plugins(with_plugins)
+    return plugins, load_effects(plugins)
 
 
 def value_at(result: Json, path: str) -> Any:
