@@ -282,12 +282,10 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
     starts = np.concatenate([found.sampled.worst_m, more.worst_m])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
     used = worst.demand / one.cable.allowable_tension_N
+    # Lengths are those before the loss.
+    lengths = refined(one.robot, workspace, one.cable, more, LIGHT)
     met = replace(
-        found.verification,
-        worst_position_m=worst.place,
-        max_tension_N=worst.demand,
-        utilisation=used,
-        is_refined=True,
+        lengths, worst_position_m=worst.place, max_tension_N=worst.demand, utilisation=used
     )
     return replace(found, verification=met, is_full=True)
 
@@ -296,13 +294,14 @@ def _after_loss(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
     """Return what a cable meets after the loss of another one, over some samples."""
     assert one.lost_cable is not None
     places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
-    tension = loss_demand(one.robot, one.cable, one.lost_cable)(places)
+    loss = lose_cable(one.robot, Poses.at(places), one.cable, one.lost_cable)
+    tension = loss.largest_tension_N
     order = np.argsort(-tension, kind="stable")
     used = tension / one.cable.allowable_tension_N
     return Sampled(
         worst_m=places[order[:8]],
         utilisation=float(used.max()),
-        longest_m=np.zeros(one.robot.n_cables),
+        longest_m=np.nan_to_num(loss.length_m).max(axis=0),
         samples=len(places),
         counted=int(np.isfinite(used).sum()),
         overloaded=int((used > 1.0).sum()),

@@ -18,9 +18,10 @@ from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Prism
 from designer.resources import example_file
-from designer.selection.cases import CaseFound, Cases, searched_all
+from designer.selection.cases import CaseFound, Cases, searched_all, together
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
+from designer.selection.verify import verify
 from designer.statics.cable_loss import Fate, lose_cable
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, Workspace
@@ -208,3 +209,16 @@ def test_a_lost_cable_is_told() -> None:
     assert float(loss.largest_tension_N[0]) == pytest.approx(
         found.verification.max_tension_N, rel=1e-9
     )
+
+
+def test_a_lost_cable_alone_needs_the_lengths_before_the_loss() -> None:
+    study = study_of("yard", 20)
+    assert study.workspace is not None
+    cable = Cable(0.006, 0.13, 1.5e6, 2e4)
+    cases = Cases(study.robot, study.workspace, (LoadCase("lost", cable_lost=2),))
+    (found,) = cases.sampled([[cable]], lambda _: None)
+    whole = verify(study.robot, study.workspace, cable)
+    sampled, searched = together(found), together(searched_all(found))
+    assert (sampled.longest_m > 0.9 * whole.longest_m).all()
+    assert searched.longest_m == pytest.approx(whole.longest_m, rel=1e-6)
+    assert searched.shortest_m == pytest.approx(whole.shortest_m, rel=1e-4)
