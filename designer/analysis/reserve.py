@@ -191,6 +191,7 @@ def _searched(
 def _tension(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
     """Return the demand for tension [N]."""
     if one.lost_cable is not None:
-        return loss_demand(one.robot, one.cable, one.lost_cable, seeks_better=seeks_better)
+        lost = one.lost_cable, hangs_below
+        return loss_demand(one.robot, one.cable, *lost, seeks_better=seeks_better)
     all_of_it = rope_demand(one.robot, one.cable, hangs_below, seeks_better=seeks_better)
     return lambda places: all_of_it(places)[:, 0]

@@ -15,7 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from designer.arrays import IntArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded, free_axes
 from designer.model.robot import Poses, Robot
@@ -24,8 +24,8 @@ from designer.selection.verify import Sampled, Verification, refined, verify_siz
 from designer.statics.cable_loss import CableLoss, lose_cable
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import Workspace
-from designer.workspace.demand import loss_demand, rope_demand
+from designer.study import HangsBelow, Workspace
+from designer.workspace.demand import is_left_out, loss_demand, rope_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 FEW_SAMPLES, MOST_SAMPLES = 64, 256
@@ -70,7 +70,10 @@ class CaseFound:
         if self.is_whole or not self.verification.holds:
             return self
         one = self.loaded
-        (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
+        if _leans(one, self.workspace):
+            sampled = _one_by_one(one, self.workspace)
+        else:
+            (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
         met = sampled.verification(one.cable)
         return replace(self, sampled=sampled, verification=met, is_whole=True)
 
@@ -89,12 +92,15 @@ class CaseFound:
         """Where (1,)."""
         return Poses.at(self.verification.worst_position_m[None])
 
-    def tension_N(self, other: Loaded) -> float:
-        """Return the largest tension at that pose with another robot or cable [N]."""
-        place = self.verification.worst_position_m[None]
+    def tension_N(self, other: Loaded, hangs_below: HangsBelow = "include") -> float:
+        """Return the largest tension at that pose with another robot or cable [N].
+
+        Minus infinity where the pose is left out for a cable that hangs below the platform.
+        """
+        place, loaded = self.verification.worst_position_m[None], (other.robot, other.cable)
         if other.lost_cable is not None:
-            return float(loss_demand(other.robot, other.cable, other.lost_cable)(place)[0])
-        return float(rope_demand(other.robot, other.cable, "include")(place)[0, 0])
+            return float(loss_demand(*loaded, other.lost_cable, hangs_below)(place)[0])
+        return float(rope_demand(*loaded, hangs_below)(place)[0, 0])
 
     def loss(self) -> CableLoss | None:
         """Return what becomes of that pose; None where no cable is lost."""
@@ -203,6 +209,8 @@ class Cases:
             met = []
         elif loaded[0].lost_cable is not None:
             met = [_after_loss(one, workspace, FEW_SAMPLES) for one in loaded]
+        elif _leans(loaded[0], workspace):
+            met = [_one_by_one(one, workspace) for one in loaded]
         elif case.changes_robot:
             met = [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
         else:
@@ -278,7 +286,7 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
     if is_light:
         return found
     more = _after_loss(one, workspace, MOST_SAMPLES)
-    demand_with = partial(loss_demand, one.robot, one.cable, one.lost_cable)
+    demand_with = partial(loss_demand, one.robot, one.cable, one.lost_cable, workspace.hangs_below)
     starts = np.concatenate([found.sampled.worst_m, more.worst_m])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
     used = worst.demand / one.cable.allowable_tension_N
@@ -295,13 +303,39 @@ def _after_loss(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
     assert one.lost_cable is not None
     places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
     loss = lose_cable(one.robot, Poses.at(places), one.cable, one.lost_cable)
-    tension = loss.largest_tension_N
-    order = np.argsort(-tension, kind="stable")
-    used = tension / one.cable.allowable_tension_N
+    counts = ~is_left_out(loss.before, workspace.hangs_below)
+    tension = np.where(counts, loss.largest_tension_N, -np.inf)
+    longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
+    return _sampled(one.cable, places, tension, longest)
+
+
+def _leans(one: Loaded, workspace: Workspace) -> bool:
+    """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
+    return workspace.hangs_below == "exclude" and one.robot.cable_load_direction is not None
+
+
+def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
+    """Return what a cable meets over the samples, which poses count told by the true vertical."""
+    demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
+    parts = [workspace.space.landmarks(), *workspace.places()]
+    tension, lengths, _ = np.split(
+        np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
+    )
+    longest = np.maximum(lengths, 0.0).max(axis=0)
+    return _sampled(one.cable, np.concatenate(parts), tension[:, 0], longest)
+
+
+def _sampled(
+    cable: Cable, places: FloatArray, tension_N: FloatArray, longest_m: FloatArray
+) -> Sampled:
+    """Put together what a cable meets; the tension is minus infinite where a pose is left out."""
+    used = tension_N / cable.allowable_tension_N
+    counts = ~np.isneginf(used)
+    order = np.argsort(-used, kind="stable")[: counts.sum()]
     return Sampled(
         worst_m=places[order[:8]],
-        utilisation=float(used.max()),
-        longest_m=np.nan_to_num(loss.length_m).max(axis=0),
+        utilisation=float(used.max()) if counts.any() else np.inf,
+        longest_m=longest_m,
         samples=len(places),
         counted=int(np.isfinite(used).sum()),
         overloaded=int((used > 1.0).sum()),
@@ -337,7 +371,7 @@ def _steepest(found: CaseFound) -> CaseFound:
         for side in (*axes, *-axes):
             assert found.loaded.inertia is not None
             loaded = found.loaded.pushed(found.loaded.inertia + step * side)
-            tension = found.tension_N(loaded)
+            tension = found.tension_N(loaded, found.workspace.hangs_below)
             used = tension / loaded.cable.allowable_tension_N
             met = replace(found.verification, max_tension_N=tension, utilisation=used)
             trials.append(replace(found, loaded=loaded, verification=met))

@@ -53,9 +53,8 @@ class CableLoss:
     ----------
     fate : array (n_poses,) of int
         One `Fate` a pose.
-    length_m : array (n_poses, n_cables)
-        Unstrained lengths before the loss, which the other cables keep; NaN where the pose was not
-        held [m].
+    before : Statics
+        With all cables (n_poses,); the others keep the lengths that they have there.
     tension_N : array (n_poses, n_cables)
         Largest tension anywhere in each cable at rest, 0 in the lost one; NaN where there is no
         rest [N].
@@ -68,7 +67,7 @@ class CableLoss:
     """
 
     fate: IntArray
-    length_m: FloatArray
+    before: Statics
     tension_N: FloatArray
     rest: Poses
     moved_m: FloatArray
@@ -96,7 +95,6 @@ def lose_cable(
     position = np.full((count, 3), np.nan)
     rotation = np.array(np.broadcast_to(poses.rotation, (count, 3, 3)))
     others = np.delete(np.arange(robot.n_cables), lost - 1)
-    length = np.where(before.is_solved[:, None], before.length_m, np.nan)
     start = Poses(poses.position_m[at], rotation[at])
     left = robot.without_cable(lost)
     found = solve_forward(left, cable, before.length_m[at][:, others], start)
@@ -109,4 +107,4 @@ def lose_cable(
     moved = np.linalg.norm(position - poses.position_m, axis=1)
     near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
     fate[at] = np.where(near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
-    return CableLoss(fate, length, tension, Poses(position, rotation), moved, found.statics)
+    return CableLoss(fate, before, tension, Poses(position, rotation), moved, found.statics)

@@ -74,15 +74,21 @@ def rope_demand(
 
 
 def loss_demand(
-    robot: Robot, cable: Cable, lost_cable: int, *, seeks_better: bool = True
+    robot: Robot,
+    cable: Cable,
+    lost_cable: int,
+    hangs_below: HangsBelow,
+    *,
+    seeks_better: bool = True,
 ) -> Demand:
-    """Largest tension after the loss of a cable [N]; inf where the platform finds no rest."""
+    """Largest tension after the loss of a cable [N]; inf where the platform finds no rest.
+
+    Which poses are left out is told by how the cables hang before the loss.
+    """
 
     def demand(places: FloatArray) -> FloatArray:
-        poses = Poses.at(places)
-        return lose_cable(
-            robot, poses, cable, lost_cable, seeks_better=seeks_better
-        ).largest_tension_N
+        loss = lose_cable(robot, Poses.at(places), cable, lost_cable, seeks_better=seeks_better)
+        return np.where(is_left_out(loss.before, hangs_below), -np.inf, loss.largest_tension_N)
 
     return demand
 

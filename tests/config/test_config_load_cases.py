@@ -158,7 +158,6 @@ def test_wind_needs_area_and_drag(valid: str, faults_of: FaultsOf) -> None:
     [
         ("selection:\n  safety_factor: 4\n", "", "there is no selection"),
         ("safety_factor: 4", "groups: {a: [1], b: [2, 3]}", "groups of cables are chosen"),
-        ("samples: 500", "hangs_below: exclude", "which cables hang below depends"),
     ],
 )
 def test_what_does_not_go_with_them(

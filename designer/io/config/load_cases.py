@@ -56,9 +56,6 @@ def load_cases_fit(parts: Parts) -> Iterator[Fault]:
     if parts.raw("selection.groups") is not None:
         problem = "groups of cables are chosen for the static load alone"
         yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
-    if parts.raw("workspace.hangs_below") == "exclude":
-        problem = "which cables hang below depends on the load case"
-        yield parts.fault("workspace.hangs_below", problem, "include, where there are load_cases")
     first: dict[str, int] = {}
     for index, case in enumerate(cases):
         if isinstance(case, dict):

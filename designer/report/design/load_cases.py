@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from designer.model.load_case import LoadCase
 from designer.report import format as fmt
-from designer.report.blocks import Column, Row, Section, Statement, Table
+from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.selection.cases import FEW_SAMPLES, CaseFound
 from designer.selection.result import Candidate
@@ -41,12 +41,14 @@ def section(source: Source) -> Section | None:
     if not study.load_cases or selection is None:
         return None
     chosen = selection.chosen
+    leaves_out = study.workspace is not None and study.workspace.hangs_below == "exclude"
     return Section.of(
         "load-cases",
         "Load cases",
         _statement(chosen),
         _asked(study),
-        None if chosen is None else _met(chosen),
+        None if chosen is None else _met(chosen, leaves_out=leaves_out),
+        _LEFT_OUT if leaves_out else None,
         _lost(chosen) if chosen is not None else None,
         "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
         "platform, at the origin of its frame, and times drag coefficient and diameter on each "
@@ -127,16 +129,25 @@ def _changes(case: LoadCase) -> str:
     return fmt.capital("; ".join(parts)) or "Nothing: the static load"
 
 
-def _met(chosen: Candidate) -> Table:
-    columns = (
+_LEFT_OUT = (
+    "Poses in which a cable hangs below the platform are left out, as configured: in each load "
+    "case, and in each direction of its wind and inertia force, those in which one hangs then. "
+    "Where a cable is lost, how they hang before counts."
+)
+
+
+def _met(chosen: Candidate, *, leaves_out: bool) -> Table:
+    columns: Heads = (
         *("Load case", Column("Used"), Column("Largest tension"), Column("Allowable")),
-        *(Column("Cable"), "Platform at", "Direction or loss", "Verdict"),
+        *(Column("Cable"), "Platform at", "Direction or loss"),
+        *([Column("Poses that count")] if leaves_out else []),
+        "Verdict",
     )
-    rows = [_row(one, one is chosen.governing) for one in chosen.cases]
+    rows = [_row(one, one is chosen.governing, leaves_out=leaves_out) for one in chosen.cases]
     return Table.of(f"{fmt.capital(chosen.name)}, in each load case at its worst.", columns, *rows)
 
 
-def _row(found: CaseFound, governs: bool) -> Row:
+def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
     met = found.verification
     largest, allowable = fmt.newtons_alike(
         met.max_tension_N, found.loaded.cable.allowable_tension_N
@@ -151,6 +162,7 @@ def _row(found: CaseFound, governs: bool) -> Row:
             str(found.most_used() or ""),
             fmt.position(met.worst_position_m[:3]),
             found.loaded.words or "–",
+            *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
             f"{verdict}, governs" if governs else verdict,
         ),
         "good" if governs else "",
