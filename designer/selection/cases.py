@@ -2,8 +2,9 @@
 
 Each case has directions of wind and inertia and lost cables (`designer.model.load_case.Loaded`);
 each of these is solved over all samples, for all candidates that hold so far; of robots that are
-slow to solve over some of them at first, and over all where a candidate is searched. A lost cable
-sets the platform moving, which takes long to follow: that is done for fewer samples. Between the
+slow to solve over some of them at first, and over all where a candidate is searched. A lost cable,
+or warmth on braked winches, sets the platform moving, which takes long to follow: that is done for
+fewer samples. Between the
 samples it is searched in the direction in which a case asks for most, and in those near it.
 """
 
@@ -21,15 +22,15 @@ from designer.model.load_case import LoadCase, Loaded, free_axes
 from designer.model.robot import Poses, Robot
 from designer.progress import Advance
 from designer.selection.verify import Sampled, Verification, refined, verify_sizes
-from designer.statics.cable_loss import CableLoss, lose_cable
+from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import HangsBelow, Workspace
-from designer.workspace.demand import is_left_out, loss_demand, rope_demand
+from designer.workspace.demand import is_left_out, rope_demand, settled, settled_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 FEW_SAMPLES, MOST_SAMPLES = 64, 256
-"""Poses in which a cable is lost, for each candidate and for the chosen one."""
+"""Poses in which lengths are kept, for each candidate and for the chosen one."""
 FEW_AT_FIRST = 300
 """Samples that candidates are tried at first where all of them take long."""
 _NEAR = 0.95
@@ -55,7 +56,7 @@ class CaseFound:
     is_full : bool
         Whether that search was the full one.
     is_whole : bool
-        Whether all samples were solved, or, after the loss of a cable, all that ever are.
+        Whether all samples were solved, or, where lengths are kept, all that ever are.
     """
 
     workspace: Workspace
@@ -97,20 +98,17 @@ class CaseFound:
 
         Minus infinity where the pose is left out for a cable that hangs below the platform.
         """
-        place, loaded = self.verification.worst_position_m[None], (other.robot, other.cable)
-        if other.lost_cable is not None:
-            return float(loss_demand(*loaded, other.lost_cable, hangs_below)(place)[0])
-        return float(rope_demand(*loaded, hangs_below)(place)[0, 0])
+        place = self.verification.worst_position_m[None]
+        if other.keeps_lengths:
+            return float(settled_demand(other, hangs_below)(place)[0])
+        return float(rope_demand(other.robot, other.cable, hangs_below)(place)[0, 0])
 
     def loss(self) -> CableLoss | None:
-        """Return what becomes of that pose; None where no cable is lost."""
-        one = self.loaded
-        if one.lost_cable is None:
-            return None
-        return lose_cable(one.robot, self.pose, one.cable, one.lost_cable)
+        """Return what becomes of that pose; None where no lengths are kept."""
+        return settled(self.loaded, self.pose) if self.loaded.keeps_lengths else None
 
     def statics(self) -> Statics | None:
-        """Return the equilibrium there (1,), at rest after a loss; None where there is none."""
+        """Return the equilibrium there (1,), at rest on kept lengths; None where there is none."""
         if not np.isfinite(self.utilisation):
             return None
         loss = self.loss()
@@ -201,14 +199,15 @@ class Cases:
     ) -> Iterator[CaseFound]:
         region = case.region or self.workspace.region
         workspace = whole = replace(self.workspace, region=region)
-        if self.few is not None and case.cable_lost is None:
+        keeps = any(one.keeps_lengths for one in loaded)
+        if self.few is not None and not keeps:
             workspace = replace(workspace, samples=min(self.few, workspace.samples))
         cables = [one.cable for one in loaded]
-        shares = bool(loaded) and not case.changes_robot and case.cable_lost is None
+        shares = bool(loaded) and not case.changes_robot and not keeps
         if not loaded:
             met = []
-        elif loaded[0].lost_cable is not None:
-            met = [_after_loss(one, workspace, FEW_SAMPLES) for one in loaded]
+        elif keeps:
+            met = [_settled(one, workspace, FEW_SAMPLES) for one in loaded]
         elif _leans(loaded[0], workspace):
             met = [_one_by_one(one, workspace) for one in loaded]
         elif case.changes_robot:
@@ -279,18 +278,18 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
     one, workspace = found.loaded, found.workspace
     if not np.isfinite(found.utilisation) or found.is_full:
         return found
-    if one.lost_cable is None:
+    if not one.keeps_lengths:
         effort = LIGHT if is_light else None
         met = refined(one.robot, workspace, one.cable, found.sampled, effort)
         return replace(found, verification=met, is_full=not is_light)
     if is_light:
         return found
-    more = _after_loss(one, workspace, MOST_SAMPLES)
-    demand_with = partial(loss_demand, one.robot, one.cable, one.lost_cable, workspace.hangs_below)
+    more = _settled(one, workspace, MOST_SAMPLES)
+    demand_with = partial(settled_demand, one, workspace.hangs_below)
     starts = np.concatenate([found.sampled.worst_m, more.worst_m])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
     used = worst.demand / one.cable.allowable_tension_N
-    # Lengths are those before the loss.
+    # Lengths are those before it settles.
     lengths = refined(one.robot, workspace, one.cable, more, LIGHT)
     met = replace(
         lengths, worst_position_m=worst.place, max_tension_N=worst.demand, utilisation=used
@@ -298,11 +297,10 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
     return replace(found, verification=met, is_full=True)
 
 
-def _after_loss(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
-    """Return what a cable meets after the loss of another one, over some samples."""
-    assert one.lost_cable is not None
+def _settled(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
+    """Return what a cable meets on kept lengths, over some samples."""
     places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
-    loss = lose_cable(one.robot, Poses.at(places), one.cable, one.lost_cable)
+    loss = settled(one, Poses.at(places))
     counts = ~is_left_out(loss.before, workspace.hangs_below)
     tension = np.where(counts, loss.largest_tension_N, -np.inf)
     longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
@@ -351,6 +349,9 @@ def _turned(found: CaseFound) -> CaseFound:
     for _ in range(_MOST_ROUNDS):
         before = found.utilisation
         turned = _steepest(found)
+        if found.loaded.keeps_lengths:  # a search for the pose takes long
+            found = governing([found, turned])
+            break
         met = refined(
             turned.loaded.robot, turned.workspace, turned.loaded.cable,
             replace(turned.sampled, worst_m=turned.verification.worst_position_m[None]), LIGHT,

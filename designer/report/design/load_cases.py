@@ -8,6 +8,7 @@ from designer.model.load_case import LoadCase
 from designer.report import format as fmt
 from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
+from designer.report.material_class import class_of
 from designer.selection.cases import FEW_SAMPLES, CaseFound
 from designer.selection.result import Candidate
 from designer.statics.cable_loss import Fate
@@ -19,6 +20,7 @@ _PARTS: dict[str, Callable[[LoadCase], bool]] = {
     "wind": lambda case: case.wind is not None,
     "ice": lambda case: case.ice is not None,
     "loss of a cable": lambda case: case.cable_lost is not None,
+    "change of temperature": lambda case: bool(case.temperature_change_K),
 }
 """What a load case can have, for what none of a study has."""
 
@@ -55,8 +57,8 @@ def section(source: Source) -> Section | None:
         "unstrained length of a cable, along the wind and at full speed whatever the cable's "
         "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
         "cables' own weight; an inertia force points where it is worst, as far as a search from "
-        "14 directions finds it. Winches hold each pose, so a change of temperature changes "
-        "lengths and no tension.",
+        "14 directions finds it.",
+        None if chosen is None else _warmed(study, chosen),
         _pulleys(source),
         "The configured family, the shares of the region that sizes serve, stiffness and clearance "
         "are those of the static load of the study; the maps of the chosen rope are those of the "
@@ -116,6 +118,8 @@ def _changes(case: LoadCase) -> str:
         )
     if case.ice is not None:
         parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
+    if case.temperature_change_K:
+        parts.append(f"cables {_warmer(case)}, winches braked")
     if case.cable_lost is not None:
         which = "each cable in turn" if case.cable_lost == "each" else f"cable {case.cable_lost}"
         parts.append(f"{which} lost")
@@ -169,28 +173,59 @@ def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
     )
 
 
+def _warmer(case: LoadCase) -> str:
+    change = case.temperature_change_K or 0.0
+    return f"{fmt.trimmed(abs(change))}\u00a0K {'warmer' if change > 0.0 else 'colder'}"
+
+
 def _lost(chosen: Candidate) -> str:
-    """Return what becomes of the platform at the worst pose of each case in which one is lost."""
+    """Return what becomes of the platform at the worst pose of each case that keeps lengths."""
     parts = []
     for found in chosen.cases:
         loss = found.loss()
         if loss is None:
             continue
         fate = Fate(int(loss.fate[0]))
+        what = [f"without cable {found.loaded.lost_cable}"] if found.loaded.lost_cable else []
+        what += [_warmer(found.case)] if found.case.temperature_change_K else []
         rest = ""
-        if fate is Fate.RESTS_ELSEWHERE:
-            at = fmt.position(loss.rest.position_m[0])
-            rest = f", {fmt.metres(float(loss.moved_m[0]))} away at {at}"
+        if fate in (Fate.HOLDS, Fate.RESTS_ELSEWHERE):
+            at, moved = fmt.position(loss.rest.position_m[0]), float(loss.moved_m[0])
+            rest = f", {fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)} away at {at}"
         parts.append(
-            f"'{found.case.name}': without cable {found.loaded.lost_cable}, at the pose above, "
-            f"{fate.words}{rest}."
+            f"'{found.case.name}': {', '.join(what)}, at the pose above, {fate.words}{rest}."
         )
     if not parts:
         return ""
     return (
-        f"{fmt.capital(' '.join(parts))} The other cables keep the lengths that they had, as on "
-        "braked winches; what the loss itself sets swinging is not in this but by a dynamic "
-        f"factor, nor is what the platform may strike. Each loss was followed from {FEW_SAMPLES} "
-        "samples and the corners of the region, that of the chosen rope from more, and searched "
-        "between them."
+        f"{fmt.capital(' '.join(parts))} There the cables keep the lengths that they had, as on "
+        "braked winches; what the loss of a cable itself sets swinging is not in this but by a "
+        f"dynamic factor, nor is what the platform may strike. Each was followed from "
+        f"{FEW_SAMPLES} samples and the corners of the region, that of the chosen rope from more, "
+        "and searched between them."
+    )
+
+
+def _warmed(study: Study, chosen: Candidate) -> str:
+    """Return what a change of temperature does to winches that regulate, and what grows by it."""
+    cases = [case for case in study.load_cases if case.temperature_change_K]
+    if not cases:
+        return "Winches hold each pose, so a change of temperature changes lengths and no tension."
+    cable, given, table = chosen.cable, cases[0].expansion_per_K, chosen.grade.thermal_expansion
+    if given is not None:
+        expansion, whose = given, "as the study gives it"
+    elif table is not None:
+        expansion, whose = cable.expansion_per_K, f"by the table of {chosen.grade.id}"
+    else:
+        expansion, whose = cable.expansion_per_K, "that of steel (EN 1993-1-1, 3.2.6)"
+        if class_of(chosen.grade) == "fibre":
+            whose += f", which a rope of {chosen.grade.material} need not have"
+    largest = max(abs(case.temperature_change_K or 0.0) for case in cases)
+    paid_m = abs(expansion) * largest * float(chosen.verification.longest_m.max())
+    return (
+        f"By a change of temperature cables grow by {fmt.power_of_ten(expansion, '1/K')}, {whose}; "
+        "exit points and platform are taken to stay as they are. With braked winches the platform "
+        f"settles. Winches that regulate the pose pay out or haul in up to "
+        f"{fmt.millimetres(paid_m)} instead, and no tension changes: then such a case asks for no "
+        "more than its other loads do."
     )
