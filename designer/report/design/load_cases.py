@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
+from designer.analysis.findings import Findings
 from designer.model.load_case import LoadCase
 from designer.report import format as fmt
 from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
@@ -48,6 +49,7 @@ def section(source: Source) -> Section | None:
         "load-cases",
         "Load cases",
         _statement(chosen),
+        *carried_away(source.findings),
         _asked(study),
         None if chosen is None else _met(chosen, leaves_out=leaves_out),
         _LEFT_OUT if leaves_out else None,
@@ -64,6 +66,22 @@ def section(source: Source) -> Section | None:
         "are those of the static load of the study; the maps of the chosen rope are those of the "
         "case named there.",
     )
+
+
+def carried_away(findings: Findings) -> Iterator[Statement]:
+    """Yield the load cases in which the platform would be blown or pulled away."""
+    for one in findings.adrift:
+        case, robot = one.loaded.case, one.loaded.robot
+        how = "blown" if case.wind is not None else "pulled"
+        text = (
+            f"In the load case '{case.name}', {one.loaded.words}, straight cables cannot hold the "
+            f"platform in {fmt.share(one.share)} of the poses in which they hold it at rest, such "
+            f"as {fmt.position(one.place)}: it is pushed with {fmt.newtons(one.push_N)} and weighs "
+            f"{fmt.newtons(robot.weight_N)}. Only the weight of rope that hangs far below could "
+            "hold it there, if anything, so a rope's length, mass and cost mean little. Park it in "
+            "a region of its own where cables hold it, or make it heavier in this case."
+        )
+        yield Statement(f"The platform would be {how} away", text, "bad")
 
 
 def _pulleys(source: Source) -> str:
