@@ -309,8 +309,6 @@ class Study:
             raise ValueError(f"two load cases have one name: {names}")
         if names and (self.selection is None or self.selection.groups):
             raise ValueError("load cases need a selection, without groups")
-        if names and self.workspace is not None and self.workspace.hangs_below == "exclude":
-            raise ValueError("with load cases no pose can be left out for cables that hang below")
         for case in self.load_cases:
             if case.wind is not None and self.robot.platform.drag_area_m2 is None:
                 raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")

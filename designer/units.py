@@ -64,6 +64,7 @@ PER_LENGTH = Dimension("a change per length", "1/m", "2e-4 /m")
 COMPLIANCE = Dimension("a displacement per force", "m/N", "2e-6 m/N")
 FLEXURAL_RIGIDITY = Dimension("a flexural rigidity", "N*m^2", "12 N*m^2")
 TEMPERATURE = Dimension("a temperature", "degC", "20 degC")
+TEMPERATURE_CHANGE = Dimension("a change of temperature", "K", "-30 K")
 SPEED = Dimension("a speed", "m/s", "3 m/s")
 FREQUENCY = Dimension("a frequency", "Hz", "2 Hz")
 STIFFNESS = Dimension("a force per displacement", "N/m", "50 kN/m")
@@ -183,6 +184,8 @@ def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
     with suppress(PintError, ArithmeticError):  # such as a logarithmic unit in a product
         wanted = _unit(dimension.unit)
         if dimension.unit and _root(unit) == _root(wanted):
+            if dimension is TEMPERATURE_CHANGE and _registry().Quantity(0.0, unit).to(wanted):
+                raise _MisreadError(f"has the unit {unit:P}, of which 0 is no change of 0 K")
             return float(_registry().Quantity(value, unit).to(wanted).magnitude)
     raise _MisreadError(f"has the unit {unit:P}")
 

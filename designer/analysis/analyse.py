@@ -16,6 +16,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
+from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
@@ -157,6 +158,8 @@ class Analysis:
         The governing poses, solved again by other methods.
     carries : Carries or None
         What carries the choice of a rope for all cables.
+    group_slopes : tuple of GroupSlopes
+        What the utilisation of each group of cables answers to.
     servable : Servable or None
         Which part of the region no rope can serve; None where nothing speaks for such a part.
     scratch : Scratch or None
@@ -174,6 +177,7 @@ class Analysis:
     section_m: float | None = None
     verification: tuple[SecondAnswer, ...] = ()
     carries: Carries | None = None
+    group_slopes: tuple[GroupSlopes, ...] = ()
     servable: Servable | None = None
     scratch: Scratch | None = field(default=None, repr=False)
 
@@ -353,6 +357,7 @@ def analyse(
         built.section_m,
         second_answers(study, built, pose, workspace, chosen) if explains else (),
         carries_of(study, chosen) if explains and groups is None else None,
+        group_slopes(built.robot, study.workspace, groups) if explains and groups else (),
         _servable(study, built, workspace, reporter) if explains else None,
         scratch,
     )

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from designer.analysis.carries import Carries
+from designer.analysis.group_slopes import GroupSlopes
 from designer.analysis.reserve import Reserve
+from designer.analysis.sensitivities import Sensitivity
+from designer.arrays import FloatArray
 from designer.documents.plain import finite
 
 Json = dict[str, Any]
 
 
-def carries_dict(found: Carries | None) -> Json:
-    """Return sensitivities, reserves, sizes and first failures; empty where none is chosen."""
+def carries_dict(found: Carries | None, groups: Sequence[GroupSlopes] = ()) -> Json:
+    """Return sensitivities, reserves, sizes and first failures; empty where none is chosen.
+
+    Of ``groups`` there are sensitivities alone, each with the name of its group.
+    """
     if found is None:
         return {
-            "sensitivities": [],
+            "sensitivities": [row for one in groups for row in _of_group(one)],
             "reserve": None,
             "sizes_beside": [],
             "first_failures": [],
@@ -59,17 +67,22 @@ def carries_dict(found: Carries | None) -> Json:
 
 
 def _sensitivities(found: Carries) -> list[Json]:
-    rows: list[Json] = [
-        {
-            "input": one.input,
-            "value": one.value,
-            "unit": one.unit,
-            "derivative": one.derivative,
-            "elasticity": one.elasticity,
-        }
-        for one in found.sensitivities.each
-    ]
-    for cable, slopes in enumerate(found.sensitivities.exit_points_per_m, start=1):
+    slopes = found.sensitivities
+    rows = _rows(slopes.each, slopes.exit_points_per_m)
+    return [row | {"method": slopes.method, "group": None} for row in rows]
+
+
+def _of_group(found: GroupSlopes) -> list[Json]:
+    rows = _rows(found.each, found.exit_points_per_m)
+    plain: list[Json] = finite(
+        [row | {"method": "adjoint", "group": found.group.name} for row in rows]
+    )
+    return plain
+
+
+def _rows(each: Sequence[Sensitivity], exit_points_per_m: FloatArray) -> list[Json]:
+    rows: list[Json] = [asdict(one) for one in each]
+    for cable, slopes in enumerate(exit_points_per_m, start=1):
         rows += [
             {
                 "input": f"exit_point_{cable}_{axis}",
@@ -80,7 +93,7 @@ def _sensitivities(found: Carries) -> list[Json]:
             }
             for axis, slope in zip("xyz", slopes.tolist(), strict=True)
         ]
-    return [row | {"method": found.sensitivities.method} for row in rows]
+    return rows
 
 
 def _reserve(one: Reserve | None) -> Json | None:

@@ -81,9 +81,9 @@ def checks_of(
 
 
 def _solved(chosen: Candidate) -> Iterator[_Solved]:
-    """Yield some samples of every load case in which no cable is lost, solved."""
+    """Yield some samples of every load case in which no lengths are kept, solved."""
     for one in chosen.cases:
-        if one.loaded.lost_cable is not None:
+        if one.loaded.keeps_lengths:
             continue
         space = one.workspace.space
         own = one.verification.worst_position_m[None]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from designer.analysis.adrift import Adrift, adrift_in
 from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.grades.grade import Size
@@ -29,6 +30,7 @@ from designer.workspace.sweep import map_workspace
 
 _MOST_SAMPLES = 20_000
 _CHUNK = 2**18
+_THIN_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +109,8 @@ class Findings:
         without a workspace.
     unserved : Unserved or None
         None where every sample is served, and for a list of points.
+    adrift : tuple of Adrift
+        Load cases that carry the platform away somewhere.
     """
 
     chosen_outcome: GradeOutcome | None = None
@@ -116,6 +120,7 @@ class Findings:
     other_policy: OtherPolicy | None = None
     hanging: float | None = None
     unserved: Unserved | None = None
+    adrift: tuple[Adrift, ...] = ()
 
 
 def find(analysis: Analysis) -> Findings:
@@ -124,6 +129,7 @@ def find(analysis: Analysis) -> Findings:
         other_policy=_other_policy(analysis),
         hanging=_hanging(analysis),
         unserved=_unserved(analysis),
+        adrift=_adrift(analysis),
     )
     chosen = analysis.selection.chosen if analysis.selection else None
     if chosen is None or analysis.selection is None:
@@ -138,6 +144,14 @@ def find(analysis: Analysis) -> Findings:
         massless_choice=None if analysis.has_groups else _massless_choice(analysis, outcome),
         modulus_utilisation=modulus_utilisation(chosen),
     )
+
+
+def _adrift(analysis: Analysis) -> tuple[Adrift, ...]:
+    study, built = analysis.study, analysis.built
+    if study.workspace is None:
+        return ()
+    thin = built.material(study.material).cable(_THIN_M)  # straight cables are of any thickness
+    return tuple(adrift_in(built.robot, study.workspace, study.load_cases, thin))
 
 
 def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:

@@ -53,10 +53,10 @@ def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:
     """Return the first failure in each direction, in a load case, as turned at its worst pose.
 
     Ways lead from corners, edges and sides of the region straight outward. Empty for a list of
-    points, and where a cable is lost.
+    points, and where lengths are kept.
     """
     region, one = found.workspace.region, found.loaded
-    if isinstance(region, PointList) or one.lost_cable is not None:
+    if isinstance(region, PointList) or one.keeps_lengths:
         return ()
     turn = found.verification.worst_position_m[3:]
     return tuple(_along(region, one, turn, name, way) for name, way in _directions(region, one))

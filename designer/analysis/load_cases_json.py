@@ -78,6 +78,7 @@ def _case(found: CaseFound) -> Json:
         "pose": place[:3],
         "rotation_vector": turn_of(place),
         "lost_cable": loaded.lost_cable,
+        "temperature_change_K": found.case.temperature_change_K,
         "wind_direction": loaded.wind,
         "inertia_direction": loaded.inertia,
         "refined": met.is_refined,

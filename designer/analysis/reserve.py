@@ -19,7 +19,7 @@ from designer.model.load_case import Loaded
 from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.study import HangsBelow, Workspace
-from designer.workspace.demand import loss_demand, rope_demand
+from designer.workspace.demand import rope_demand, settled_demand
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 
 _FULL = 1e-5
@@ -178,7 +178,7 @@ def _searched(
     """Return the worst pose of a case that a search from the known ones finds, with the value."""
     loaded, workspace = change(case, value)
     starts = np.array([one.place_at(value) for one in known])
-    if loaded.lost_cable is not None:
+    if loaded.keeps_lengths:
         return starts[0], value
 
     def demand_with(*, seeks_better: bool = True) -> Demand:
@@ -190,7 +190,7 @@ def _searched(
 
 def _tension(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
     """Return the demand for tension [N]."""
-    if one.lost_cable is not None:
-        return loss_demand(one.robot, one.cable, one.lost_cable, seeks_better=seeks_better)
+    if one.keeps_lengths:
+        return settled_demand(one, hangs_below, seeks_better=seeks_better)
     all_of_it = rope_demand(one.robot, one.cable, hangs_below, seeks_better=seeks_better)
     return lambda places: all_of_it(places)[:, 0]

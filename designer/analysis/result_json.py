@@ -54,7 +54,7 @@ def result_dict(analysis: Analysis) -> Json:
         ),
         "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
-        **carries_dict(analysis.carries),
+        **carries_dict(analysis.carries, analysis.group_slopes),
         "proof": _proof(analysis),
         "verification": [
             {

@@ -55,7 +55,7 @@ class Rope:
 def rope_of(analysis: Analysis) -> Rope | None:
     """Return the ropes of the answer; None where none is chosen.
 
-    Of one rope for all cables in the governing load case, or where that loses a cable in the worst
+    Of one rope for all cables in the governing load case, or where that keeps lengths in the worst
     of the others; where all do, in the static load of the study, as ropes for groups of cables.
     """
     study, robot, groups = analysis.study, analysis.built.robot, analysis.groups
@@ -69,7 +69,7 @@ def rope_of(analysis: Analysis) -> Rope | None:
         return Rope(robot, design.cable, study.workspace, design.name, "static", place)
     if chosen is None or groups is not None:
         return None
-    whole = [one for one in chosen.cases if one.loaded.lost_cable is None]
+    whole = [one for one in chosen.cases if not one.loaded.keeps_lengths]
     if not whole:
         place = chosen.verification.worst_position_m
         return Rope(robot, chosen.cable, study.workspace, design.name, "static", place)

@@ -2,8 +2,8 @@
 
 The governing pose is the worst of its region, so it may be held: what it gains by moving is of
 second order (the envelope theorem). Only where it lies on a side of the region does it move, with
-that side. After the loss of a cable, when the platform rests elsewhere, slopes are differences of
-solved states.
+that side. On kept lengths, after the loss of a cable or a change of temperature, when the platform
+rests elsewhere, slopes are differences of solved states.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Sensitivities:
 
 def sensitivities(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
     """Return the slopes at the worst pose of a load case, of a rope with these figures."""
-    if found.loaded.lost_cable is not None:
+    if found.loaded.keeps_lengths:
         return _by_differences(found, efficiency, breaking_load_N)
     statics = found.statics()
     solved = statics is not None and bool(statics.is_solved[0])
@@ -147,7 +147,7 @@ def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float)
     for cable, axis in np.ndindex(exits.shape):
         exits[cable, axis] = slope(partial(with_exit_moved, one, cable, axis))
     finite = np.isfinite([*own.values(), *exits.ravel()]).all()
-    why = "" if finite else "Near this pose the platform finds no rest after the loss."
+    why = "" if finite else "Near this pose the platform finds no rest on the kept lengths."
     each = _named(found, efficiency, breaking_load_N, own)
     return Sensitivities(each, np.where(np.isfinite(exits), exits, np.nan), "differences", why)
 

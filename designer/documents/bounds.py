@@ -28,6 +28,7 @@ from designer.units import (
     STIFFNESS,
     STRESS,
     TEMPERATURE,
+    TEMPERATURE_CHANGE,
     TIME,
     Dimension,
 )
@@ -83,6 +84,7 @@ BOUNDS: Mapping[str, Bound] = {
     "ice": Bound(LENGTH, 1e-5, 0.5, "from rime to what breaks masts"),
     "safety factor": Bound(NUMBER, 1.0, 100.0, "lifts of persons have 12"),
     "efficiency": Bound(FRACTION, 0.01, 1.0, "a fitting keeps a part of the breaking load"),
+    "temperature change": Bound(TEMPERATURE_CHANGE, -300.0, 1000.0, "steel lasts no further"),
     "temperature": Bound(TEMPERATURE, -200.0, 1000.0, "steel lasts no further"),
     "scale of a column": Bound(NUMBER, -1e12, 1e12, "units are no further apart"),
     "price": Bound(NUMBER, 1e-9, 1e9, "no rope is dearer"),

@@ -38,7 +38,7 @@ from designer.grades.parts import (
 )
 from designer.grades.parts import Reference as Reference  # noqa: PLC0414  # plugins take it from here
 from designer.grades.stiffness import RelativeStiffness, StiffnessSection
-from designer.model.cable import Cable, Material
+from designer.model.cable import STEEL_EXPANSION_PER_K, Cable, Material
 
 Trust = Literal["A", "B", "C"]
 RopeMaterial = Literal[
@@ -295,11 +295,13 @@ class Grade(GradeSheet):
 
     def cable(self, size: Size, safety_factor: float) -> Cable:
         """Return one size as a cable, its breaking load divided by ``safety_factor``."""
+        expansion = self.thermal_expansion
         return Cable(
             diameter_m=size.diameter_m,
             linear_density_kg_per_m=size.linear_density_kg_per_m,
             axial_stiffness_N=self.axial_stiffness_N(size, 1.0 / safety_factor),
             allowable_tension_N=size.minimum_breaking_load_N / safety_factor,
+            expansion_per_K=expansion.coefficient_per_K if expansion else STEEL_EXPANSION_PER_K,
         )
 
     def family(self, safety_factor: float) -> Material:

@@ -9,6 +9,8 @@ from designer.arrays import FloatArray, frozen_array, require_number
 
 STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
+STEEL_EXPANSION_PER_K = 12e-6
+"""Thermal expansion of steel, EN 1993-1-1:2005, 3.2.6 [1/K]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +27,15 @@ class Cable:
         EA, force per strain [N]; ``inf`` for an inextensible cable.
     allowable_tension_N : float
         Largest tension the design may use, safety factor included [N].
+    expansion_per_K : float
+        Strain per change of temperature [1/K].
     """
 
     diameter_m: float
     linear_density_kg_per_m: float
     axial_stiffness_N: float
     allowable_tension_N: float
+    expansion_per_K: float = STEEL_EXPANSION_PER_K
 
     def __post_init__(self) -> None:
         if not math.isnan(self.diameter_m):
@@ -38,6 +43,7 @@ class Cable:
         require_number("linear_density_kg_per_m", self.linear_density_kg_per_m, above=0.0)
         require_number("axial_stiffness_N", self.axial_stiffness_N, above=0.0, finite=False)
         require_number("allowable_tension_N", self.allowable_tension_N, above=0.0, finite=False)
+        require_number("expansion_per_K", self.expansion_per_K)
 
     @property
     def weight_N_per_m(self) -> float:

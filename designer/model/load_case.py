@@ -127,6 +127,16 @@ class Loaded:
         turned = along / np.linalg.norm(along)
         return self.case.under(*self.bare, self.wind, turned, self.lost_cable)
 
+    @property
+    def growth(self) -> float:
+        """Strain of the unstrained lengths by the change of temperature."""
+        return (self.case.temperature_change_K or 0.0) * self.cable.expansion_per_K
+
+    @property
+    def keeps_lengths(self) -> bool:
+        """Whether the winches are braked, so that the platform settles: after a loss, by warmth."""
+        return self.lost_cable is not None or self.growth != 0.0
+
     def on(self, robot: Robot, cable: Cable) -> Loaded:
         """Return the same case in the same directions on another robot or cable."""
         return self.case.under(robot, cable, self.wind, self.inertia, self.lost_cable)
@@ -166,6 +176,10 @@ class LoadCase:
         On platform and cables, and around the cables.
     cable_lost : int, ``each`` or None
         A cable that is gone, from 1, or each in turn.
+    temperature_change_K : float or None
+        By how much the cables get warmer after the pose was reached, their lengths kept [K].
+    expansion_per_K : float or None
+        Their strain by it, instead of that of the rope [1/K].
     safety_factor, termination_efficiency : float or None
         Instead of those of the selection.
     region : Region or None
@@ -180,6 +194,8 @@ class LoadCase:
     wind: Wind | None = None
     ice: Ice | None = None
     cable_lost: int | str | None = None
+    temperature_change_K: float | None = None
+    expansion_per_K: float | None = None
     safety_factor: float | None = None
     termination_efficiency: float | None = None
     region: Region | None = None
@@ -188,6 +204,8 @@ class LoadCase:
         require_number("mass_kg", self.mass_kg, above=0.0)
         require_number("dynamic_factor", self.dynamic_factor, least=1.0)
         require_number("acceleration_m_per_s2", self.acceleration_m_per_s2, least=0.0)
+        require_number("temperature_change_K", self.temperature_change_K)
+        require_number("expansion_per_K", self.expansion_per_K)
         require_number("safety_factor", self.safety_factor, least=1.0)
         require_number("termination_efficiency", self.termination_efficiency, above=0.0, most=1.0)
         if self.wrench_N is not None:
@@ -249,6 +267,8 @@ class LoadCase:
             loaded = replace(loaded, cable_load_direction=load / size)
         if self.wind is not None or self.ice is not None:
             cable = replace(cable, linear_density_kg_per_m=size / STANDARD_GRAVITY_M_PER_S2)
+        if self.expansion_per_K is not None:
+            cable = replace(cable, expansion_per_K=self.expansion_per_K)
         return Loaded(self, bare, loaded, cable, wind, inertia, lost_cable)
 
 

@@ -157,7 +157,8 @@ class Picture:
     scene : str
         A whole HTML page with the same scene to turn; may be empty.
     kind : str
-        Classes of the style sheet: ``space`` is a little smaller than the page is wide.
+        Classes of the style sheet: ``space`` is a little smaller than the page is wide, ``half``
+        half as wide; ``screen`` is not on paper.
     """
 
     shape: ClassVar = "picture"

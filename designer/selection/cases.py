@@ -2,8 +2,9 @@
 
 Each case has directions of wind and inertia and lost cables (`designer.model.load_case.Loaded`);
 each of these is solved over all samples, for all candidates that hold so far; of robots that are
-slow to solve over some of them at first, and over all where a candidate is searched. A lost cable
-sets the platform moving, which takes long to follow: that is done for fewer samples. Between the
+slow to solve over some of them at first, and over all where a candidate is searched. A lost cable,
+or warmth on braked winches, sets the platform moving, which takes long to follow: that is done for
+fewer samples. Between the
 samples it is searched in the direction in which a case asks for most, and in those near it.
 """
 
@@ -15,21 +16,21 @@ from functools import partial
 
 import numpy as np
 
-from designer.arrays import IntArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded, free_axes
 from designer.model.robot import Poses, Robot
 from designer.progress import Advance
 from designer.selection.verify import Sampled, Verification, refined, verify_sizes
-from designer.statics.cable_loss import CableLoss, lose_cable
+from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import Workspace
-from designer.workspace.demand import loss_demand, rope_demand
+from designer.study import HangsBelow, Workspace
+from designer.workspace.demand import is_left_out, rope_demand, settled, settled_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
 FEW_SAMPLES, MOST_SAMPLES = 64, 256
-"""Poses in which a cable is lost, for each candidate and for the chosen one."""
+"""Poses in which lengths are kept, for each candidate and for the chosen one."""
 FEW_AT_FIRST = 300
 """Samples that candidates are tried at first where all of them take long."""
 _NEAR = 0.95
@@ -55,7 +56,7 @@ class CaseFound:
     is_full : bool
         Whether that search was the full one.
     is_whole : bool
-        Whether all samples were solved, or, after the loss of a cable, all that ever are.
+        Whether all samples were solved, or, where lengths are kept, all that ever are.
     """
 
     workspace: Workspace
@@ -70,7 +71,10 @@ class CaseFound:
         if self.is_whole or not self.verification.holds:
             return self
         one = self.loaded
-        (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
+        if _leans(one, self.workspace):
+            sampled = _one_by_one(one, self.workspace)
+        else:
+            (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
         met = sampled.verification(one.cable)
         return replace(self, sampled=sampled, verification=met, is_whole=True)
 
@@ -89,22 +93,22 @@ class CaseFound:
         """Where (1,)."""
         return Poses.at(self.verification.worst_position_m[None])
 
-    def tension_N(self, other: Loaded) -> float:
-        """Return the largest tension at that pose with another robot or cable [N]."""
+    def tension_N(self, other: Loaded, hangs_below: HangsBelow = "include") -> float:
+        """Return the largest tension at that pose with another robot or cable [N].
+
+        Minus infinity where the pose is left out for a cable that hangs below the platform.
+        """
         place = self.verification.worst_position_m[None]
-        if other.lost_cable is not None:
-            return float(loss_demand(other.robot, other.cable, other.lost_cable)(place)[0])
-        return float(rope_demand(other.robot, other.cable, "include")(place)[0, 0])
+        if other.keeps_lengths:
+            return float(settled_demand(other, hangs_below)(place)[0])
+        return float(rope_demand(other.robot, other.cable, hangs_below)(place)[0, 0])
 
     def loss(self) -> CableLoss | None:
-        """Return what becomes of that pose; None where no cable is lost."""
-        one = self.loaded
-        if one.lost_cable is None:
-            return None
-        return lose_cable(one.robot, self.pose, one.cable, one.lost_cable)
+        """Return what becomes of that pose; None where no lengths are kept."""
+        return settled(self.loaded, self.pose) if self.loaded.keeps_lengths else None
 
     def statics(self) -> Statics | None:
-        """Return the equilibrium there (1,), at rest after a loss; None where there is none."""
+        """Return the equilibrium there (1,), at rest on kept lengths; None where there is none."""
         if not np.isfinite(self.utilisation):
             return None
         loss = self.loss()
@@ -195,14 +199,17 @@ class Cases:
     ) -> Iterator[CaseFound]:
         region = case.region or self.workspace.region
         workspace = whole = replace(self.workspace, region=region)
-        if self.few is not None and case.cable_lost is None:
+        keeps = any(one.keeps_lengths for one in loaded)
+        if self.few is not None and not keeps:
             workspace = replace(workspace, samples=min(self.few, workspace.samples))
         cables = [one.cable for one in loaded]
-        shares = bool(loaded) and not case.changes_robot and case.cable_lost is None
+        shares = bool(loaded) and not case.changes_robot and not keeps
         if not loaded:
             met = []
-        elif loaded[0].lost_cable is not None:
-            met = [_after_loss(one, workspace, FEW_SAMPLES) for one in loaded]
+        elif keeps:
+            met = [_settled(one, workspace, FEW_SAMPLES) for one in loaded]
+        elif _leans(loaded[0], workspace):
+            met = [_one_by_one(one, workspace) for one in loaded]
         elif case.changes_robot:
             met = [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
         else:
@@ -271,38 +278,62 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
     one, workspace = found.loaded, found.workspace
     if not np.isfinite(found.utilisation) or found.is_full:
         return found
-    if one.lost_cable is None:
+    if not one.keeps_lengths:
         effort = LIGHT if is_light else None
         met = refined(one.robot, workspace, one.cable, found.sampled, effort)
         return replace(found, verification=met, is_full=not is_light)
     if is_light:
         return found
-    more = _after_loss(one, workspace, MOST_SAMPLES)
-    demand_with = partial(loss_demand, one.robot, one.cable, one.lost_cable)
+    more = _settled(one, workspace, MOST_SAMPLES)
+    demand_with = partial(settled_demand, one, workspace.hangs_below)
     starts = np.concatenate([found.sampled.worst_m, more.worst_m])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
     used = worst.demand / one.cable.allowable_tension_N
+    # Lengths are those before it settles.
+    lengths = refined(one.robot, workspace, one.cable, more, LIGHT)
     met = replace(
-        found.verification,
-        worst_position_m=worst.place,
-        max_tension_N=worst.demand,
-        utilisation=used,
-        is_refined=True,
+        lengths, worst_position_m=worst.place, max_tension_N=worst.demand, utilisation=used
     )
     return replace(found, verification=met, is_full=True)
 
 
-def _after_loss(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
-    """Return what a cable meets after the loss of another one, over some samples."""
-    assert one.lost_cable is not None
+def _settled(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
+    """Return what a cable meets on kept lengths, over some samples."""
     places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
-    tension = loss_demand(one.robot, one.cable, one.lost_cable)(places)
-    order = np.argsort(-tension, kind="stable")
-    used = tension / one.cable.allowable_tension_N
+    loss = settled(one, Poses.at(places))
+    counts = ~is_left_out(loss.before, workspace.hangs_below)
+    tension = np.where(counts, loss.largest_tension_N, -np.inf)
+    longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
+    return _sampled(one.cable, places, tension, longest)
+
+
+def _leans(one: Loaded, workspace: Workspace) -> bool:
+    """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
+    return workspace.hangs_below == "exclude" and one.robot.cable_load_direction is not None
+
+
+def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
+    """Return what a cable meets over the samples, which poses count told by the true vertical."""
+    demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
+    parts = [workspace.space.landmarks(), *workspace.places()]
+    tension, lengths, _ = np.split(
+        np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
+    )
+    longest = np.maximum(lengths, 0.0).max(axis=0)
+    return _sampled(one.cable, np.concatenate(parts), tension[:, 0], longest)
+
+
+def _sampled(
+    cable: Cable, places: FloatArray, tension_N: FloatArray, longest_m: FloatArray
+) -> Sampled:
+    """Put together what a cable meets; the tension is minus infinite where a pose is left out."""
+    used = tension_N / cable.allowable_tension_N
+    counts = ~np.isneginf(used)
+    order = np.argsort(-used, kind="stable")[: counts.sum()]
     return Sampled(
         worst_m=places[order[:8]],
-        utilisation=float(used.max()),
-        longest_m=np.zeros(one.robot.n_cables),
+        utilisation=float(used.max()) if counts.any() else np.inf,
+        longest_m=longest_m,
         samples=len(places),
         counted=int(np.isfinite(used).sum()),
         overloaded=int((used > 1.0).sum()),
@@ -318,6 +349,9 @@ def _turned(found: CaseFound) -> CaseFound:
     for _ in range(_MOST_ROUNDS):
         before = found.utilisation
         turned = _steepest(found)
+        if found.loaded.keeps_lengths:  # a search for the pose takes long
+            found = governing([found, turned])
+            break
         met = refined(
             turned.loaded.robot, turned.workspace, turned.loaded.cable,
             replace(turned.sampled, worst_m=turned.verification.worst_position_m[None]), LIGHT,
@@ -338,7 +372,7 @@ def _steepest(found: CaseFound) -> CaseFound:
         for side in (*axes, *-axes):
             assert found.loaded.inertia is not None
             loaded = found.loaded.pushed(found.loaded.inertia + step * side)
-            tension = found.tension_N(loaded)
+            tension = found.tension_N(loaded, found.workspace.hangs_below)
             used = tension / loaded.cable.allowable_tension_N
             met = replace(found.verification, max_tension_N=tension, utilisation=used)
             trials.append(replace(found, loaded=loaded, verification=met))

@@ -86,6 +86,8 @@ def _why_not(most: CaseFound) -> str:
     """Return why nothing can be proved of a case; empty where something can."""
     if most.loaded.lost_cable is not None:
         return "what becomes of a platform that loses a cable is not enclosed"
+    if most.loaded.keeps_lengths:
+        return "what becomes of a platform on lengths that grow is not enclosed"
     if most.workspace.hangs_below == "exclude":
         return "poses are left out, and which ones depends on the rope"
     if not np.isfinite(most.utilisation):

@@ -80,12 +80,7 @@ def design_cable(
     None where no cable holds everywhere.
     """
     if groups is not None and groups.chosen is not None:
-        of_cable = {
-            cable: product
-            for group, product in zip(groups.groups, groups.chosen.products, strict=True)
-            for cable in group.cables
-        }
-        products = [of_cable[cable] for cable in sorted(of_cable)]
+        products = groups.by_cable
         names = dict.fromkeys(f"{one.grade.id} {one.size.id}" for one in products)
         return DesignCable(
             Cables(tuple(one.cable for one in products)),

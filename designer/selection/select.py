@@ -10,6 +10,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase
@@ -197,6 +199,8 @@ class _Trial:
         for product, cases in zip(products, sampled, strict=True):
             grade, size, cable = product.grade, product.size, product.cable
             found = together(cases)
+            if not math.isfinite(found.utilisation):  # lengths of other poses mean nothing
+                found = replace(found, longest_m=np.full_like(found.longest_m, np.nan))
             length, ratio = float(found.longest_m.sum()), grade.sheave_ratio
             figures = Figures(
                 mass_kg=cable.linear_density_kg_per_m * length,

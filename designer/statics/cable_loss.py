@@ -1,8 +1,9 @@
-"""What becomes of a platform in a pose when one of its cables is gone.
+"""What becomes of a platform in a pose when one of its cables is gone, or all get warmer.
 
-The other cables keep the lengths that they had, as on braked winches, and the platform comes to
-rest on these, if it does anywhere: near the pose where they still hold it, else elsewhere. What the
-loss itself sets swinging is not in this: it is the state after that.
+The other cables keep the lengths that they had, as on braked winches, but for what warmth adds to
+them, and the platform comes to rest on these, if it does anywhere: near the pose where they still
+hold it, else elsewhere. What the loss itself sets swinging is not in this: it is the state after
+that.
 """
 
 from __future__ import annotations
@@ -47,12 +48,14 @@ class Fate(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CableLoss:
-    """The state after the loss of a cable.
+    """The state after the loss of a cable, or a change of temperature.
 
     Parameters
     ----------
     fate : array (n_poses,) of int
         One `Fate` a pose.
+    before : Statics
+        With all cables (n_poses,); the others keep the lengths that they have there.
     tension_N : array (n_poses, n_cables)
         Largest tension anywhere in each cable at rest, 0 in the lost one; NaN where there is no
         rest [N].
@@ -65,6 +68,7 @@ class CableLoss:
     """
 
     fate: IntArray
+    before: Statics
     tension_N: FloatArray
     rest: Poses
     moved_m: FloatArray
@@ -79,7 +83,23 @@ class CableLoss:
 def lose_cable(
     robot: Robot, poses: Poses, cable: Cable, lost: int, *, seeks_better: bool = True
 ) -> CableLoss:
-    """Return what becomes of poses (n_poses,) when a cable, counted from 1, is gone.
+    """Return what becomes of poses (n_poses,) when a cable, counted from 1, is gone."""
+    return settle(robot, poses, cable, lost, seeks_better=seeks_better)
+
+
+def settle(
+    robot: Robot,
+    poses: Poses,
+    cable: Cable,
+    lost: int | None = None,
+    growth: float = 0.0,
+    *,
+    seeks_better: bool = True,
+) -> CableLoss:
+    """Return what becomes of poses (n_poses,) on kept lengths.
+
+    ``lost`` is a cable that is gone, counted from 1, and ``growth`` the strain that warmth adds to
+    the unstrained lengths, what lies on pulleys included.
 
     The search for a rest starts in the pose and follows falling energy; a balance that is not
     stable is no rest. Where the platform moves by less than a hundredth of the cables' mean length,
@@ -91,10 +111,12 @@ def lose_cable(
     tension = np.full((count, robot.n_cables), np.nan)
     position = np.full((count, 3), np.nan)
     rotation = np.array(np.broadcast_to(poses.rotation, (count, 3, 3)))
-    others = np.delete(np.arange(robot.n_cables), lost - 1)
+    every = np.arange(robot.n_cables)
+    others = every if lost is None else np.delete(every, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])
-    left = robot.without_cable(lost)
-    found = solve_forward(left, cable, before.length_m[at][:, others], start)
+    left = robot if lost is None else robot.without_cable(lost)
+    length = (1.0 + growth) * before.length_m[at][:, others]
+    found = solve_forward(left, cable, length, start)
     rests, at = found.is_stable, at[found.is_stable]
     tension[at] = 0.0
     tension[np.ix_(at, others)] = found.statics.cable_tension_N[rests]
@@ -104,4 +126,4 @@ def lose_cable(
     moved = np.linalg.norm(position - poses.position_m, axis=1)
     near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
     fate[at] = np.where(near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
-    return CableLoss(fate, tension, Poses(position, rotation), moved, found.statics)
+    return CableLoss(fate, before, tension, Poses(position, rotation), moved, found.statics)

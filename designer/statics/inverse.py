@@ -80,8 +80,15 @@ class Statics:
 
     @property
     def hanging_cables(self) -> BoolArray:
-        """Those cables (..., n_cables)."""
-        return hanging_cables(self.force_z_N, self.geometry().drop_m)
+        """Those cables (..., n_cables), along the true vertical whatever else loads them."""
+        chord, force_z_N = self.geometry(), self.force_z_N
+        drop_m = chord.drop_m
+        if self.robot.cable_load_direction is not None:
+            *plan, up = self.robot.upright @ self.robot.level[2]
+            along = chord.outward @ plan
+            force_z_N = along * self.force_x_N + up * force_z_N
+            drop_m = up * drop_m - along * chord.horizontal_distance_m
+        return hanging_cables(force_z_N, drop_m)
 
     @property
     def exit_tension_N(self) -> FloatArray:

@@ -51,7 +51,7 @@ class Slopes:
     cable : int
         Whose utilisation it is, from 1; of an optimum one of those that are used alike.
     utilisation : float
-        Largest tension over allowable tension of any cable.
+        Its largest tension over its allowable tension.
     load : array (dof,)
         In the load wrench, upright frame [1/N, 1/(N·m)].
     stiffness : array (n_cables,)
@@ -109,11 +109,15 @@ class _Multipliers:
     low: FloatArray  # (n,) [1/N]
 
 
-def utilisation_slopes(statics: Statics, allowable_N: FloatArray | float) -> tuple[Slopes, ...]:
+def utilisation_slopes(
+    statics: Statics, allowable_N: FloatArray | float, cable: int | None = None
+) -> tuple[Slopes, ...]:
     """Return the slopes at a solved pose (1,), one set for each cable that ties for the most.
 
-    Empty where the multipliers of an optimum are not unique, or do not fulfil its conditions: then
-    there is no slope. ``allowable_N`` is one for all cables or (n_cables,) [N].
+    With ``cable``, from 1, those of its utilisation alone. Empty where the multipliers of an
+    optimum are not unique, or do not fulfil its conditions, and for a cable of it that others are
+    used more than: then there is no slope. ``allowable_N`` is one for all cables or (n_cables,)
+    [N].
     """
     robot = statics.robot
     allowable = np.broadcast_to(np.asarray(allowable_N, dtype=np.float64), (robot.n_cables,))
@@ -122,7 +126,10 @@ def utilisation_slopes(statics: Statics, allowable_N: FloatArray | float) -> tup
     used, least = top.value / allowable, robot.tension_min_N
     most = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
     slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
-    one_by_one = [np.arange(robot.n_cables) == k for k in np.flatnonzero(most)]
+    if cable is not None and robot.is_redundant and not most[cable - 1]:
+        return ()
+    each = np.flatnonzero(most) if cable is None else [cable - 1]
+    one_by_one = [np.arange(robot.n_cables) == k for k in each]
     found = []
     for tops in [most] if robot.is_redundant else one_by_one:
         solved = _multipliers(robot, cables, (top, low), (tops, slack), allowable)
@@ -180,9 +187,10 @@ def _slopes(
         moved = np.cross(turn, cables.pull)
         moved -= np.einsum("nij,nj->ni", cables.K, np.cross(turn, cables.chord))
         by_load[:, axis] += np.einsum("nk,nk->n", h, moved)
+    cable = int(np.where(at.top > 0.0, used, 0.0).argmax())
     return Slopes(
-        cable=int(np.where(at.top > 0.0, used, 0.0).argmax()) + 1,
-        utilisation=float(used.max()),
+        cable=cable + 1,
+        utilisation=float(used[cable]),
         load=-at.balance,
         stiffness=np.einsum("nk,nk->n", h, cables.by_stiffness),
         cable_load_m_per_N=by_load @ robot.upright,

@@ -6,10 +6,11 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Material
+from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing, size_poses
-from designer.statics.cable_loss import lose_cable
+from designer.statics.cable_loss import CableLoss, settle
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
 from designer.study import HangsBelow, Workspace
 from designer.workspace.refine import Demand
@@ -73,18 +74,24 @@ def rope_demand(
     return demand
 
 
-def loss_demand(
-    robot: Robot, cable: Cable, lost_cable: int, *, seeks_better: bool = True
-) -> Demand:
-    """Largest tension after the loss of a cable [N]; inf where the platform finds no rest."""
+def settled_demand(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
+    """Largest tension on kept lengths [N]; inf where the platform finds no rest.
+
+    Which poses are left out is told by how the cables hang before it settles.
+    """
 
     def demand(places: FloatArray) -> FloatArray:
-        poses = Poses.at(places)
-        return lose_cable(
-            robot, poses, cable, lost_cable, seeks_better=seeks_better
-        ).largest_tension_N
+        found = settled(one, Poses.at(places), seeks_better=seeks_better)
+        left_out = is_left_out(found.before, hangs_below)
+        return np.where(left_out, -np.inf, found.largest_tension_N)
 
     return demand
+
+
+def settled(one: Loaded, poses: Poses, *, seeks_better: bool = True) -> CableLoss:
+    """Return what becomes of poses (n_poses,) in a load case in which lengths are kept."""
+    kept = one.lost_cable, one.growth
+    return settle(one.robot, poses, one.cable, *kept, seeks_better=seeks_better)
 
 
 def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:

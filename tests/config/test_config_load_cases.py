@@ -62,6 +62,15 @@ def test_the_table_of_inputs_has_them(windy: str, study_of: StudyOf) -> None:
     assert entries["load_cases[4]"] == "cable_lost each"
 
 
+def test_change_of_temperature(windy: str, study_of: StudyOf) -> None:
+    cases = "load_cases: [{name: cold, temperature_change: -30 K}, {name: static}]\n"
+    cold, static = study_of(windy + cases).load_cases
+    assert (cold.temperature_change_K, cold.expansion_per_K) == (-30.0, None)
+    assert static.temperature_change_K is None
+    stainless = windy.replace("cable:\n", "cable:\n  thermal_expansion: 16e-6 /K\n")
+    assert study_of(stainless + cases).load_cases[0].expansion_per_K == 16e-6
+
+
 def test_none(valid: str, study_of: StudyOf) -> None:
     assert study_of(valid).load_cases == ()
     assert study_of(valid).robot.platform.drag_area_m2 is None
@@ -85,6 +94,11 @@ def test_directions_are_spread_from_x(windy: str, study_of: StudyOf) -> None:
         ("{name: a, cable_lost: all}", "load_cases[1].cable_lost", "'all' is not known"),
         ("{name: a, dynamic_factor: 0.9}", "load_cases[1].dynamic_factor", "0.9 is out of range"),
         ("{name: a, safety_factor: 0.5}", "load_cases[1].safety_factor", "0.5 is out of range"),
+        (
+            "{name: a, temperature_change: 30 degC}",
+            "load_cases[1].temperature_change",
+            "'30 degC' has the unit degree_Celsius, of which 0 is no change of 0 K",
+        ),
         ("{name: a, ice: {density: 900}}", "load_cases[1].ice.thickness", "missing"),
         (
             "{name: a, wind: {speed: 1, direction: [1, 0, 0], directions: 2}}",
@@ -108,7 +122,7 @@ def test_mistakes(windy: str, faults_of: FaultsOf, case: str, field: str, proble
 LINES = {
     "{name: a, winds: 3}": (
         "load_cases[1].winds: unknown field 'winds' (expected one of name, mass, wrench, "
-        "dynamic_factor, acceleration, wind, ice, cable_lost, safety_factor, "
+        "dynamic_factor, acceleration, wind, ice, cable_lost, temperature_change, safety_factor, "
         "termination_efficiency, region; did you mean 'wind'?)"
     ),
     "{name: a, cable_lost: 4}": (
@@ -158,7 +172,6 @@ def test_wind_needs_area_and_drag(valid: str, faults_of: FaultsOf) -> None:
     [
         ("selection:\n  safety_factor: 4\n", "", "there is no selection"),
         ("safety_factor: 4", "groups: {a: [1], b: [2, 3]}", "groups of cables are chosen"),
-        ("samples: 500", "hangs_below: exclude", "which cables hang below depends"),
     ],
 )
 def test_what_does_not_go_with_them(

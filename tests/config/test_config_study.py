@@ -155,6 +155,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("cable.youngs_modulus", "62.7 GPa", "6.27e10 Pa"),
         Entry("cable.allowable_stress", "198 MPa", "1.98e8 Pa"),
         Entry("cable.drag_coefficient", "default", "none"),
+        Entry("cable.thermal_expansion", "default", "none"),
         Entry("pose.position", "[15, 9, 4]", "[15, 9, 4] m"),
         Entry("pose.rotation_vector", "default", "[0, 0, 0] rad"),
         Entry("pose.quaternion", "default", "none"),

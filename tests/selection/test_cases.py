@@ -17,10 +17,12 @@ from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Prism
+from designer.model.robot import Poses
 from designer.resources import example_file
-from designer.selection.cases import CaseFound, Cases, searched_all
+from designer.selection.cases import CaseFound, Cases, searched_all, together
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
+from designer.selection.verify import verify
 from designer.statics.cable_loss import Fate, lose_cable
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, Workspace
@@ -208,3 +210,46 @@ def test_a_lost_cable_is_told() -> None:
     assert float(loss.largest_tension_N[0]) == pytest.approx(
         found.verification.max_tension_N, rel=1e-9
     )
+
+
+def test_a_lost_cable_alone_needs_the_lengths_before_the_loss() -> None:
+    study = study_of("yard", 20)
+    assert study.workspace is not None
+    cable = Cable(0.006, 0.13, 1.5e6, 2e4)
+    cases = Cases(study.robot, study.workspace, (LoadCase("lost", cable_lost=2),))
+    (found,) = cases.sampled([[cable]], lambda _: None)
+    whole = verify(study.robot, study.workspace, cable)
+    sampled, searched = together(found), together(searched_all(found))
+    assert (sampled.longest_m > 0.9 * whole.longest_m).all()
+    assert searched.longest_m == pytest.approx(whole.longest_m, rel=1e-6)
+    assert searched.shortest_m == pytest.approx(whole.shortest_m, rel=1e-4)
+
+
+def test_poses_are_left_out_in_each_direction_of_a_case_by_itself() -> None:
+    study = study_of("yard", 60)
+    assert study.workspace is not None
+    region = Prism.over(np.array(study.robot.exit_points_m[:, :2]), 1.5, (1.0, 10.0))
+    workspace = replace(study.workspace, region=region, hangs_below="exclude")
+    cable = Cable(0.012, 2.0, 6e6, 8e4)
+    gust = LoadCase("gust", wind=Wind(12.0, 1.2, count=3))
+    (found,) = Cases(study.robot, workspace, (gust,)).sampled([[cable]], lambda _: None)
+    places = np.concatenate([workspace.space.landmarks(), *workspace.places()])
+    shares = set()
+    for one in found:
+        load = one.loaded
+        statics = solve_sagging(load.robot, Poses.at(places), load.cable)
+        plan = statics.force_x_N[..., None] * statics.geometry().outward
+        pull = -np.concatenate([plan, statics.force_z_N[..., None]], axis=2) @ load.robot.upright
+        hangs = (pull[..., 2] < 0.0).any(axis=1)
+        used = statics.largest_tension_N[~hangs].max() / load.cable.allowable_tension_N
+        assert one.utilisation == pytest.approx(used, rel=1e-9)
+        assert one.sampled.counted == (~hangs).sum() < len(places)
+        shares.add(one.sampled.counted)
+    assert len(shares) > 1
+    lost = LoadCase("lost", cable_lost=1)
+    ((after,),) = Cases(study.robot, workspace, (lost,)).sampled([[cable]], lambda _: None)
+    loss = lose_cable(study.robot, Poses.at(places), cable, 1)
+    counts = ~loss.before.hangs_below
+    assert 0 < counts.sum() < len(places)
+    used = loss.largest_tension_N[counts].max() / cable.allowable_tension_N
+    assert after.utilisation == pytest.approx(used, rel=1e-9)

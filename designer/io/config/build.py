@@ -71,9 +71,7 @@ def build_study(
         workspace=_workspace(section.workspace, robot),
         selection=_selection(section.selection),
         load_cases=tuple(
-            load_case(
-                case, section.cable.drag_coefficient, partial(_case_region, document, k, robot)
-            )
+            load_case(case, section.cable, partial(_case_region, document, k, robot))
             for k, case in enumerate(section.load_cases)
         ),
         catalogues=tuple(folder / name for name in section.catalogues),

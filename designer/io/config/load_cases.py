@@ -9,6 +9,8 @@ from designer.errors import Fault
 from designer.io.config.parts import Parts
 from designer.io.config.schema import (
     BoxSection,
+    CableSection,
+    GradeCableSection,
     LoadCaseSection,
     PointsSection,
     PrismSection,
@@ -23,13 +25,13 @@ _CASES = "load_cases"
 
 def load_case(
     section: LoadCaseSection,
-    cable_drag_coefficient: float | None,
+    cable: CableSection | GradeCableSection,
     region_of: Callable[[RegionSection], Region],
 ) -> LoadCase:
     """Return the load case that a section describes."""
     wrench, ice, wind = section.wrench, section.ice, section.wind
     along = None if wind is None or wind.direction is None else frozen_array(wind.direction)
-    drag = cable_drag_coefficient or 0.0
+    drag = cable.drag_coefficient or 0.0
     return LoadCase(
         name=section.name,
         mass_kg=section.mass,
@@ -39,6 +41,8 @@ def load_case(
         wind=None if wind is None else Wind(wind.speed, drag, wind.directions or 8, along),
         ice=None if ice is None else Ice(ice.thickness, ice.density),
         cable_lost=section.cable_lost,
+        temperature_change_K=section.temperature_change,
+        expansion_per_K=cable.thermal_expansion,
         safety_factor=section.safety_factor,
         termination_efficiency=section.termination_efficiency,
         region=None if section.region is None else region_of(section.region),
@@ -56,9 +60,6 @@ def load_cases_fit(parts: Parts) -> Iterator[Fault]:
     if parts.raw("selection.groups") is not None:
         problem = "groups of cables are chosen for the static load alone"
         yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
-    if parts.raw("workspace.hangs_below") == "exclude":
-        problem = "which cables hang below depends on the load case"
-        yield parts.fault("workspace.hangs_below", problem, "include, where there are load_cases")
     first: dict[str, int] = {}
     for index, case in enumerate(cases):
         if isinstance(case, dict):

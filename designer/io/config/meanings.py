@@ -182,6 +182,16 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "End fittings keep in load case",
         "Share of the breaking load, instead of that of the selection.",
     ),
+    "cable.thermal_expansion": (
+        "Thermal expansion of the cables",
+        "Strain per change of temperature in load cases; left out, that of the rope's table, or "
+        "that of steel, 12e-6 /K.",
+    ),
+    "load_cases.temperature_change": (
+        "Change of temperature in load case",
+        "Of the cables since the pose was reached; the winches are braked and the lengths kept, "
+        "so that the platform comes to rest elsewhere.",
+    ),
     "load_cases.cable_lost": ("Cable lost in load case", "Number of the cable that breaks."),
     "measurements.settled": (
         "Settled",

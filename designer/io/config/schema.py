@@ -155,6 +155,7 @@ class CableSection(Section):
     youngs_modulus: fields.Modulus = Field(description="a modulus such as '200 GPa'")
     allowable_stress: fields.Stress = Field(description="a stress such as '180 MPa'")
     drag_coefficient: fields.DragCoefficient | None = None
+    thermal_expansion: fields.Expansion | None = None
 
 
 class GradeCableSection(Section):
@@ -163,6 +164,7 @@ class GradeCableSection(Section):
     grade: Text = Field(description="a grade id from `designer catalog list`")
     safety_factor: fields.SafetyFactor | None = None
     drag_coefficient: fields.DragCoefficient | None = None
+    thermal_expansion: fields.Expansion | None = None
 
 
 def _cable_tag(given: object) -> str:
@@ -314,6 +316,7 @@ class LoadCaseSection(Section):
     wind: WindSection | None = None
     ice: IceSection | None = None
     cable_lost: LostCable | None = None
+    temperature_change: fields.TemperatureChange | None = None
     safety_factor: fields.SafetyFactor | None = None
     termination_efficiency: fields.Efficiency | None = None
     region: Region | None = None

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from designer.analysis.carries import Carries, SizeBeside
+from designer.analysis.group_slopes import GroupSlopes
 from designer.analysis.reserve import Reserve
 from designer.analysis.sensitivities import Sensitivities
 from designer.model.verdict import Verdict
@@ -32,6 +34,7 @@ _NAMES = {
     "modulus": "Stiffness EA",
     "linear_mass": "Mass of the rope",
 }
+_OF_ALL_GROUPS = ("payload", "breaking_load", "efficiency")
 _MOVE_M = 0.01
 _MOST_MOVES = 3
 
@@ -40,7 +43,8 @@ def section(source: Source) -> Section | None:
     """Return what carries the result; None where no rope is chosen for all cables."""
     found = source.analysis.carries
     if found is None:
-        return _of_groups() if source.analysis.has_groups else None
+        groups = source.analysis.group_slopes
+        return _of_groups(groups) if groups else None
     slopes, moves = found.sensitivities, _moves(found)
     mass = found.governing.loaded.bare[0].platform.mass_kg
     return Section.of(
@@ -55,12 +59,54 @@ def section(source: Source) -> Section | None:
     )
 
 
-def _of_groups() -> Section:
-    text = (
-        "Sensitivities, reserves and the way out of the region are computed for one rope on all "
-        "cables. For ropes of groups they are not, so nothing is said of them here."
+def _of_groups(groups: tuple[GroupSlopes, ...]) -> Section:
+    lacking = [one for one in groups if one.why_not]
+    why = ""
+    if lacking:
+        names = fmt.listing(one.group.name for one in lacking)
+        why = f"Without slopes: {names}. {lacking[0].why_not}"
+    return Section.of(
+        "carries",
+        "What carries the result",
+        _group_table(groups),
+        why,
+        "Reserves and the way out of the region are computed for one rope on all cables; of ropes "
+        "for groups they are not known.",
     )
-    return Section.of("carries", "What carries the result", text)
+
+
+def _group_table(groups: tuple[GroupSlopes, ...]) -> Table:
+    """Return what each input changes of each group's utilisation."""
+    names = [one.group.name for one in groups]
+    inputs = [(key, name) for key, name in _NAMES.items() if key in _OF_ALL_GROUPS]
+    inputs += [(f"modulus_{name}", f"Stiffness EA of {name}") for name in names]
+    inputs += [(f"linear_mass_{name}", f"Mass of the rope of {name}") for name in names]
+    rows = [Row(("Used now", "", *(fmt.utilisation(one.utilisation) for one in groups)), "muted")]
+    for key, title in inputs:
+        each = (_points(0.01 * one.utilisation * one.of(key).elasticity) for one in groups)
+        rows.append(Row((title, "1\u00a0%", *each)))
+    step = f"{fmt.trimmed(1e3 * _MOVE_M)}\u00a0mm"
+    for title, slopes in _group_moves(groups):
+        rows.append(Row((title, step, *(_points(_MOVE_M * slope) for slope in slopes))))
+    caption = (
+        "What changes the utilisation of each group at its own worst pose, in percentage points, "
+        "by the slopes of the solved equations, the pose held. Breaking load and fittings are "
+        "those of the group's own rope. Of the exit points those that matter most; result.json "
+        "has all. A dash: no slope."
+    )
+    return Table.of(caption, ("Input", Column("More by"), *map(Column, names)), *rows)
+
+
+def _group_moves(groups: tuple[GroupSlopes, ...]) -> Iterator[tuple[str, list[float]]]:
+    """Yield what moves outward, and the exit points that matter most, with the slopes [1/m]."""
+    region = [one.of("region").derivative for one in groups]
+    if any(region):
+        yield "Sides of the region outward", region
+    each = np.stack([one.exit_points_per_m for one in groups])
+    most = np.nan_to_num(np.abs(each)).max(axis=0)
+    for at in np.argsort(-most, axis=None, kind="stable")[:_MOST_MOVES].tolist():
+        cable, axis = divmod(at, 3)
+        yield f"Exit point {cable + 1} along {'xyz'[axis]}", each[:, cable, axis].tolist()
 
 
 def _reserves(found: Carries, mass_kg: float) -> Statement:
@@ -155,7 +201,8 @@ def _chart(slopes: Sensitivities, moves: list[tuple[str, float]]) -> Picture | N
         return None
     step = f"{fmt.trimmed(1e3 * _MOVE_M)} mm"
     drawn = carries_chart(shares, [(n, 100.0 * _MOVE_M * slope) for n, slope in moves], step)
-    return chart("The same as bars.", "Bars to the left and right of zero", drawn)
+    found = chart("The same as bars.", "Bars to the left and right of zero", drawn)
+    return found and replace(found, kind="screen")  # paper has it all in the table
 
 
 def _sizes(sizes: tuple[SizeBeside, ...]) -> Table | None:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from designer.analysis.analyse import Analysis
 from designer.model.cable import Material
 from designer.report import format as fmt
-from designer.report.blocks import Block, Box, Column, Fact, Facts, Subheading, Table
+from designer.report.blocks import Block, Box, Column, Subheading, Table
 from designer.selection.result import Candidate, GradeOutcome
 
 _OF_CASES = (
@@ -32,10 +32,7 @@ def compared(analysis: Analysis, outcome: GradeOutcome) -> tuple[Block, ...]:
     return (
         Box.of("keep", heading, _table(analysis, outcome, best)),
         *_reasons(analysis, outcome.family, best),
-        Subheading("snap", "What the step to a size costs"),
-        "Ropes come in sizes. This is what the step from the best diameter to the size costs."
-        + (_OF_CASES if analysis.study.load_cases else ""),
-        _snap(outcome, best),
+        _snap(outcome, best) + (_OF_CASES if analysis.study.load_cases else ""),
     )
 
 
@@ -121,17 +118,14 @@ def _reasons(analysis: Analysis, real: Material, best: Candidate) -> tuple[str, 
     )
 
 
-def _snap(outcome: GradeOutcome, best: Candidate) -> Facts:
+def _snap(outcome: GradeOutcome, best: Candidate) -> str:
     optimum_m, size_m = outcome.continuous_diameter_m, best.size.diameter_m
     lightest = outcome.family.density_kg_per_m3 * math.pi * optimum_m**2 / 4.0
     heavier = best.cable.linear_density_kg_per_m
-    diameters = f"{fmt.millimetres(optimum_m)} → {fmt.millimetres(size_m)}"
-    masses = f"{fmt.kilograms_per_metre(lightest)} → {fmt.kilograms_per_metre(heavier)}"
-    used = f"{fmt.utilisation(1.0)} → {fmt.utilisation(best.verification.utilisation)}"
-    return Facts(
-        (
-            Fact("Diameter", diameters, fmt.signed_percent(size_m / optimum_m - 1.0)),
-            Fact("Mass per length", masses, fmt.signed_percent(heavier / lightest - 1.0)),
-            Fact("Utilisation", used, "largest over allowable tension at the worst pose"),
-        )
+    return (
+        "Ropes come in sizes. The step from the best diameter of the grade, which would be used "
+        f"to {fmt.utilisation(1.0)}, to the chosen size changes the diameter by "
+        f"{fmt.signed_percent(size_m / optimum_m - 1.0)} and the mass per length by "
+        f"{fmt.signed_percent(heavier / lightest - 1.0)}, and leaves "
+        f"{fmt.utilisation(best.verification.utilisation)} used at the worst pose."
     )

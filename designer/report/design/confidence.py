@@ -10,7 +10,7 @@ from designer.grades.grade import TRUST_MEANING, Grade
 from designer.report import format as fmt
 from designer.report.blocks import Statement
 from designer.report.design.checks import failing_checks
-from designer.report.design.load_cases import loads_statement
+from designer.report.design.load_cases import carried_away, loads_statement
 from designer.report.design.proof import proofs
 from designer.report.design.scope import (
     orientation_statement,
@@ -38,6 +38,7 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield from pose_statement(analysis)
     if analysis.study.selection is not None:
         yield loads_statement(analysis.study)
+    yield from carried_away(findings)
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
         yield verification_statement(analysis.verification)

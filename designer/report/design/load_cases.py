@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
+from designer.analysis.findings import Findings
 from designer.model.load_case import LoadCase
 from designer.report import format as fmt
-from designer.report.blocks import Column, Row, Section, Statement, Table
+from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
+from designer.report.material_class import class_of
 from designer.selection.cases import FEW_SAMPLES, CaseFound
 from designer.selection.result import Candidate
 from designer.statics.cable_loss import Fate
@@ -19,6 +21,7 @@ _PARTS: dict[str, Callable[[LoadCase], bool]] = {
     "wind": lambda case: case.wind is not None,
     "ice": lambda case: case.ice is not None,
     "loss of a cable": lambda case: case.cable_lost is not None,
+    "change of temperature": lambda case: bool(case.temperature_change_K),
 }
 """What a load case can have, for what none of a study has."""
 
@@ -41,25 +44,44 @@ def section(source: Source) -> Section | None:
     if not study.load_cases or selection is None:
         return None
     chosen = selection.chosen
+    leaves_out = study.workspace is not None and study.workspace.hangs_below == "exclude"
     return Section.of(
         "load-cases",
         "Load cases",
         _statement(chosen),
+        *carried_away(source.findings),
         _asked(study),
-        None if chosen is None else _met(chosen),
+        None if chosen is None else _met(chosen, leaves_out=leaves_out),
+        _LEFT_OUT if leaves_out else None,
         _lost(chosen) if chosen is not None else None,
         "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
         "platform, at the origin of its frame, and times drag coefficient and diameter on each "
         "unstrained length of a cable, along the wind and at full speed whatever the cable's "
         "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
         "cables' own weight; an inertia force points where it is worst, as far as a search from "
-        "14 directions finds it. Winches hold each pose, so a change of temperature changes "
-        "lengths and no tension.",
+        "14 directions finds it.",
+        None if chosen is None else _warmed(study, chosen),
         _pulleys(source),
         "The configured family, the shares of the region that sizes serve, stiffness and clearance "
         "are those of the static load of the study; the maps of the chosen rope are those of the "
         "case named there.",
     )
+
+
+def carried_away(findings: Findings) -> Iterator[Statement]:
+    """Yield the load cases in which the platform would be blown or pulled away."""
+    for one in findings.adrift:
+        case, robot = one.loaded.case, one.loaded.robot
+        how = "blown" if case.wind is not None else "pulled"
+        text = (
+            f"In the load case '{case.name}', {one.loaded.words}, straight cables cannot hold the "
+            f"platform in {fmt.share(one.share)} of the poses in which they hold it at rest, such "
+            f"as {fmt.position(one.place)}: it is pushed with {fmt.newtons(one.push_N)} and weighs "
+            f"{fmt.newtons(robot.weight_N)}. Only the weight of rope that hangs far below could "
+            "hold it there, if anything, so a rope's length, mass and cost mean little. Park it in "
+            "a region of its own where cables hold it, or make it heavier in this case."
+        )
+        yield Statement(f"The platform would be {how} away", text, "bad")
 
 
 def _pulleys(source: Source) -> str:
@@ -114,6 +136,8 @@ def _changes(case: LoadCase) -> str:
         )
     if case.ice is not None:
         parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
+    if case.temperature_change_K:
+        parts.append(f"cables {_warmer(case)}, winches braked")
     if case.cable_lost is not None:
         which = "each cable in turn" if case.cable_lost == "each" else f"cable {case.cable_lost}"
         parts.append(f"{which} lost")
@@ -127,16 +151,25 @@ def _changes(case: LoadCase) -> str:
     return fmt.capital("; ".join(parts)) or "Nothing: the static load"
 
 
-def _met(chosen: Candidate) -> Table:
-    columns = (
+_LEFT_OUT = (
+    "Poses in which a cable hangs below the platform are left out, as configured: in each load "
+    "case, and in each direction of its wind and inertia force, those in which one hangs then. "
+    "Where a cable is lost, how they hang before counts."
+)
+
+
+def _met(chosen: Candidate, *, leaves_out: bool) -> Table:
+    columns: Heads = (
         *("Load case", Column("Used"), Column("Largest tension"), Column("Allowable")),
-        *(Column("Cable"), "Platform at", "Direction or loss", "Verdict"),
+        *(Column("Cable"), "Platform at", "Direction or loss"),
+        *([Column("Poses that count")] if leaves_out else []),
+        "Verdict",
     )
-    rows = [_row(one, one is chosen.governing) for one in chosen.cases]
+    rows = [_row(one, one is chosen.governing, leaves_out=leaves_out) for one in chosen.cases]
     return Table.of(f"{fmt.capital(chosen.name)}, in each load case at its worst.", columns, *rows)
 
 
-def _row(found: CaseFound, governs: bool) -> Row:
+def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
     met = found.verification
     largest, allowable = fmt.newtons_alike(
         met.max_tension_N, found.loaded.cable.allowable_tension_N
@@ -151,34 +184,66 @@ def _row(found: CaseFound, governs: bool) -> Row:
             str(found.most_used() or ""),
             fmt.position(met.worst_position_m[:3]),
             found.loaded.words or "–",
+            *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
             f"{verdict}, governs" if governs else verdict,
         ),
         "good" if governs else "",
     )
 
 
+def _warmer(case: LoadCase) -> str:
+    change = case.temperature_change_K or 0.0
+    return f"{fmt.trimmed(abs(change))}\u00a0K {'warmer' if change > 0.0 else 'colder'}"
+
+
 def _lost(chosen: Candidate) -> str:
-    """Return what becomes of the platform at the worst pose of each case in which one is lost."""
+    """Return what becomes of the platform at the worst pose of each case that keeps lengths."""
     parts = []
     for found in chosen.cases:
         loss = found.loss()
         if loss is None:
             continue
         fate = Fate(int(loss.fate[0]))
+        what = [f"without cable {found.loaded.lost_cable}"] if found.loaded.lost_cable else []
+        what += [_warmer(found.case)] if found.case.temperature_change_K else []
         rest = ""
-        if fate is Fate.RESTS_ELSEWHERE:
-            at = fmt.position(loss.rest.position_m[0])
-            rest = f", {fmt.metres(float(loss.moved_m[0]))} away at {at}"
+        if fate in (Fate.HOLDS, Fate.RESTS_ELSEWHERE):
+            at, moved = fmt.position(loss.rest.position_m[0]), float(loss.moved_m[0])
+            rest = f", {fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)} away at {at}"
         parts.append(
-            f"'{found.case.name}': without cable {found.loaded.lost_cable}, at the pose above, "
-            f"{fate.words}{rest}."
+            f"'{found.case.name}': {', '.join(what)}, at the pose above, {fate.words}{rest}."
         )
     if not parts:
         return ""
     return (
-        f"{fmt.capital(' '.join(parts))} The other cables keep the lengths that they had, as on "
-        "braked winches; what the loss itself sets swinging is not in this but by a dynamic "
-        f"factor, nor is what the platform may strike. Each loss was followed from {FEW_SAMPLES} "
-        "samples and the corners of the region, that of the chosen rope from more, and searched "
-        "between them."
+        f"{fmt.capital(' '.join(parts))} There the cables keep the lengths that they had, as on "
+        "braked winches; what the loss of a cable itself sets swinging is not in this but by a "
+        f"dynamic factor, nor is what the platform may strike. Each was followed from "
+        f"{FEW_SAMPLES} samples and the corners of the region, that of the chosen rope from more, "
+        "and searched between them."
+    )
+
+
+def _warmed(study: Study, chosen: Candidate) -> str:
+    """Return what a change of temperature does to winches that regulate, and what grows by it."""
+    cases = [case for case in study.load_cases if case.temperature_change_K]
+    if not cases:
+        return "Winches hold each pose, so a change of temperature changes lengths and no tension."
+    cable, given, table = chosen.cable, cases[0].expansion_per_K, chosen.grade.thermal_expansion
+    if given is not None:
+        expansion, whose = given, "as the study gives it"
+    elif table is not None:
+        expansion, whose = cable.expansion_per_K, f"by the table of {chosen.grade.id}"
+    else:
+        expansion, whose = cable.expansion_per_K, "that of steel (EN 1993-1-1, 3.2.6)"
+        if class_of(chosen.grade) == "fibre":
+            whose += f", which a rope of {chosen.grade.material} need not have"
+    largest = max(abs(case.temperature_change_K or 0.0) for case in cases)
+    paid_m = abs(expansion) * largest * float(chosen.verification.longest_m.max())
+    return (
+        f"By a change of temperature cables grow by {fmt.power_of_ten(expansion, '1/K')}, {whose}; "
+        "exit points and platform are taken to stay as they are. With braked winches the platform "
+        f"settles. Winches that regulate the pose pay out or haul in up to "
+        f"{fmt.millimetres(paid_m)} instead, and no tension changes: then such a case asks for no "
+        "more than its other loads do."
     )

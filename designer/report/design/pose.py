@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import SupportsFloat
 
@@ -21,7 +22,6 @@ from designer.report.blocks import (
     Row,
     Section,
     Statement,
-    Subheading,
     Table,
     Tone,
 )
@@ -51,23 +51,28 @@ def section(source: Source) -> Section | None:
         Box.of("lead keep", replace(source.robot, kind="space"), _facts(pose))
         if source.robot
         else _facts(pose),
-        _methods(pose),
+        *_ways(pose, draws=source.draws),
         _cables(pose) if pose.sizing.statics.is_solved else None,
-        *(
-            (
-                Box.of(
-                    "keep",
-                    Subheading("loop", "The fixed-point iteration, turn by turn"),
-                    "Each turn solves the pose with the last diameter, takes the largest tension, "
-                    "and asks for the diameter that carries it at the allowable stress. A thicker "
-                    "cable is heavier, so the tension rises from turn to turn.",
-                    _turns(pose, draws=source.draws),
-                ),
-            )
-            if pose.loop.iterates
-            else ()
-        ),
     )
+
+
+def _ways(pose: PoseAnalysis, *, draws: bool) -> Iterator[Block | None]:
+    """Yield the diameter by each way, and the turns of the iteration, with their curves if any."""
+    methods = _methods(pose)
+    if not pose.loop.iterates:
+        yield methods
+        return
+    drawn, turns = _loop_chart(pose) if draws else None, turns_table(pose.loop)
+    how = (
+        "Each turn of the fixed-point iteration solves the pose with the last diameter, takes the "
+        "largest tension, and asks for the diameter that carries it at the allowable stress."
+    )
+    if drawn is None:
+        yield Box.of("lead keep", Box.of("", methods, how), turns)
+    else:
+        yield methods
+        yield how
+        yield Box.of("lead keep", drawn, turns)
 
 
 def _statement(pose: PoseAnalysis) -> Statement:
@@ -174,12 +179,6 @@ def _cables(pose: PoseAnalysis) -> Table:
     return Table.of(caption, columns, *rows)
 
 
-def _turns(pose: PoseAnalysis, *, draws: bool) -> Block:
-    """Return the turns, beside their curves where these are worth a figure."""
-    drawn, table = _loop_chart(pose) if draws else None, turns_table(pose.loop)
-    return table if drawn is None else Box.of("lead", drawn, table)
-
-
 def _loop_chart(pose: PoseAnalysis) -> Picture | None:
     """Return the turns as curves; None where they would be flat, as the loop ends at its start."""
     from designer.report.figures.charts_pose import loop_chart
@@ -223,4 +222,4 @@ def turns_table(loop: LoopSizing) -> Table:
     caption = "Turns of the iteration; turn 0 is the massless start."
     if loop.has_diverged:
         caption += " It diverges: each turn asks for more than the one before."
-    return Table.of(caption, columns, *rows, kind="narrow turns")
+    return Table.of(caption, columns, *rows, kind="turns")

@@ -152,8 +152,9 @@ def _tried(selection: SelectionResult) -> str:
 
 
 def _front(selection: SelectionResult, *, draws: bool) -> tuple[Block, ...]:
-    heading = Subheading("pareto", "Pareto-optimal sizes")
-    picture = _pareto_chart(selection) if draws and len(selection.front) > 1 else None
+    several = len(selection.front) > 1
+    heading = Subheading("pareto", "Pareto-optimal sizes") if several else None
+    picture = _pareto_chart(selection) if draws and several else None
     return Box.of("keep", heading, front_sentence(selection), picture), pareto_table(selection)
 
 
@@ -189,17 +190,14 @@ def _usable(source: Source, selection: SelectionResult, found: Usable) -> tuple[
     """Return where each size of one grade may go: as a curve if sizes differ, and in space."""
     if not found.sizes:
         return ()
-    heading, layers, table = (
-        Subheading("usable", "Where each size may go"),
-        None,
-        usable_table(found),
-    )
+    heading, table = Subheading("usable", "Where each size may go"), usable_table(found)
+    layers: Picture | None = None
     if found.differs:
         layers = _layers(source, found)
-    if layers is not None:
-        return (Box.of("keep", heading, Box.of("lead", layers, table)),)
-    curve = _usable_chart(selection, found) if source.draws and found.differs else None
-    return Box.of("keep", heading, curve or table), *((table,) if curve else ())
+    if layers is None and source.draws and found.differs:
+        layers = _usable_chart(selection, found)
+    shown = table if layers is None else Box.of("lead", layers, table)
+    return (Box.of("keep", heading, shown),)
 
 
 def _usable_chart(selection: SelectionResult, found: Usable) -> Picture | None:

@@ -48,10 +48,10 @@ def section(source: Source) -> Section | None:
     return Section.of(
         "workshop",
         "For the workshop",
-        _lengths(lines),
         f"To order is the longest unstrained length with {_DEAD_TURNS} dead turns on the suggested "
         "drum, where the rope's table suggests one. What lies between drum and exit point and what "
         "the end fittings take comes on top. Turns are in one layer, about the rope's centre.",
+        _lengths(lines),
         _ropes(source.analysis, lines),
     )
 

@@ -95,8 +95,9 @@ def _served(rope: Rope, analysis: Analysis) -> Statement:
         f"'{rope.load_case}' at {fmt.position(rope.place)}."
     )
     chosen = analysis.selection.chosen if analysis.selection is not None else None
-    if chosen is not None and chosen.governing.loaded.lost_cable is not None:
-        text += " That is with all cables; the loss of one asks for more, see the load cases."
+    if chosen is not None and chosen.governing.loaded.keeps_lengths:
+        text += " That is with winches that hold the pose; on kept lengths, after the loss of a "
+        text += "cable or a change of temperature, more is asked for, see the load cases."
     return Statement("Every pose is held", text, "good" if used <= 1.0 else "bad")
 
 

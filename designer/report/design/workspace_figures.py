@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -51,7 +52,10 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | B
     edge = chart(edge_caption(maps), "A curve that climbs toward the edge", edge_chart(maps))
     drawn = served_chart(maps.served)
     share = chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
-    yield share if edge is None else Box.of("pair keep", edge, share)
+    if edge is not None:
+        yield Box.of("pair keep", edge, share)
+    elif share is not None:
+        yield replace(share, kind="half")
 
 
 def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:

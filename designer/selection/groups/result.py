@@ -127,6 +127,15 @@ class GroupChoice:
     trials: int
 
     @property
+    def by_cable(self) -> tuple[Product, ...]:
+        """The chosen product of each cable, in the order of their numbers; empty without any."""
+        if self.chosen is None:
+            return ()
+        pairs = zip(self.groups, self.chosen.products, strict=True)
+        of_cable = {cable: product for group, product in pairs for cable in group.cables}
+        return tuple(of_cable[cable] for cable in sorted(of_cable))
+
+    @property
     def gap(self) -> float | None:
         """What was minimised over the bound on it, less one; None if nothing was found."""
         return None if self.chosen is None else self.chosen.total / self.bound - 1.0

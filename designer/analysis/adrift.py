@@ -1,0 +1,76 @@
+"""Load cases that carry the platform away: straight cables hold it at rest, and not in the case.
+
+A sagging rope may still hold such a pose, by hanging far below as a counterweight; its length then
+says nothing about a design.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.arrays import BoolArray, FloatArray
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase, Loaded
+from designer.model.robot import Poses, Robot
+from designer.statics.inverse import solve_massless
+from designer.study import Workspace
+
+_MOST_SAMPLES, _FEW_SAMPLES = 512, 32
+"""Poses of each direction; the few for robots with spare cables, of which each is a programme."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Adrift:
+    """A load case in which straight cables do not hold the platform everywhere.
+
+    Parameters
+    ----------
+    loaded : Loaded
+        In the direction of wind and inertia in which that is so most often.
+    share : float
+        Of the poses that straight cables hold at rest.
+    place : array (n_coordinates,)
+        One of them [m, rad].
+    push_N : float
+        Force on the platform beside its weight and what acts on it at rest [N].
+    """
+
+    loaded: Loaded
+    share: float
+    place: FloatArray
+    push_N: float
+
+
+def adrift_in(
+    robot: Robot, workspace: Workspace, cases: Sequence[LoadCase], cable: Cable
+) -> Iterator[Adrift]:
+    """Yield the load cases with wind or inertia that carry the platform away somewhere."""
+    samples = _FEW_SAMPLES if robot.is_redundant else _MOST_SAMPLES
+    for case in cases:
+        if case.wind is None and case.acceleration_m_per_s2 == 0.0:
+            continue
+        space = replace(workspace, region=case.region or workspace.region)
+        places = np.concatenate([space.space.landmarks(), space.thinned(samples)])
+        places = places[_holds(robot, places)]
+        found = [
+            _adrift(robot, one, places) for one in replace(case, cable_lost=None).on(robot, cable)
+        ]
+        most = max(found, key=lambda one: one.share)
+        if most.share > 0.0:
+            yield most
+
+
+def _holds(robot: Robot, places: FloatArray) -> BoolArray:
+    return np.isfinite(solve_massless(robot, Poses.at(places)).largest_tension_N)
+
+
+def _adrift(robot: Robot, one: Loaded, places: FloatArray) -> Adrift:
+    is_held = _holds(one.robot, places)
+    before, body = robot.platform, one.robot.platform
+    push = body.wrench_N[:3] - before.wrench_N[:3] + body.centre_force_N - before.centre_force_N
+    first = places[int(is_held.argmin())] if len(places) else np.full(3, np.nan)
+    share = float((~is_held).mean()) if len(places) else 0.0
+    return Adrift(one, share, first, float(np.linalg.norm(push)))
