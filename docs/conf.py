@@ -25,12 +25,14 @@ default_role = "code"  # numpydoc texts write `names` so
 numpydoc_show_class_members = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the parameters' docs say units and shapes, which types do not
+autodoc_preserve_defaults = True  # as they stand in the code, not what they hold
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"cdpr-designer {release}"
 html_static_path = ["_static"]
 html_css_files = ["own.css"]
 html_show_sourcelink = False
+html_sidebars = {"tutorial": []}  # the only page of its section
 html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": True,

@@ -133,7 +133,7 @@ def announce_compiling() -> None:
     from designer.kernel.compiling import tell_of_compiling
 
     tell_of_compiling(
-        lambda: _notes.print("Compiling the solver: once on this machine, up to a minute …")
+        lambda: _notes.print("Compiling what this needs of the solver: once, up to a minute …")
     )
 
 

@@ -17,6 +17,7 @@ from designer.progress import SILENT, Reporter
 from designer.selection.compare import Entry, burdens, is_undominated
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
+from designer.selection.proven import CaseProof
 from designer.selection.result import Candidate, NotTried, SelectionResult
 from designer.selection.select import at_samples, select
 from designer.selection.verify import Verification
@@ -136,6 +137,8 @@ class Ropes:
         ``candidates.csv`` as the report has it; empty unless final.
     problems : tuple of str
         What plugins and grade files gave that could not be used, one line each.
+    proof : CaseProof or None
+        What is proved of the best, as in the report; None until the full selection, or for groups.
     """
 
     rows: tuple[RopeRow, ...]
@@ -147,6 +150,7 @@ class Ropes:
     groups: Groups | None = None
     csv: str = ""
     problems: tuple[str, ...] = ()
+    proof: CaseProof | None = None
 
     def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
@@ -254,7 +258,10 @@ def _sold(grade: Grade, size: Size) -> RopeRow:
 
 
 def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes | None:
-    """Choose among all ropes, and for groups, as the report does; None without a workspace."""
+    """Choose among all ropes, and for groups, and prove the best, as the report does.
+
+    None without a workspace.
+    """
     workspace, selection = question.workspace, question.selection
     if workspace is None:
         return None
@@ -268,6 +275,7 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes | None:
         built=built,
         load_cases=question.study.load_cases,
         reporter=reporter,
+        proof_s=0.0 if selection.groups else workspace.proof_s,
     )
     groups = None
     if selection.groups:
@@ -289,6 +297,7 @@ def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes
         is_final=True,
         groups=None if groups is None else _groups(groups),
         csv=candidates_csv(found),
+        proof=found.proof,
     )
 
 

@@ -38,6 +38,9 @@ def _lines(computed: Computed) -> Iterator[str]:
         f"ours, computed as this page was written; {outside or 'none'} outside what is allowed. "
         "Differences are relative to theirs."
     )
+    yield ""
+    yield from table(("source", "figures", "largest difference", "outside"), "lrrr")
+    yield from (row(_in_short(*one)) for one in computed)
     for case, figures in computed:
         yield from ("", f"## {case.title}", "", f"{case.source}.", "", case.note, "")
         yield from table(
@@ -45,6 +48,13 @@ def _lines(computed: Computed) -> Iterator[str]:
         )
         yield from (row(cells(one)) for one in figures)
     yield from _converted()
+
+
+def _in_short(case: Case, figures: Sequence[Figure]) -> tuple[str, ...]:
+    """Cells of a case; what is only shown, since theirs is wrong, is no difference of ours."""
+    judged = [abs(one.difference) for one in figures if one.tolerance is not None]
+    outside = sum(not one.holds for one in figures)
+    return (case.title, str(len(figures)), f"{max(judged):.1e}", str(outside))
 
 
 def cells(figure: Figure) -> tuple[str, ...]:

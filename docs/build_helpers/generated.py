@@ -2,6 +2,7 @@
 
 import re
 
+from sphinx.util.logging import getLogger
 from typer.main import get_command
 
 from designer.cli.commands import app as commands
@@ -9,9 +10,11 @@ from designer.effects.effect import NEEDS
 from designer.effects.registry import SHIPPED
 from designer.io.config.json_schema import study_schema
 from designer.model.verdict import Verdict
+from designer.reference.page import compute, markdown
 from designer.resources import data_folder
 
 _MARK = re.compile(r"^<!-- generated: (\w+) -->$", re.MULTILINE)
+_LOGGER = getLogger(__name__)
 _NOWHERE = {"type": "null"}
 
 
@@ -161,7 +164,18 @@ def nomenclature():
     return f"```{{raw}} html\n{path.read_text(encoding='utf-8')}\n```"
 
 
+def verification():
+    """Return figures of others beside ours, as `designer verify` writes them; warn if one fails."""
+    computed = compute()
+    for case, figures in computed:
+        for one in figures:
+            if not one.holds:
+                _LOGGER.warning("%s, %s: %s beside %s", case.title, one.name, one.ours, one.theirs)
+    return markdown(computed)
+
+
 WRITERS = {
+    "verification": verification,
     "config": config,
     "effects": effects,
     "verdicts": verdicts,

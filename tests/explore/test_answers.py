@@ -21,6 +21,7 @@ from designer.explore.session import Session
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins
+from designer.proof.prove import WITHIN
 from designer.selection.products import is_allowed, products_of
 from designer.statics.inverse import solve_sagging
 
@@ -154,6 +155,29 @@ def test_quick_ropes_hold_no_less_than_the_full_selection(edited: Question) -> N
         assert whole is not None
         assert row.utilisation <= whole.utilisation * (1.0 + 1e-9) or not row.holds
     assert quick.best == full.best
+
+
+@pytest.mark.slow
+def test_the_best_rope_is_proved_as_in_the_report(yard: Session) -> None:
+    yard.edit("robot.platform.mass", "260 kg")
+    yard.edit("workspace.samples", "200")
+    yard.edit("workspace.proof", "60 s")
+    question = question_of(yard)
+    quick, full = quick_ropes(question), full_ropes(question)
+    analysis = analyse(question.study, question.catalogue, explains=False)
+    assert quick is not None
+    assert quick.proof is None
+    assert full is not None
+    assert full.proof is not None
+    assert analysis.selection is not None
+    assert analysis.selection.proof is not None
+    ours, theirs = full.proof.found, analysis.selection.proof.found
+    assert ours.status == theirs.status == "proved"
+    assert ours.found == theirs.found <= ours.bound <= 1.0
+    assert ours.bound == pytest.approx(theirs.bound, rel=WITHIN)  # batches depend on the machine
+    best = full.row(full.best)
+    assert best is not None
+    assert best.utilisation == ours.found
 
 
 @pytest.mark.slow

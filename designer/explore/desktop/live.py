@@ -62,6 +62,10 @@ class Live(QObject):
         before, self.question = self.question, question
         if question is None:
             return
+        if before is not None and before.text != question.text and "select" in self._pending:
+            self._worker.cancel("select")
+            self._newest["select"] = self._pending.pop("select")
+            self.failed.emit("select", "given up, since the study has changed")
         self._ask("here", question)
         if before is None or _differ(before, question):
             if moving:

@@ -21,6 +21,7 @@ from designer.explore.desktop.choice import Choice
 from designer.explore.desktop.tables import SORT, Column, Index, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
 from designer.report import format as fmt
+from designer.report.design.proof import proof_statement
 
 if TYPE_CHECKING:
     from designer.explore.question import Assignment, Rope
@@ -140,6 +141,7 @@ class PanelRopes(QWidget):
         self.answer = QLabel()
         self.answer.setObjectName("best rope")
         self.answer.setTextFormat(Qt.TextFormat.PlainText)
+        self.answer.setWordWrap(True)
         self.answer.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         family = QPushButton("No rope: the family")
         family.setObjectName("no rope")
@@ -151,7 +153,8 @@ class PanelRopes(QWidget):
         self.select.setObjectName("full selection")
         self.select.setToolTip(
             "<p>Chooses as the report does, between the samples as well, and for groups of cables "
-            "where the study has some. Until then the table holds at the samples.</p>"
+            "where the study has some; then proves that the best holds in all poses, as far as "
+            "the study gives it time. Until then the table holds at the samples.</p>"
         )
         self.select.clicked.connect(self.asks_for_selection)
         above = QHBoxLayout()
@@ -261,8 +264,12 @@ def _answer(ropes: Ropes) -> str:
     """The best rope, and how far to trust it."""
     if ropes.best is None:
         return fmt.capital(ropes.reason)
-    sure = "between the samples as well" if ropes.is_final else "at the samples"
-    return f"Best: {ropes.best.label} ({sure})"
+    sure = "between the samples as well" if ropes.is_final else "at the samples, not proved"
+    text = f"Best: {ropes.best.label} ({sure})"
+    if ropes.proof is None:
+        return text
+    proof = proof_statement(ropes.proof)
+    return f"{text}\n{proof.title}. {proof.text}"
 
 
 def _groups_text(groups: Groups) -> str:

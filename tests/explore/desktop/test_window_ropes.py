@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QComboBox, QTableView
 from window_driver import Driver
 
 from designer.explore.question import Rope
+from designer.report.design.proof import proof_statement
 
 
 def shown(driver: Driver, column: int = 0) -> list[str]:
@@ -77,10 +78,15 @@ def test_the_best_follows_the_study_and_the_choice_stays(yard: Driver) -> None:
 def test_the_whole_selection_is_made_with_progress(yard: Driver) -> None:
     told: list[str] = []
     yard.window.live.progressed.connect(lambda kind, *_: told.append(kind))
+    answer = yard.window.ropes.answer
+    assert answer.text().endswith("(at the samples, not proved)")
     yard.press("full selection")
     assert yard.window.long.isVisible()
     yard.rest()
     assert not yard.window.long.isVisible()
+    proof = proof_statement(yard.window.answers["ropes"].proof)
+    assert proof.title.startswith("Proved for all poses: at most")
+    assert answer.text().endswith(f"as well)\n{proof.title}. {proof.text}")
     assert "select" in told
     assert yard.window.answers["ropes"].is_final
     assert isinstance(yard.window.answers["ropes"].best, Rope)
@@ -95,3 +101,15 @@ def test_the_whole_selection_can_be_cancelled(yard: Driver) -> None:
     assert not yard.window.answers["ropes"].is_final
     yard.keys("Ctrl+Z")
     yard.rest()
+
+
+def test_the_whole_selection_is_given_up_when_the_study_changes(yard: Driver) -> None:
+    yard.type_into("entry workspace.samples", "2000000")
+    yard.press("full selection")
+    yard.type_into("entry workspace.samples", "100")
+    assert "select" not in yard.window.live.busy
+    assert not yard.window.long.isVisible()
+    assert "given up, since the study has changed" in yard.window.messages.toPlainText()
+    yard.rest()
+    assert not yard.window.answers["ropes"].is_final
+    assert "not proved" in yard.window.ropes.answer.text()
