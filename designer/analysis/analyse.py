@@ -16,6 +16,7 @@ import numpy as np
 
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
+from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
@@ -159,6 +160,8 @@ class Analysis:
         What carries the choice of a rope for all cables.
     servable : Servable or None
         Which part of the region no rope can serve; None where nothing speaks for such a part.
+    uncertainty : UncertaintyAnalysis or None
+        How likely the chosen rope is enough where inputs are not certain.
     scratch : Scratch or None
         Folder that goes with this value, where no other was given for the samples.
     """
@@ -175,6 +178,7 @@ class Analysis:
     verification: tuple[SecondAnswer, ...] = ()
     carries: Carries | None = None
     servable: Servable | None = None
+    uncertainty: UncertaintyAnalysis | None = None
     scratch: Scratch | None = field(default=None, repr=False)
 
     @property
@@ -291,7 +295,7 @@ def analyse(
         Shows progress.
     explains : bool
         False leaves out what changes no answer and takes its time: second answers, what carries
-        the result, which part of the region no rope can serve.
+        the result, which part of the region no rope can serve, how likely the rope is enough.
 
     Raises
     ------
@@ -354,6 +358,7 @@ def analyse(
         second_answers(study, built, pose, workspace, chosen) if explains else (),
         carries_of(study, chosen) if explains and groups is None else None,
         _servable(study, built, workspace, reporter) if explains else None,
+        uncertainty_of(study, chosen, built, reporter) if explains else None,
         scratch,
     )
 
