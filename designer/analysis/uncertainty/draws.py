@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from designer.analysis.sensitivities import with_payload
+from designer.analysis.sensitivities import payload_case
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Robot
@@ -55,7 +55,7 @@ class Draws:
             allowable_tension_N=self.breaking_load[k] * rope.allowable_tension_N,
         )
         moved = replace(robot, exit_points_m=robot.exit_points_m + self.exit_points_m[k])
-        return with_payload(one, float(self.payload[k])).on(moved, drawn)
+        return replace(one, case=payload_case(one, float(self.payload[k]))).on(moved, drawn)
 
 
 def columns_of(spreads: Mapping[Input, Spread], robot: Robot) -> dict[Input, slice]:

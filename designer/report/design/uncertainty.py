@@ -66,16 +66,22 @@ def statement(found: UncertaintyAnalysis) -> Statement:
     """Return the probability and what carries most of the spread, for the first page."""
     low = found.chosen.probability_95[0]
     tone: Tone = "good" if low >= _LIKELY else "doubt" if low >= _UNLIKELY else "bad"
-    text = f"{fmt.capital(_odds_words(found.chosen))}"
+    text = fmt.capital(in_a_sentence(found))
+    return Statement("With the uncertainty stated", f"{text}.", tone)
+
+
+def in_a_sentence(found: UncertaintyAnalysis) -> str:
+    """Return the same without title and full stop."""
+    text = _odds_words(found.chosen)
     if len(found.shares) > 1:
         most = found.shares[0]
-        text += f", {_NAMES[most.input].lower()} carries {_percent(most.first_order)} of the spread"
+        text += (
+            f", {_NAMES[most.input].lower()} carries {_percent(most.first_order)} of the spread"
+        )
     if found.chosen.not_held:
         missing = fmt.share(found.chosen.not_held, found.samples)
-        text += (
-            f"; in {missing} of the draws a pose was not held at all, which counts as not enough"
-        )
-    return Statement("With the uncertainty stated", f"{text}.", tone)
+        text += f"; in {missing} of the draws a pose is not held at all, which is not enough"
+    return text
 
 
 def _odds_words(one: SizeOdds) -> str:
