@@ -23,9 +23,9 @@ from designer.model.measurements import Measurements
 from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
+from designer.model.uncertainty import Uncertainty
 
-_LIKELY_DIAMETER_M = 0.01
-"""Of the cable that stands in where none is given yet."""
+_LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
 HangsBelow = Literal["include", "exclude"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
@@ -113,8 +113,7 @@ class Workspace:
     @property
     def sample_count(self) -> int:
         """How many positions there are to try, for a progress bar (an estimate)."""
-        is_list = self.region.is_discrete
-        return sum(map(len, self.positions_m())) if is_list else self.samples
+        return sum(map(len, self.positions_m())) if self.region.is_discrete else self.samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,6 +286,7 @@ class Study:
     family: GradeFamily | None = None
     document: DocumentControl = DocumentControl()
     load_cases: tuple[LoadCase, ...] = ()
+    uncertainty: Uncertainty | None = None
 
     def __post_init__(self) -> None:
         self._check_load_cases()
@@ -307,8 +307,8 @@ class Study:
         names = [case.name for case in self.load_cases]
         if len({*names}) < len(names):
             raise ValueError(f"two load cases have one name: {names}")
-        if names and (self.selection is None or self.selection.groups):
-            raise ValueError("load cases need a selection, without groups")
+        if (names or self.uncertainty) and (self.selection is None or self.selection.groups):
+            raise ValueError("load cases and uncertainty need a selection, without groups")
         for case in self.load_cases:
             if case.wind is not None and self.robot.platform.drag_area_m2 is None:
                 raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")

@@ -35,11 +35,15 @@ _COMMON_UNITS = (
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A kind of quantity: such as ``a length``, its SI unit (empty for a number), an example."""
+    """A kind of quantity: such as ``a length``, its SI unit (empty for a number), an example.
+
+    Of numbers, those that may be given in percent say so.
+    """
 
     noun: str
     unit: str
     example: str
+    takes_percent: bool = False
 
     @property
     def expected(self) -> str:
@@ -49,6 +53,7 @@ class Dimension:
 
 NUMBER = Dimension("a plain number", "", "5")
 FRACTION = Dimension("a fraction", "", "0.9")
+RELATIVE = Dimension("a share", "", "2 %", takes_percent=True)
 LENGTH = Dimension("a length", "m", "2 mm")
 AREA = Dimension("an area", "m^2", "20 mm^2")
 ANGLE = Dimension("an angle", "rad", "10 deg")
@@ -183,6 +188,8 @@ def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
 
     with suppress(PintError, ArithmeticError):  # such as a logarithmic unit in a product
         wanted = _unit(dimension.unit)
+        if dimension.takes_percent and unit == _unit("%"):
+            return value / 100.0
         if dimension.unit and _root(unit) == _root(wanted):
             if dimension is TEMPERATURE_CHANGE and _registry().Quantity(0.0, unit).to(wanted):
                 raise _MisreadError(f"has the unit {unit:P}, of which 0 is no change of 0 K")

@@ -17,6 +17,7 @@ import numpy as np
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
+from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
 from designer.grades.registry import Catalogue, load_catalogue
@@ -162,6 +163,8 @@ class Analysis:
         What the utilisation of each group of cables answers to.
     servable : Servable or None
         Which part of the region no rope can serve; None where nothing speaks for such a part.
+    uncertainty : UncertaintyAnalysis or None
+        How likely the chosen rope is enough where inputs are not certain.
     scratch : Scratch or None
         Folder that goes with this value, where no other was given for the samples.
     """
@@ -179,6 +182,7 @@ class Analysis:
     carries: Carries | None = None
     group_slopes: tuple[GroupSlopes, ...] = ()
     servable: Servable | None = None
+    uncertainty: UncertaintyAnalysis | None = None
     scratch: Scratch | None = field(default=None, repr=False)
 
     @property
@@ -295,7 +299,7 @@ def analyse(
         Shows progress.
     explains : bool
         False leaves out what changes no answer and takes its time: second answers, what carries
-        the result, which part of the region no rope can serve.
+        the result, which part of the region no rope can serve, how likely the rope is enough.
 
     Raises
     ------
@@ -359,6 +363,7 @@ def analyse(
         carries_of(study, chosen) if explains and groups is None else None,
         group_slopes(built.robot, study.workspace, groups) if explains and groups else (),
         _servable(study, built, workspace, reporter) if explains else None,
+        uncertainty_of(study, chosen, built, reporter) if explains else None,
         scratch,
     )
 

@@ -13,6 +13,7 @@ from designer.analysis.analyse import Analysis, PoseAnalysis
 from designer.analysis.carries_json import carries_dict
 from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.selection_json import groups_dict, selection_dict
+from designer.analysis.uncertainty_json import uncertainty_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
 from designer.model.space import turn_of
@@ -55,6 +56,7 @@ def result_dict(analysis: Analysis) -> Json:
         "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
         **carries_dict(analysis.carries, analysis.group_slopes),
+        "uncertainty": uncertainty_dict(analysis.uncertainty),
         "proof": _proof(analysis),
         "verification": [
             {

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.load_case import Loaded
+from designer.model.load_case import LoadCase, Loaded
 from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.statics.geometry import load_wrench_N
@@ -186,11 +186,15 @@ def with_payload(one: Loaded, factor: float) -> Loaded:
 
     Wind on the platform stays.
     """
-    (robot, cable), case = one.bare, one.case
-    mass = robot.platform.mass_kg if case.mass_kg is None else case.mass_kg
-    wrench = robot.platform.wrench_N if case.wrench_N is None else case.wrench_N
-    case = replace(case, mass_kg=factor * mass or None, wrench_N=factor * wrench)
-    return replace(one, case=case).on(robot, cable)
+    return replace(one, case=payload_case(one, factor)).on(*one.bare)
+
+
+def payload_case(one: Loaded, factor: float) -> LoadCase:
+    """Return its load case with that."""
+    body, case = one.bare[0].platform, one.case
+    mass = body.mass_kg if case.mass_kg is None else case.mass_kg
+    wrench = body.wrench_N if case.wrench_N is None else case.wrench_N
+    return replace(case, mass_kg=factor * mass or None, wrench_N=factor * wrench)
 
 
 def with_density(one: Loaded, factor: float) -> Loaded:

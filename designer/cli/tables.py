@@ -67,6 +67,10 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
     if analysis.selection is not None:
         label = "cable" if analysis.groups is None else "one for all"
         yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
+    if analysis.uncertainty is not None and analysis.uncertainty.is_asked:
+        from designer.report.design.uncertainty import in_a_sentence
+
+        yield "  probability", in_a_sentence(analysis.uncertainty).replace("\u00a0", " ")
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is not None:
         yield "clearance", _clearance(interference)

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from designer.model.uncertainty import LEAST_DEVIATION, MOST_DEVIATION
 from designer.units import (
     ACCELERATION,
     ANGLE,
@@ -24,6 +25,7 @@ from designer.units import (
     MOMENT,
     NUMBER,
     PER_TEMPERATURE,
+    RELATIVE,
     SPEED,
     STIFFNESS,
     STRESS,
@@ -91,6 +93,15 @@ BOUNDS: Mapping[str, Bound] = {
     "load fraction": Bound(NUMBER, 1e-6, 1.0, "a rope breaks at 1"),
     "stiffness over breaking load": Bound(NUMBER, 0.1, 1e4, "ropes break between"),
     "uncertainty": Bound(NUMBER, 0.0, 1.0, "it is a fraction"),
+    "relative scatter": Bound(
+        RELATIVE, 0.0, MOST_DEVIATION, "from certain to where a normal quantity may come near zero"
+    ),
+    "half width": Bound(RELATIVE, 0.0, -LEAST_DEVIATION, "a tenth of a quantity is left at least"),
+    "deviation": Bound(
+        RELATIVE, LEAST_DEVIATION, 10.0, "from a tenth of a quantity to ten times it"
+    ),
+    "scatter of points": Bound(LENGTH, 0.0, 10.0, "from certain to where nothing is surveyed"),
+    "shift": Bound(LENGTH, -10.0, 10.0, "beyond, nothing is surveyed"),
     "area factor": Bound(NUMBER, 1e-3, 1.0, "at most pi/4 of d² is metal"),
     "sheave ratio": Bound(NUMBER, 1.0, 1e3, "a rope is not bent over less than itself"),
     "expansion": Bound(PER_TEMPERATURE, -1e-2, 1e-2, "the softest plastics have 2e-4 /K"),

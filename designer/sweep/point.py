@@ -25,7 +25,7 @@ Change = tuple[tuple[Key, ...], Node]
 
 _EXPLAINING = (
     "verification", "sensitivities", "reserve", "sizes_beside", "first_failures",
-    "workspace.servable",
+    "workspace.servable", "uncertainty",
 )  # fmt: skip
 """What changes no answer, and is computed only where it is kept."""
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")

@@ -15,6 +15,7 @@ from designer.errors import InputError
 from designer.io.config import columns, read_study, schema
 from designer.model.measurements import LogColumn
 from designer.model.region import PointList, Prism
+from designer.model.uncertainty import Uniform
 from designer.resources import data_folder, example_file
 from designer.study import Entry, Study
 
@@ -193,6 +194,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
             Entry(f"document.{name}", "default", "none")
             for name in ("number", "revision", "author", "checker", "approver", "logo")
         ),
+        Entry("uncertainty", "default", "none"),
         Entry("format", "default", "1"),
     )
 
@@ -255,6 +257,9 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     choices = re.compile(r"(?m)^ *(planar|orientation|orientations|orientation_range):.*\n")
     assert len(choices.findall(text)) == 4
     text = choices.sub("", text)
+    with pytest.raises(InputError, match="uncertainty or groups, not both"):
+        study_of(text)
+    text = re.sub(r"(?m)^ *(groups|max_distinct_products):.*\n", "", text)
     spare = re.compile(r"(?m)^ *tension_min: 500 N.*\n")
     with pytest.raises(InputError, match="leave no tension to choose"):
         study_of(re.sub(r"(?m)^ *(attachments|centre_of_mass|hull|wrench):.*\n", "", text))
@@ -268,6 +273,8 @@ def test_the_options_in_the_starter_config_are_true(study_of: StudyOf) -> None:
     assert study.workspace.clearance_m == pytest.approx(0.1)
     assert study.workspace.floor_m == -250.0
     assert study.workspace.proof_s == 20.0
+    assert study.uncertainty is not None
+    assert study.uncertainty.breaking_load == Uniform(0.0, 0.06)
     assert study.robot.is_upright
     assert study.measurements is not None
     assert study.measurements.axial_stiffness_N == pytest.approx(96.2e6)

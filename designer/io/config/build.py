@@ -26,6 +26,7 @@ from designer.io.config.schema import (
     StudySection,
     WorkspaceSection,
 )
+from designer.io.config.uncertainty import uncertainty
 from designer.model.cable import Material
 from designer.model.limits import Limits
 from designer.model.machine import Surroundings
@@ -76,6 +77,7 @@ def build_study(
         ),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
+        uncertainty=uncertainty(section.uncertainty),
         effects=tuple(one for _, one in declared.effects),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),

@@ -28,6 +28,7 @@ from designer.units import describe
 _REGION = "workspace.region"
 _GROUPS = "selection.groups"
 _COLUMNS = "measurements.columns"
+_UNCERTAINTY = "uncertainty"
 _LOGO = "document.logo"
 LARGEST_LOGO_BYTES = 1_000_000
 _UNKNOWN = "measurements.unknown"
@@ -47,6 +48,7 @@ def all_faults(document: Document, effects: Mapping[str, Effect]) -> list[Fault]
         selection_has_workspace,
         limit_has_groups,
         load_cases_fit,
+        uncertainty_fits,
         effects_are_known,
         columns_fit_the_robot,
         unknowns_are_known,
@@ -169,6 +171,18 @@ def selection_has_workspace(parts: Parts) -> Iterator[Fault]:
     if parts.raw("selection") is not None and parts.raw("workspace") is None:
         expected = "a workspace that the rope is to serve, or no selection"
         yield parts.fault("selection", "has no meaning without a workspace", expected)
+
+
+def uncertainty_fits(parts: Parts) -> Iterator[Fault]:
+    """Uncertainty has a selection that it is for, of one rope for all cables."""
+    if parts.raw(_UNCERTAINTY) is None:
+        return
+    if parts.raw("selection") is None:
+        expected = "a selection: it is the chosen rope that may not be enough"
+        yield parts.fault(_UNCERTAINTY, "there is no selection", expected)
+    if parts.raw("selection.groups") is not None:
+        problem = "uncertainty is computed for one rope on all cables"
+        yield parts.fault("selection.groups", problem, "uncertainty or groups, not both")
 
 
 def limit_has_groups(parts: Parts) -> Iterator[Fault]:

@@ -14,6 +14,7 @@ GROUPS: Mapping[str, str] = {
     "measurements": "Measured data",
     "effects": "Effects",
     "surroundings": "Surroundings",
+    "uncertainty": "Uncertainty",
 }
 """Titles of the sections of the file."""
 
@@ -193,6 +194,49 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "so that the platform comes to rest elsewhere.",
     ),
     "load_cases.cable_lost": ("Cable lost in load case", "Number of the cable that breaks."),
+    "uncertainty.payload.standard_deviation": (
+        "Scatter of the payload",
+        "Standard deviation of weight, inertia and constant loads of the platform, of a normal "
+        "distribution, relative.",
+    ),
+    "uncertainty.payload.uniform": (
+        "Range of the payload",
+        "Half width of a uniform distribution of the same, relative, or its two ends.",
+    ),
+    "uncertainty.modulus.standard_deviation": (
+        "Scatter of the modulus",
+        "Standard deviation of the rope's modulus, of a normal distribution, relative.",
+    ),
+    "uncertainty.modulus.uniform": (
+        "Range of the modulus",
+        "Half width of a uniform distribution of the same, relative, or its two ends.",
+    ),
+    "uncertainty.linear_mass.standard_deviation": (
+        "Scatter of the rope's mass",
+        "Standard deviation of the rope's mass per length, of a normal distribution, relative.",
+    ),
+    "uncertainty.linear_mass.uniform": (
+        "Range of the rope's mass",
+        "Half width of a uniform distribution of the same, relative, or its two ends.",
+    ),
+    "uncertainty.breaking_load.standard_deviation": (
+        "Scatter of the breaking load",
+        "Standard deviation of the rope's breaking load, of a normal distribution, relative.",
+    ),
+    "uncertainty.breaking_load.uniform": (
+        "Range of the breaking load",
+        "Half width of a uniform distribution of the same, relative, or its two ends.",
+    ),
+    "uncertainty.exit_points.standard_deviation": (
+        "Scatter of the exit points",
+        "Standard deviation of each coordinate of each exit point, of a normal distribution.",
+    ),
+    "uncertainty.exit_points.uniform": (
+        "Range of the exit points",
+        "Half width of a uniform distribution of the same, or its two ends.",
+    ),
+    "uncertainty.samples": ("Draws", "How often the inputs are drawn."),
+    "uncertainty.seed": ("Seed of the draws", "Of the random numbers; other seeds, other draws."),
     "measurements.settled": (
         "Settled",
         "Whether each row of the data is a pose at rest; else a sample of a slow motion.",
@@ -289,6 +333,13 @@ WORDS: Mapping[str, str] = {
     "effects": "What the machine is known to do beside the rest, by the ids of effects; "
     "`designer diagnose` writes here what it finds.",
     "surroundings": "What the laws of effects are given in a design.",
+    "uncertainty": "How surely inputs are known: how likely the chosen rope is enough. What is "
+    "left out is certain.",
+    "uncertainty.payload": "Of weight, inertia and constant loads of the platform.",
+    "uncertainty.modulus": "Of the rope's modulus; left out, what its grade states.",
+    "uncertainty.linear_mass": "Of the rope's mass per length, on all cables alike.",
+    "uncertainty.breaking_load": "Of the rope's breaking load, on all cables alike.",
+    "uncertainty.exit_points": "Of each coordinate of each exit point, for itself.",
     "document": "What a drawing office writes at the head of the report.",
     "document.number": "Number of the document.",
     "document.revision": "Its revision.",

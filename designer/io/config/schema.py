@@ -36,6 +36,7 @@ from designer.documents.fields import (
 from designer.documents.formats import CONFIG_FORMAT
 from designer.documents.section import Section
 from designer.io.config.columns import Columns
+from designer.io.config.document_head import DocumentSection
 from designer.io.config.loads import (
     MOST_CABLES,
     DragSection,
@@ -51,6 +52,7 @@ from designer.io.config.orientation import (
     Quaternion,
     only_one_of,
 )
+from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import Reading
 from designer.model.region import Sampling
 from designer.study import HangsBelow, Objective
@@ -365,17 +367,6 @@ class SurroundingsSection(Section):
     temperature: fields.Temperature = 20.0
 
 
-class DocumentSection(Section):
-    """What a drawing office writes on the report."""
-
-    number: Text | None = None
-    revision: Text | None = None
-    author: Text | None = None
-    checker: Text | None = None
-    approver: Text | None = None
-    logo: Text | None = None
-
-
 LoadCases = Annotated[
     tuple[LoadCaseSection, ...],
     list_of(0, 50, "a list of at most 50 load cases such as [{name: hoisting, …}]"),
@@ -400,4 +391,5 @@ class StudySection(Section):
     effects: fields.FreeMapping = Field(default_factory=dict)
     surroundings: SurroundingsSection = SurroundingsSection()
     document: DocumentSection = DocumentSection()
+    uncertainty: UncertaintySection | None = None
     format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1

@@ -17,6 +17,7 @@ from designer.report.design.scope import (
     pose_statement,
     strength_statement,
 )
+from designer.report.design.uncertainty import statement
 from designer.report.design.verification import verification_statement
 from designer.report.material_class import class_of
 from designer.selection.result import Candidate
@@ -42,6 +43,8 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
         yield verification_statement(analysis.verification)
+    if analysis.uncertainty is not None and analysis.uncertainty.is_asked:
+        yield statement(analysis.uncertainty)
     yield from _margin(analysis, findings)
     yield from _sampling(analysis)
     yield from proofs(analysis)

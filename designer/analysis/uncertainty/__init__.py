@@ -1,0 +1,1 @@
+"""How likely a size is enough where inputs are not certain, and which of them it hangs on."""

@@ -1,0 +1,220 @@
+"""The poses that govern while the inputs vary, and what a rope meets there in each draw.
+
+The worst pose may move from draw to draw. So all that are among the worst at the ends of the inputs
+are kept, of every load case and direction; the region is then searched again for some of the draws,
+and what is worse joins them.
+
+A platform so many times as heavy on a rope is the same platform on a rope so many times as light,
+as soft and as weak: a draw without moved exit points is another rope on the same robot, and all of
+them are solved in one compiled pass.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from designer.analysis.uncertainty.draws import Draws
+from designer.arrays import FloatArray
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase, Loaded
+from designer.model.robot import Poses
+from designer.progress import Advance
+from designer.selection.cases import CaseFound
+from designer.statics.inverse import solve_sagging
+from designer.statics.sizes import add_slowly, is_quick, meet
+from designer.study import Workspace
+from designer.workspace.demand import demand_of, loss_demand
+from designer.workspace.refine import LIGHT, Effort, refine
+
+_CHUNK = 256
+_NEAR = 0.99
+"""Of the largest utilisation of a draw: from where on a pose may govern it."""
+_STARTS, _STARTS_AFTER_LOSS = 24, 2
+_MOST_ROUNDS = 3
+_WORSE = 1e-6
+"""Relative: below what a search tells apart."""
+_CHECKED, _CHECKED_SLOWLY = 6, 2
+_GLANCE = Effort(
+    per_edge=8, per_face=16, inside=64, starts=2, finalists=1, trials=6, from_landmarks=False,
+    tolerance=1e-3,
+)  # fmt: skip
+"""How hard a robot is searched that is slow to solve."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Asked:
+    """A load case in one direction, and poses (n_places, n_coordinates) in which it may govern."""
+
+    loaded: Loaded
+    workspace: Workspace
+    places: FloatArray
+
+    @property
+    def is_one_pass(self) -> bool:
+        """Whether all draws without moved exit points are solved in one compiled pass.
+
+        Wind does not grow with the payload, nor does a force that an effect has put on the robot.
+        """
+        one = self.loaded
+        still = one.wind is None and not one.bare[0].platform.centre_force_N.any()
+        return still and one.lost_cable is None and is_quick(one.robot)
+
+    def utilisation(self, draws: Draws) -> FloatArray:
+        """Return largest over allowable tension (n_draws, n_places).
+
+        Infinite where a pose is not held, -inf where the study leaves it out.
+        """
+        if self.is_one_pass and not draws.moves:
+            return self._as_ropes(draws)
+        return np.stack([self._solved(draws.on(self.loaded, k)) for k in range(len(draws))])
+
+    def _solved(self, one: Loaded) -> FloatArray:
+        if one.lost_cable is not None:
+            tension = loss_demand(one.robot, one.cable, one.lost_cable)(self.places)
+        else:
+            statics = solve_sagging(one.robot, Poses.at(self.places), one.cable)
+            tension = demand_of(statics.largest_tension_N, statics, self.workspace.hangs_below)
+        return np.asarray(tension / one.cable.allowable_tension_N)
+
+    def _as_ropes(self, draws: Draws) -> FloatArray:
+        one, bare = self.loaded, self.loaded.bare[1]
+        added = (draws.linear_mass - 1.0) * bare.linear_density_kg_per_m  # ice stays
+        figures = [
+            one.cable.linear_density_kg_per_m + added,
+            draws.modulus * bare.axial_stiffness_N,
+            draws.breaking_load * bare.allowable_tension_N,
+        ]
+        each = np.column_stack(figures) / draws.payload[:, None]
+        order = np.argsort(each[:, 0], kind="stable")
+        ropes = [Cable(math.nan, *row) for row in each[order].tolist()]
+        poses, cells = Poses.at(self.places), np.arange(len(self.places))
+        exclude = self.workspace.hangs_below == "exclude"
+        found = meet(one.robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
+        for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
+            hard = np.flatnonzero(found.failed[row])
+            add_slowly(found, row, one.robot, poses, ropes[row], cells, exclude, hard)
+        used = np.empty_like(found.utilisation)
+        used[order] = np.where(found.failed, np.inf, found.utilisation)
+        return used
+
+
+def largest(asked: Sequence[Asked], draws: Draws, progress: Advance = lambda _: None) -> FloatArray:
+    """Return the largest utilisation of each draw (n,); infinite where a pose is not held.
+
+    Also where all poses are left out: then nothing is served. ``progress`` is called with the
+    number of draws done.
+    """
+    most = np.empty(len(draws))
+    for start in range(0, len(draws), _CHUNK):
+        some = slice(start, start + _CHUNK)
+        part = draws.part(some)
+        most[some] = np.maximum.reduce([one.utilisation(part).max(axis=1) for one in asked])
+        progress(len(part))
+    return np.where(np.isneginf(most), np.inf, most)
+
+
+def may_govern(
+    cases: Sequence[CaseFound], rope_in: Callable[[LoadCase], Cable], probes: Draws
+) -> list[Asked]:
+    """Return the poses, of each load case and direction, that are among the worst in a probe.
+
+    ``cases`` are what was found with the chosen rope, ``rope_in`` gives the rope to ask about.
+    """
+    every = [one for found in cases for one in _all_of(found, rope_in(found.case))]
+    used = [one.utilisation(probes) for one in every]
+    most = np.maximum.reduce([each.max(axis=1) for each in used])[:, None]
+    near = [(each >= _NEAR * most).any(axis=0) for each in used]
+    return [
+        replace(one, places=one.places[kept])
+        for one, kept in zip(every, near, strict=True)
+        if kept.any()
+    ]
+
+
+def _all_of(found: CaseFound, rope: Cable) -> Iterator[Asked]:
+    """Yield a case in the direction that asked for most, at many poses; in the others at one."""
+    robot, space = found.loaded.bare[0], found.workspace.space
+    worst = found.verification.worst_position_m[None]
+    is_loss = found.loaded.lost_cable is not None
+    most = _STARTS_AFTER_LOSS if is_loss else _STARTS
+    rest = [] if is_loss else [space.landmarks()]
+    places = np.unique(np.concatenate([worst, found.sampled.worst_m[:most], *rest]), axis=0)
+    yield Asked(found.loaded.on(robot, rope), found.workspace, places)
+    for other in found.case.on(robot, rope):
+        if other.words != found.loaded.words:
+            yield Asked(other, found.workspace, worst)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What a search over the region found beyond the poses that are kept.
+
+    Parameters
+    ----------
+    draws : int
+        How many were searched, in each round; 0 where none was.
+    rounds : int
+        How often; the poses found join the others after each.
+    missed : float
+        By how much the last round found more than the others, as utilisation.
+    """
+
+    draws: int = 0
+    rounds: int = 0
+    missed: float = 0.0
+
+
+def searched(
+    asked: list[Asked], draws: Draws, used: FloatArray
+) -> tuple[list[Asked], FloatArray, Checked]:
+    """Search the region in some draws: the least, the largest, the nearest to 100 %, some others.
+
+    What is worse than the known poses joins them, for all draws. Load cases in which a cable is
+    lost, which take long to follow, are left out of the search.
+    """
+    found = Checked()
+    for turn in range(1, _MOST_ROUNDS + 1):
+        is_slow = not all(is_quick(one.loaded.robot) for one in asked)
+        rows = _telling(used, _CHECKED_SLOWLY if is_slow else _CHECKED)
+        new = [_worse(asked, draws.part([row]), float(used[row]), is_slow) for row in rows]
+        worse = [(one, more) for one, more in filter(None, new)]
+        missed = max((more for _, more in worse), default=0.0)
+        found = Checked(len(rows), turn, missed)
+        if not worse:
+            break
+        asked = [*asked, *(one for one, _ in worse)]
+        used = np.maximum(used, largest([one for one, _ in worse], draws))
+    return asked, used, found
+
+
+def _telling(used: FloatArray, most: int) -> list[int]:
+    """Return the draws that a search shall look at, the most telling first."""
+    finite = np.flatnonzero(np.isfinite(used))
+    if not len(finite):
+        return []
+    order = finite[np.argsort(used[finite], kind="stable")]
+    nearest = finite[np.abs(used[finite] - 1.0).argmin()]
+    rows = [nearest, order[-1], order[0], *order[[len(order) // 4, len(order) // 2]], finite[0]]
+    return [int(row) for row in dict.fromkeys(rows)][:most]
+
+
+def _worse(
+    asked: Sequence[Asked], draw: Draws, used: float, is_slow: bool
+) -> tuple[Asked, float] | None:
+    """Return a pose that a draw uses more than the known ones, and by how much."""
+    most = max(asked, key=lambda one: float(one.utilisation(draw).max()))
+    if most.loaded.lost_cable is not None:
+        return None
+
+    def demand(places: FloatArray) -> FloatArray:
+        return np.asarray(replace(most, places=places).utilisation(draw)[0])
+
+    effort = _GLANCE if is_slow else LIGHT
+    (worst,) = refine(most.workspace.space, demand, most.places, effort)
+    if not worst.demand > used * (1.0 + _WORSE):
+        return None
+    return replace(most, places=worst.place[None]), worst.demand - used

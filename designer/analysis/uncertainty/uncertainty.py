@@ -1,0 +1,280 @@
+"""The probability that a size is enough, with its confidence, and the share of each input.
+
+Two samples are drawn. One is of plain random numbers: its draws are independent, so that the number
+of those that are enough is binomial and its interval exact, which holds as well where all are. The
+other is quasi-random, by which the shares come out more precise from as many draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.analysis.uncertainty.draws import Draws, columns_of, draws_at
+from designer.analysis.uncertainty.poses import Asked, Checked, largest, may_govern, searched
+from designer.analysis.uncertainty.shares import SCRAMBLES, Share, shares_of
+from designer.arrays import FloatArray
+from designer.effects.design import AsBuilt
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase
+from designer.model.robot import Robot
+from designer.model.uncertainty import Input, Spread, Uncertainty, Uniform
+from designer.progress import Advance, Reporter
+from designer.selection.efficiency import Allowance
+from designer.selection.result import Candidate, SelectionResult
+from designer.study import Selection, Study
+
+CONFIDENCE = 0.95
+_ALONE, _ALONE_SLOWLY = 1024, 256
+"""Draws where the modulus of the rope is all that is not certain, and nobody asked."""
+_PROBES = 32
+_END = 1e-3
+"""Share of a distribution beyond which its ends are not probed."""
+_LEAST_POINTS = 16
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SizeOdds:
+    """How one size fares in all draws.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The size.
+    utilisation : array (n_draws,)
+        Largest over allowable tension in each draw; infinite where a pose is not held.
+    """
+
+    candidate: Candidate
+    utilisation: FloatArray
+
+    @property
+    def enough(self) -> int:
+        """Draws in which it holds everywhere."""
+        return int((self.utilisation <= 1.0).sum())
+
+    @property
+    def not_held(self) -> int:
+        """Draws in which a pose is not held at all; they count as not enough."""
+        return int((~np.isfinite(self.utilisation)).sum())
+
+    @property
+    def probability(self) -> float:
+        """Share of the draws in which it is enough."""
+        return self.enough / len(self.utilisation)
+
+    @property
+    def probability_95(self) -> tuple[float, float]:
+        """Between which the probability lies with 95 % confidence."""
+        return exact_interval(self.enough, len(self.utilisation))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UncertaintyAnalysis:
+    """What becomes of the chosen rope where inputs are not certain.
+
+    Parameters
+    ----------
+    spreads : mapping
+        The distribution of each input that is not certain.
+    is_asked : bool
+        Whether the study asks for this; else it is for the borrowed modulus alone.
+    is_modulus_of_grade : bool
+        Whether the distribution of the modulus is what the grade states.
+    chosen : SizeOdds
+        The chosen size.
+    sizes : tuple of SizeOdds
+        The next size down, the chosen one and the next one up, where there are.
+    shares : tuple of Share
+        Of each input in the variance of the chosen size's utilisation, the largest first.
+    why_no_shares : str
+        Why there are none, for the reader of a report.
+    points : int
+        Points of each scramble by which the shares were found; 0 where they need none.
+    seed : int
+        Of all random numbers.
+    poses : int
+        Poses that are solved in each draw of the chosen size.
+    checked : Checked
+        What a search over the region found beyond these.
+    """
+
+    spreads: Mapping[Input, Spread]
+    is_asked: bool
+    is_modulus_of_grade: bool
+    chosen: SizeOdds
+    sizes: tuple[SizeOdds, ...]
+    shares: tuple[Share, ...]
+    why_no_shares: str
+    points: int
+    seed: int
+    poses: int
+    checked: Checked
+
+    @property
+    def samples(self) -> int:
+        """Number of draws."""
+        return len(self.chosen.utilisation)
+
+
+def exact_interval(successes: int, trials: int) -> tuple[float, float]:
+    """Return between which a probability lies with 95 % confidence.
+
+    C. J. Clopper, E. S. Pearson, Biometrika 26 (1934): never too narrow, whatever the probability.
+    ``binomtest`` of SciPy has it too, in `scipy.stats`, which takes longer to import.
+    """
+    from scipy.special import betaincinv
+
+    beyond, others = (1.0 - CONFIDENCE) / 2.0, trials - successes
+    low = betaincinv(successes, others + 1, beyond) if successes else 0.0
+    high = betaincinv(successes + 1, others, 1.0 - beyond) if others else 1.0
+    return float(low), float(high)
+
+
+def uncertainty_of(
+    study: Study, found: SelectionResult | None, built: AsBuilt, reporter: Reporter
+) -> UncertaintyAnalysis | None:
+    """Return how likely the chosen rope is enough, and which inputs that hangs on.
+
+    Where the study does not ask for it, a modulus that is borrowed from another rope is drawn alone
+    from what its grade states. None without a rope for all cables, without an input that is not
+    certain, and for a modulus alone where the loss of a cable, which takes long to follow, governs.
+    """
+    chosen = found.chosen if found is not None else None
+    if found is None or chosen is None or study.selection is None or study.selection.groups:
+        return None
+    asked = study.uncertainty or Uncertainty()
+    elasticity = chosen.grade.elasticity
+    off = elasticity.uncertainty
+    if study.uncertainty is None and elasticity.basis != "borrowed":
+        return None
+    spreads = asked.spreads(Uniform(-off, off))
+    if not spreads:
+        return None
+    trial = _Trial(study.selection, built, chosen, spreads, asked.seed)
+    poses = trial.poses_of(chosen)
+    if study.uncertainty is not None:
+        return trial.full(found, poses, asked.samples, asked.modulus is None, reporter)
+    if any(one.loaded.lost_cable is not None for one in poses):
+        return None
+    samples = _ALONE if all(one.is_one_pass for one in poses) else _ALONE_SLOWLY
+    odds = SizeOdds(chosen, largest(poses, trial.drawn(samples)))
+    return trial.result(odds, poses, is_asked=False, is_modulus_of_grade=True)
+
+
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """What all sizes have in common."""
+
+    selection: Selection
+    built: AsBuilt
+    chosen: Candidate
+    spreads: Mapping[Input, Spread]
+    seed: int
+
+    @property
+    def robot(self) -> Robot:
+        return self.built.robot
+
+    @property
+    def columns(self) -> dict[Input, slice]:
+        return columns_of(self.spreads, self.robot)
+
+    @property
+    def width(self) -> int:
+        return sum(at.stop - at.start for at in self.columns.values())
+
+    def drawn(self, samples: int) -> Draws:
+        shares = np.random.default_rng(self.seed).random((samples, self.width))
+        return draws_at(self.spreads, self.robot, shares)
+
+    def probes(self) -> Draws:
+        """The middle, both ends of each coordinate, and some draws."""
+        ends = np.full((2 * self.width + 1, self.width), 0.5)
+        for k in range(self.width):
+            ends[2 * k : 2 * k + 2, k] = _END, 1.0 - _END
+        some = np.random.default_rng(self.seed + 1).random((_PROBES, self.width))
+        shares = ends if self.width == 1 else np.concatenate([ends, some])
+        return draws_at(self.spreads, self.robot, shares)
+
+    def poses_of(self, size: Candidate) -> list[Asked]:
+        return may_govern(self.chosen.cases, self._rope_in(size), self.probes())
+
+    def _rope_in(self, one: Candidate) -> Callable[[LoadCase], Cable]:
+        def rope(case: LoadCase) -> Cable:
+            allowance = Allowance.of(self.selection.under(case))
+            return self.built.cable(allowance.cable(one.grade, one.size))
+
+        return rope
+
+    def full(
+        self,
+        found: SelectionResult,
+        poses: list[Asked],
+        samples: int,
+        is_modulus_of_grade: bool,
+        reporter: Reporter,
+    ) -> UncertaintyAnalysis:
+        """Try the sizes beside the chosen one as well, search the poses, share out the spread."""
+        of_grade = next(o.candidates for o in found.outcomes if o.grade is self.chosen.grade)
+        each = sorted(of_grade, key=lambda one: one.size.diameter_m)
+        at = each.index(self.chosen)
+        draws, points = self.drawn(samples), 0
+        if len(self.spreads) > 1:  # of one alone, all of the spread is its own
+            points = max(2 ** ((samples // (4 * SCRAMBLES)).bit_length() - 1), _LEAST_POINTS)
+        around = each[max(at - 1, 0) : at + 2]
+        steps = samples * len(around) + SCRAMBLES * points * (len(self.spreads) + 2)
+        with reporter.task("uncertainty", steps) as advance:
+            used = largest(poses, draws, advance)
+            poses, used, checked = searched(poses, draws, used)
+            odds = SizeOdds(self.chosen, used)
+            sizes = tuple(
+                odds
+                if one is self.chosen
+                else SizeOdds(one, largest(self.poses_of(one), draws, advance))
+                for one in around
+            )
+            shares, why = self._shares(poses, points, advance)
+        return self.result(
+            odds, poses, is_asked=True, is_modulus_of_grade=is_modulus_of_grade,
+            sizes=sizes, shares=shares, why=why, points=points, checked=checked,
+        )  # fmt: skip
+
+    def _shares(
+        self, poses: list[Asked], points: int, advance: Advance
+    ) -> tuple[tuple[Share, ...] | None, str]:
+        if not points:
+            return None, ""
+
+        def used_at(shares: FloatArray) -> FloatArray:
+            return largest(poses, draws_at(self.spreads, self.robot, shares), advance)
+
+        columns = {str(name): at for name, at in self.columns.items()}
+        try:
+            found = shares_of(used_at, columns, points, self.seed)
+        except ValueError as error:
+            return (), str(error)
+        return tuple(sorted(found, key=lambda one: -one.first_order)), ""
+
+    def result(
+        self,
+        odds: SizeOdds,
+        poses: list[Asked],
+        *,
+        is_asked: bool,
+        is_modulus_of_grade: bool,
+        sizes: tuple[SizeOdds, ...] = (),
+        shares: tuple[Share, ...] | None = None,
+        why: str = "",
+        points: int = 0,
+        checked: Checked | None = None,
+    ) -> UncertaintyAnalysis:
+        """Return the result; of one input, all of the spread is its own."""
+        all_of_it = tuple(Share(name, 1.0, (1.0, 1.0), 1.0, (1.0, 1.0)) for name in self.spreads)
+        return UncertaintyAnalysis(
+            self.spreads, is_asked, is_modulus_of_grade and "modulus" in self.spreads, odds,
+            sizes or (odds,), all_of_it if shares is None else shares, why, points, self.seed,
+            sum(len(one.places) for one in poses), checked or Checked(),
+        )  # fmt: skip
