@@ -19,6 +19,7 @@ from designer.statics.geometry import (
     density_matrix,
     load_wrench_N,
     structure_matrix,
+    upright_poses,
 )
 from designer.statics.task import PulleyRun, Task, solve_task, straight_run
 
@@ -81,22 +82,29 @@ class Statics:
     @property
     def hanging_cables(self) -> BoolArray:
         """Those cables (..., n_cables)."""
-        return hanging_cables(self.force_z_N, self.geometry().drop_m)
+        return hanging_cables(self.force_z_N, -self._chords_m()[..., 2])
+
+    @property
+    def end_tensions_N(self) -> tuple[FloatArray, FloatArray]:
+        """Tensions at the exit points and at the platform, each (..., n_cables) [N]."""
+        return catenary.end_tensions_N(
+            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
+        )
 
     @property
     def exit_tension_N(self) -> FloatArray:
         """Tension at the exit points, eq. (10) of the paper (..., n_cables) [N]."""
-        return self._end_tensions_N()[0]
+        return self.end_tensions_N[0]
 
     @property
     def platform_tension_N(self) -> FloatArray:
         """Tension at the platform (..., n_cables) [N]."""
-        return self._end_tensions_N()[1]
+        return self.end_tensions_N[1]
 
     @property
     def cable_tension_N(self) -> FloatArray:
         """Largest tension anywhere in each cable (..., n_cables) [N]."""
-        return np.asarray(np.maximum(*self._end_tensions_N()))
+        return np.asarray(np.maximum(*self.end_tensions_N))
 
     @property
     def least_tension_N(self) -> FloatArray:
@@ -113,7 +121,7 @@ class Statics:
     @property
     def length_over_chord(self) -> FloatArray:
         """Unstrained length of each cable off its pulley over its chord (..., n_cables)."""
-        return self.free_length_m / self.geometry().chord_m
+        return np.asarray(self.free_length_m / np.linalg.norm(self._chords_m(), axis=-1))
 
     @property
     def lowest_m(self) -> FloatArray:
@@ -152,10 +160,9 @@ class Statics:
         """Return the chords of the cables, upright frame."""
         return cable_geometry(self.robot, self.poses, self.run.exit_points_m)
 
-    def _end_tensions_N(self) -> tuple[FloatArray, FloatArray]:
-        return catenary.end_tensions_N(
-            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
-        )
+    def _chords_m(self) -> FloatArray:
+        ends = upright_poses(self.robot, self.poses).attachment_points_m(self.robot)
+        return np.asarray(ends - self.run.exit_points_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
