@@ -50,10 +50,12 @@ def inset_hull_m(points_m: FloatArray, inset_m: float) -> FloatArray:
 def contains(polygon_m: FloatArray, points_m: FloatArray) -> BoolArray:
     """Tell which of the points (..., 2) lie inside or on the boundary."""
     edges = edges_m(polygon_m)
-    to_point = points_m[..., None, :] - polygon_m
-    left = edges[:, 0] * to_point[..., 1] - edges[:, 1] * to_point[..., 0]
-    scale = np.linalg.norm(edges, axis=1) * np.ptp(polygon_m)
-    return np.asarray(np.all(left >= -1e-12 * scale, axis=-1))
+    least = -1e-12 * np.linalg.norm(edges, axis=1) * np.ptp(polygon_m)
+    x, y = points_m[..., 0], points_m[..., 1]
+    inside = np.ones(x.shape, dtype=np.bool_)
+    for (u, v), (x_0, y_0), bound in zip(edges, polygon_m, least, strict=True):
+        inside &= u * (y - y_0) - v * (x - x_0) >= bound
+    return inside
 
 
 def nearest_on_edges_m(polygon_m: FloatArray, points_m: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ _POLYNOMIALS = ((1, 0, (1,)), (2, 1, (1, 3)))
 def sobol(dimensions: int, seed: int, chunk: int) -> Iterator[FloatArray]:
     """Yield a sequence in the unit square or cube (``chunk``, dimensions), for ever.
 
+    ``chunk`` is a power of two: then all chunks are the first one with the same bits turned over.
     Scrambled by a random lower triangular matrix and a shift; Matousek, On the L2-discrepancy for
     anchored boxes, J. Complexity 14 (1998).
     """
@@ -29,12 +30,13 @@ def sobol(dimensions: int, seed: int, chunk: int) -> Iterator[FloatArray]:
     scramble += np.eye(_BITS, dtype=np.uint32)
     bits = _directions(dimensions)[..., None] >> powers.size - 1 - np.arange(_BITS) & 1
     turned = np.einsum("dij,dkj->dki", scramble, bits) % 2 @ powers[::-1]
-    for start in range(0, 2**_BITS, chunk):
-        number = np.arange(start, start + chunk)
-        points = np.tile(shift, (chunk, 1))
-        for k in range(int(number[-1]).bit_length()):
-            points ^= ((number ^ number >> 1) >> k & 1)[:, None] * turned[:, k]
-        yield points / 2.0**_BITS
+    turned[:, 1:] ^= turned[:, :-1]  # what each bit of a number turns over in its Gray code
+    points = shift[None]
+    for flip in turned.T[: chunk.bit_length() - 1]:
+        points = np.concatenate([points, points ^ flip])
+    for number in range(2**_BITS // chunk):
+        first = turned[:, number * chunk >> np.arange(_BITS) & 1 == 1]
+        yield (points ^ np.bitwise_xor.reduce(first, axis=1)) / 2.0**_BITS
 
 
 def _directions(dimensions: int) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:

@@ -19,6 +19,7 @@ from designer.statics.geometry import (
     density_matrix,
     load_wrench_N,
     structure_matrix,
+    upright_poses,
 )
 from designer.statics.task import PulleyRun, Task, solve_task, straight_run
 
@@ -81,29 +82,37 @@ class Statics:
     @property
     def hanging_cables(self) -> BoolArray:
         """Those cables (..., n_cables), along the true vertical whatever else loads them."""
-        chord, force_z_N = self.geometry(), self.force_z_N
-        drop_m = chord.drop_m
-        if self.robot.cable_load_direction is not None:
-            *plan, up = self.robot.upright @ self.robot.level[2]
-            along = chord.outward @ plan
-            force_z_N = along * self.force_x_N + up * force_z_N
-            drop_m = up * drop_m - along * chord.horizontal_distance_m
-        return hanging_cables(force_z_N, drop_m)
+        if self.robot.cable_load_direction is None:
+            return hanging_cables(self.force_z_N, -self._chords_m()[..., 2])
+        chord = self.geometry()
+        *plan, up = self.robot.upright @ self.robot.level[2]
+        along = chord.outward @ plan
+        return hanging_cables(
+            along * self.force_x_N + up * self.force_z_N,
+            up * chord.drop_m - along * chord.horizontal_distance_m,
+        )
+
+    @property
+    def end_tensions_N(self) -> tuple[FloatArray, FloatArray]:
+        """Tensions at the exit points and at the platform, each (..., n_cables) [N]."""
+        return catenary.end_tensions_N(
+            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
+        )
 
     @property
     def exit_tension_N(self) -> FloatArray:
         """Tension at the exit points, eq. (10) of the paper (..., n_cables) [N]."""
-        return self._end_tensions_N()[0]
+        return self.end_tensions_N[0]
 
     @property
     def platform_tension_N(self) -> FloatArray:
         """Tension at the platform (..., n_cables) [N]."""
-        return self._end_tensions_N()[1]
+        return self.end_tensions_N[1]
 
     @property
     def cable_tension_N(self) -> FloatArray:
         """Largest tension anywhere in each cable (..., n_cables) [N]."""
-        return np.asarray(np.maximum(*self._end_tensions_N()))
+        return np.asarray(np.maximum(*self.end_tensions_N))
 
     @property
     def least_tension_N(self) -> FloatArray:
@@ -120,7 +129,7 @@ class Statics:
     @property
     def length_over_chord(self) -> FloatArray:
         """Unstrained length of each cable off its pulley over its chord (..., n_cables)."""
-        return self.free_length_m / self.geometry().chord_m
+        return np.asarray(self.free_length_m / np.linalg.norm(self._chords_m(), axis=-1))
 
     @property
     def lowest_m(self) -> FloatArray:
@@ -159,10 +168,9 @@ class Statics:
         """Return the chords of the cables, upright frame."""
         return cable_geometry(self.robot, self.poses, self.run.exit_points_m)
 
-    def _end_tensions_N(self) -> tuple[FloatArray, FloatArray]:
-        return catenary.end_tensions_N(
-            self.free_length_m, self.force_x_N, self.force_z_N, self.weight_N_per_m
-        )
+    def _chords_m(self) -> FloatArray:
+        ends = upright_poses(self.robot, self.poses).attachment_points_m(self.robot)
+        return np.asarray(ends - self.run.exit_points_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -109,14 +109,13 @@ def _add(
     sign: float,
 ) -> Hanging | None:
     """Count samples with a value beyond the limit; `sign` tells on which side of it."""
-    beyond = np.where(counts[:, None], sign * (values - limit), -np.inf)
-    worst = beyond.max(axis=1, initial=-np.inf)
-    samples = int((worst > 0.0).sum())
-    if samples == 0:
+    excess = sign * (values - limit)
+    beyond = counts[:, None] & (excess > 0.0)
+    if not beyond.any():
         return before
-    at = int(worst.argmax())
-    cable = int(beyond[at].argmax())
-    here = Hanging(samples, float(values[at, cable]), cable + 1, tuple(some[at].tolist()))
+    at, cable = np.unravel_index(np.where(beyond, excess, 0.0).argmax(), excess.shape)
+    samples = int(beyond.any(axis=1).sum())
+    here = Hanging(samples, float(values[at, cable]), int(cable) + 1, tuple(some[at].tolist()))
     if before is None:
         return here
     farthest = max(before, here, key=lambda one: sign * one.extreme)

@@ -152,8 +152,12 @@ class Pool:
 
 def _best_of_cells(space: Space, places: FloatArray, values: FloatArray) -> IntArray:
     """Return the index of the largest value in each part of the space, the largest first."""
-    cell = space.cells(places, _CELLS_A_SIDE) @ (2 ** (8 * np.arange(4)))
-    order = np.argsort(-values, kind="stable")
+    x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
+    cell = ((turn * _CELLS_A_SIDE + x) * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z
+    best = np.full(cell.max(initial=0) + 1, -np.inf)
+    np.fmax.at(best, cell, values)
+    tops = np.flatnonzero(values >= best[cell])  # a few, and those of one cell that are as large
+    order = tops[np.argsort(-values[tops], kind="stable")]
     _, first = np.unique(cell[order], return_index=True)
     return np.asarray(order[np.sort(first)])
 

@@ -77,7 +77,7 @@ class _Gathered:
     def add(self, some: FloatArray, sizing: Sizing) -> None:
         statics = sizing.statics
         left_out = is_left_out(statics, self._workspace.hangs_below)
-        self.verdicts.update(statics.verdict.tolist())
+        self.verdicts.update(dict(enumerate(np.bincount(statics.verdict).tolist())))
         self.hangs_below += int(statics.hangs_below.sum())
         self.excluded += int(left_out.sum())
         counts = statics.is_solved & ~left_out
