@@ -11,7 +11,7 @@ import json
 import zipfile
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +22,6 @@ from designer.report.figures.scenes import add_workspace, bounds_m, scale_of, si
 from designer.report.figures.stage import SCREEN, Stage
 from designer.report.figures.view import View
 from designer.report.fonts import with_fonts
-
-if TYPE_CHECKING:
-    from pyvista import Plotter
 
 _KEYS = (
     "The workspace. Arrow keys turn it, with Shift they move it; plus and minus zoom; N and P go "
@@ -42,13 +39,13 @@ def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) 
     add_workspace(stage, thinned, quantity, steps)
     stage.lines(overlay.floor_lines(stage.view, bounds_m(maps)), palette.FAINT, 1.0)
     stage.aim()
-    scene = _scene(stage.plotter)
-    stage.plotter.clear()
+    scene = _scene(stage)
+    stage.clear()
     parts = _overlay(maps, quantity, steps, stage.view) + _poses(thinned, quantity)
     return _page(scene, maps.study.name, parts)
 
 
-def _scene(plotter: Plotter) -> bytes:
+def _scene(stage: Stage) -> bytes:
     """Return all that is on the stage as the viewer reads it: JSON in a ZIP archive."""
     from trame_vtk.modules.vtk.serializers import (
         SynchronizationContext,
@@ -58,13 +55,12 @@ def _scene(plotter: Plotter) -> bytes:
         serialize,
     )
 
-    window = plotter.render_window
-    window.Render()
+    window = stage.window
     initialize_serializers()
     context = SynchronizationContext()
     context.set_ignore_last_dependencies(True)
     scene: dict[str, Any] = serialize(None, window, reference_id(window), context, 1)
-    camera = plotter.renderer.GetActiveCamera()
+    camera = stage.scene.GetActiveCamera()
     scene["extra"] = {
         "vtkRefId": reference_id(window),
         "centerOfRotation": camera.GetFocalPoint(),

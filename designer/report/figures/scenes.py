@@ -217,9 +217,9 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
         rest[f"size {number}"] = np.log(used).ravel(order="F")
     for number, colour in enumerate(colours(layers)):  # what it serves beyond the size before it
         where: Style = {"scalars": f"size {number}", "value": 0.0}
-        stage.add(rest.clip_scalar(**where, invert=True), color=colour)
+        stage.add(rest.clip_scalar(**where, invert=True), colour)
         rest = rest.clip_scalar(**where, invert=False)
-    stage.add(rest, color=palette.WARNING_PALE)
+    stage.add(rest, palette.WARNING_PALE)
     stage.lines(edges_m(maps), palette.INK, stage.pen.edge, 1.5)
     stage.balls(exits, 0.006 * size_m(maps), palette.INK)
     with canvas.drawing():

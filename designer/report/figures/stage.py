@@ -20,7 +20,7 @@ from designer.report.figures.opengl import why_no_scenes
 from designer.report.figures.view import HEIGHT_PX, WIDTH_PX, View
 
 if TYPE_CHECKING:
-    from pyvista import Plotter, PolyData
+    from pyvista import DataSet, PolyData
 
 Image = NDArray[np.uint8]
 
@@ -47,15 +47,18 @@ SCREEN = Pen(contour=0.7, edge=1.0, post=1.0, cable=2.5, rim=0.0, lift=0.0, samp
 
 
 @cache
-def _plotter() -> Plotter:
-    """The one window of all stages: to open one takes longer than to draw what is on it."""
-    import pyvista
+def _window() -> tuple[Any, Any]:
+    """The one window of all stages and what it shows: to open one takes longer than to draw."""
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (gives the classes below their bodies)
+    from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
-    theme = pyvista.themes.DocumentTheme()
-    theme.multi_samples = 1
-    plotter = pyvista.Plotter(off_screen=True, lighting="none", theme=theme)
-    plotter.set_background("white")
-    return plotter
+    window, scene = vtkRenderWindow(), vtkRenderer()
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(1)
+    scene.SetBackground(1.0, 1.0, 1.0)
+    scene.AutomaticLightCreationOff()
+    window.AddRenderer(scene)
+    return window, scene
 
 
 class Stage:
@@ -73,34 +76,56 @@ class Stage:
         missing = why_no_scenes()
         if missing:
             raise MissingLibraryError(missing)
-        self.view, self.pen, self.plotter = view, pen, _plotter()
-        self.plotter.window_size = [pen.samples * WIDTH_PX, pen.samples * HEIGHT_PX]
-        self.plotter.clear()
+        self.view, self.pen = view, pen
+        self.window, self.scene = _window()
+        self.window.SetSize(pen.samples * WIDTH_PX, pen.samples * HEIGHT_PX)
+        self.clear()
+
+    def clear(self) -> None:
+        """Take everything off the stage."""
+        self.scene.RemoveAllViewProps()
 
     def aim(self) -> None:
         """Point the camera."""
-        camera, view = self.plotter.camera, self.view
-        camera.position = tuple(view.centre_m + 20.0 * view.half_height_m * view.toward_camera)
-        camera.focal_point = tuple(view.centre_m)
-        camera.up = (0.0, 0.0, 1.0)
-        camera.parallel_projection = True
-        camera.parallel_scale = view.half_height_m
-        self.plotter.renderer.ResetCameraClippingRange()
+        camera, view = self.scene.GetActiveCamera(), self.view
+        camera.SetPosition(*(view.centre_m + 20.0 * view.half_height_m * view.toward_camera))
+        camera.SetFocalPoint(*view.centre_m)
+        camera.SetViewUp(0.0, 0.0, 1.0)
+        camera.ParallelProjectionOn()
+        camera.SetParallelScale(view.half_height_m)
+        self.scene.ResetCameraClippingRange()
 
     def picture(self) -> Image:
         """Take the picture (height, width, 3), and clear the stage."""
         from PIL import Image as Pillow
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
         self.aim()
-        self.plotter.render()
-        image = np.asarray(self.plotter.screenshot(return_img=True), dtype=np.uint8)
-        self.plotter.clear()
-        return np.asarray(Pillow.fromarray(image).reduce(self.pen.samples))
+        self.window.Render()
+        (width, height), pixels = self.window.GetSize(), vtkUnsignedCharArray()
+        self.window.GetPixelData(0, 0, width - 1, height - 1, 1, pixels, 0)
+        self.clear()
+        image = Pillow.fromarray(vtk_to_numpy(pixels).reshape(height, width, 3))
+        return np.asarray(image.reduce(self.pen.samples))[::-1]  # VTK counts rows from below
 
-    def add(self, mesh: PolyData, **look: Any) -> None:
-        """Add a mesh, unless it is empty."""
-        if mesh.n_cells > 0:
-            self.plotter.add_mesh(mesh, lighting=False, render=False, reset_camera=False, **look)
+    def add(self, mesh: DataSet, colour: Any = None, width: float = 1.0) -> None:
+        """Add a mesh, unless it is empty, in one colour or in those that its scalars are."""
+        from matplotlib.colors import to_rgb
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
+
+        if mesh.n_cells == 0:
+            return
+        mapper, actor = vtkDataSetMapper(), vtkActor()
+        mapper.SetInputData(mesh)
+        mapper.SetColorModeToDirectScalars()
+        mapper.SetScalarVisibility(colour is None)
+        actor.SetMapper(mapper)
+        look = actor.GetProperty()
+        look.LightingOff()
+        look.SetLineWidth(width)
+        look.SetColor(*to_rgb("white" if colour is None else colour))
+        self.scene.AddActor(actor)
 
     def lines(
         self, lines_m: Iterable[FloatArray], colour: str, width: float, lift: float = 0.0
@@ -116,7 +141,7 @@ class Stage:
         mesh = pyvista.PolyData(
             np.concatenate(lifted), lines=pyvista.CellArray.from_irregular_cells(cells)
         )
-        self.add(mesh, color=colour, line_width=width)
+        self.add(mesh, colour, width)
 
     def posts(self, tops_m: FloatArray, floor_m: float, width: float) -> None:
         """Add thin uprights from points (n, 3) down to the floor [m]."""
@@ -143,7 +168,7 @@ class Stage:
             cloud["colour"] = colour
         ball = pyvista.Sphere(radius=radius_m, theta_resolution=16, phi_resolution=16)
         balls = cloud.glyph(geom=ball, scale=False, orient=False)
-        self.add(balls, **({"color": colour} if one else {"scalars": "colour", "rgb": True}))
+        self.add(balls, colour if one else None)
 
     def hull(self, points_m: FloatArray, colour: str) -> None:
         """Add the hull of points (n, 3) [m] with its edges; flat where they lie in one plane."""
@@ -153,8 +178,8 @@ class Stage:
         if len(faces) == 0:
             return
         hull = pyvista.PolyData.from_regular_faces(points_m.astype(np.float64), faces)
-        self.add(hull, color=colour)
-        self.add(hull.extract_feature_edges(feature_angle=20.0), color=palette.INK, line_width=2.0)
+        self.add(hull, colour)
+        self.add(hull.extract_feature_edges(feature_angle=20.0), palette.INK, 2.0)
 
     def field(self, field: Field, quantity: MapQuantity, steps: Steps | None) -> None:
         """Add a surface (n, m) coloured by a quantity, with lines of equal value.
@@ -163,11 +188,11 @@ class Stage:
         """
         counted = counted_surface(field, quantity)
         if steps is not None and counted.n_cells > 0:
-            self.add(banded(counted, steps), scalars="colour", rgb=True)
+            self.add(banded(counted, steps))
             self.lines(contour_lines(counted, steps), "white", self.pen.contour, 1.0)
-        self.add(left_out_surface(field, quantity), color=palette.LEFT_OUT)
+        self.add(left_out_surface(field, quantity), palette.LEFT_OUT)
         failed = quads(field.position_m, _any_corner(field.is_infeasible))
-        self.add(failed, color=palette.WARNING)
+        self.add(failed, palette.WARNING)
 
 
 def counted_surface(field: Field, quantity: MapQuantity) -> PolyData:
