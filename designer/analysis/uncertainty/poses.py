@@ -27,13 +27,13 @@ from designer.selection.cases import CaseFound
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import add_slowly, is_quick, meet
 from designer.study import Workspace
-from designer.workspace.demand import demand_of, loss_demand
+from designer.workspace.demand import demand_of, settled_demand
 from designer.workspace.refine import LIGHT, Effort, refine
 
 _CHUNK = 256
 _NEAR = 0.99
 """Of the largest utilisation of a draw: from where on a pose may govern it."""
-_STARTS, _STARTS_AFTER_LOSS = 24, 2
+_STARTS, _STARTS_SETTLING = 24, 2
 _MOST_ROUNDS = 3
 _WORSE = 1e-6
 """Relative: below what a search tells apart."""
@@ -61,7 +61,7 @@ class Asked:
         """
         one = self.loaded
         still = one.wind is None and not one.bare[0].platform.centre_force_N.any()
-        return still and one.lost_cable is None and is_quick(one.robot)
+        return still and not one.keeps_lengths and is_quick(one.robot)
 
     def utilisation(self, draws: Draws) -> FloatArray:
         """Return largest over allowable tension (n_draws, n_places).
@@ -73,8 +73,8 @@ class Asked:
         return np.stack([self._solved(draws.on(self.loaded, k)) for k in range(len(draws))])
 
     def _solved(self, one: Loaded) -> FloatArray:
-        if one.lost_cable is not None:
-            tension = loss_demand(one.robot, one.cable, one.lost_cable)(self.places)
+        if one.keeps_lengths:
+            tension = settled_demand(one, self.workspace.hangs_below)(self.places)
         else:
             statics = solve_sagging(one.robot, Poses.at(self.places), one.cable)
             tension = demand_of(statics.largest_tension_N, statics, self.workspace.hangs_below)
@@ -139,9 +139,9 @@ def _all_of(found: CaseFound, rope: Cable) -> Iterator[Asked]:
     """Yield a case in the direction that asked for most, at many poses; in the others at one."""
     robot, space = found.loaded.bare[0], found.workspace.space
     worst = found.verification.worst_position_m[None]
-    is_loss = found.loaded.lost_cable is not None
-    most = _STARTS_AFTER_LOSS if is_loss else _STARTS
-    rest = [] if is_loss else [space.landmarks()]
+    settles = found.loaded.keeps_lengths
+    most = _STARTS_SETTLING if settles else _STARTS
+    rest = [] if settles else [space.landmarks()]
     places = np.unique(np.concatenate([worst, found.sampled.worst_m[:most], *rest]), axis=0)
     yield Asked(found.loaded.on(robot, rope), found.workspace, places)
     for other in found.case.on(robot, rope):
@@ -173,8 +173,8 @@ def searched(
 ) -> tuple[list[Asked], FloatArray, Checked]:
     """Search the region in some draws: the least, the largest, the nearest to 100 %, some others.
 
-    What is worse than the known poses joins them, for all draws. Load cases in which a cable is
-    lost, which take long to follow, are left out of the search.
+    What is worse than the known poses joins them, for all draws. Load cases on kept lengths,
+    which take long to follow, are left out of the search.
     """
     found = Checked()
     for turn in range(1, _MOST_ROUNDS + 1):
@@ -207,7 +207,7 @@ def _worse(
 ) -> tuple[Asked, float] | None:
     """Return a pose that a draw uses more than the known ones, and by how much."""
     most = max(asked, key=lambda one: float(one.utilisation(draw).max()))
-    if most.loaded.lost_cable is not None:
+    if most.loaded.keeps_lengths:
         return None
 
     def demand(places: FloatArray) -> FloatArray:

@@ -157,7 +157,7 @@ def uncertainty_of(
     poses = trial.poses_of(chosen)
     if study.uncertainty is not None:
         return trial.full(found, poses, asked.samples, asked.modulus is None, reporter)
-    if any(one.loaded.lost_cable is not None for one in poses):
+    if any(one.loaded.keeps_lengths for one in poses):
         return None
     samples = _ALONE if all(one.is_one_pass for one in poses) else _ALONE_SLOWLY
     odds = SizeOdds(chosen, largest(poses, trial.drawn(samples)))
