@@ -11,6 +11,7 @@ from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.report.material_class import class_of
 from designer.selection.cases import FEW_SAMPLES, CaseFound
+from designer.selection.family_need import CaseNeed
 from designer.selection.result import Candidate
 from designer.statics.cable_loss import Fate
 from designer.study import Study
@@ -35,12 +36,15 @@ def loads_statement(study: Study) -> Statement:
         return Statement("Loads", f"One static load case, at rest: {without} is in it.", "doubt")
     names = fmt.listing(case.name for case in cases)
     lacks = f" {fmt.capital(without)} is in any of them." if lacking else ""
-    return Statement("Loads", f"The rope is to hold in every load case: {names}.{lacks}")
+    what = "cable" if study.selection is None else "rope"
+    return Statement("Loads", f"The {what} is to hold in every load case: {names}.{lacks}")
 
 
 def section(source: Source) -> Section | None:
     """Return what the chosen rope meets in each load case; None where the study has none."""
     study, selection = source.analysis.study, source.analysis.selection
+    if source.analysis.needs:
+        return _of_family(source, source.analysis.needs)
     if not study.load_cases or selection is None:
         return None
     chosen = selection.chosen
@@ -54,18 +58,74 @@ def section(source: Source) -> Section | None:
         None if chosen is None else _met(chosen, leaves_out=leaves_out),
         _LEFT_OUT if leaves_out else None,
         _lost(chosen) if chosen is not None else None,
-        "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
-        "platform, at the origin of its frame, and times drag coefficient and diameter on each "
-        "unstrained length of a cable, along the wind and at full speed whatever the cable's "
-        "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
-        "cables' own weight; an inertia force points where it is worst, as far as a search from "
-        "14 directions finds it.",
+        _HOW,
         None if chosen is None else _warmed(study, chosen),
         _pulleys(source),
         "The configured family, the shares of the region that sizes serve, stiffness and clearance "
         "are those of the static load of the study; the maps of the chosen rope are those of the "
         "case named there.",
     )
+
+
+_HOW = (
+    "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
+    "platform, at the origin of its frame, and times drag coefficient and diameter on each "
+    "unstrained length of a cable, along the wind and at full speed whatever the cable's "
+    "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
+    "cables' own weight; an inertia force points where it is worst, as far as a search from "
+    "14 directions finds it."
+)
+
+
+def _of_family(source: Source, needs: tuple[CaseNeed, ...]) -> Section:
+    """Return what each load case needs of the configured family."""
+    study = source.analysis.study
+    leaves_out = study.workspace is not None and study.workspace.hangs_below == "exclude"
+    columns: Heads = (
+        *("Load case", Column("Diameter"), Column("Largest tension"), Column("Cable")),
+        *("Platform at", "Direction or loss"),
+    )
+    most = source.analysis.most_needed
+    rows = [_need_row(one, governs=one is most and one.is_held) for one in needs]
+    caption = (
+        "The thinnest diameter of the configured family that was found for each load case, with "
+        "its own ice and drag, where the case asks for most."
+    )
+    keeps = any(case.temperature_change_K for case in study.load_cases)
+    return Section.of(
+        "load-cases",
+        "Load cases",
+        *carried_away(source.findings),
+        _asked(study),
+        Table.of(caption, columns, *rows),
+        _LEFT_OUT if leaves_out else None,
+        _HOW,
+        _KEPT if keeps else None,
+        _pulleys(source),
+        "The maps are those of the static load of the study; stiffness and clearance are those of "
+        "the thickest of these cables, in that load.",
+    )
+
+
+_KEPT = (
+    "By a change of temperature cables grow as the study says, else as steel does, by 12 × 10⁻⁶ "
+    "per kelvin (EN 1993-1-1, 3.2.6), and braked winches let the platform settle. Winches that "
+    "regulate the pose change lengths instead, and no tension."
+)
+
+
+def _need_row(one: CaseNeed, *, governs: bool) -> Row:
+    met, found = one.found.verification, one.found
+    size, tension = fmt.millimetres(one.diameter_m), fmt.newtons(met.max_tension_N)
+    cells = (
+        found.case.name,
+        size if one.is_held else "none holds",
+        tension if one.is_held else fmt.MISSING,
+        str(found.most_used() or "") if one.is_held else fmt.MISSING,
+        fmt.position(met.worst_position_m[:3]),
+        found.loaded.words or fmt.MISSING,
+    )
+    return Row(cells, "good" if governs else "" if one.is_held else "bad")
 
 
 def carried_away(findings: Findings) -> Iterator[Statement]:
