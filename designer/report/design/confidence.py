@@ -38,7 +38,8 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield from pose_statement(analysis)
     if analysis.study.selection is not None or analysis.study.load_cases:
         yield loads_statement(analysis.study)
-    yield from carried_away(findings)
+    if analysis.has_cable:  # else it is among the reasons
+        yield from carried_away(findings)
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
         yield verification_statement(analysis.verification)
@@ -104,7 +105,7 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
     if analysis.needs:
         text = (
             "Each load case was solved in every sample and searched between them; that a thinner "
-            "cable would not do is by trial of diameters 12 % apart."
+            "cable would not do is by trial of diameters 12\u00a0% apart."
         )
         yield Statement("Sampled and searched maximum", text)
         return

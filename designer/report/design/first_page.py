@@ -200,7 +200,8 @@ def _negative(analysis: Analysis) -> str:
         return "No ropes that the study allows were found that hold every pose of the workspace."
     if selection is not None:
         need = ""
-        if workspace is not None and workspace.sagging is not None:
+        at_rest = not analysis.study.load_cases
+        if at_rest and workspace is not None and workspace.sagging is not None:
             worst = workspace.sagging
             diameter = fmt.millimetres(worst.diameter_m)
             need = f" A cable of the configured family would need {diameter}."
@@ -231,6 +232,7 @@ def _card(analysis: Analysis) -> Card | None:
     what, diameter_m, tension_N, where = found
     facts = Fact("Largest tension", fmt.newtons(tension_N)), Fact("At the position", where)
     heading, size = diameter_heading(analysis, what), fmt.millimetres(diameter_m)
+    heading += " at rest" if analysis.study.load_cases else ""
     return Card(heading, size, "of the configured cable family", Facts(facts))
 
 

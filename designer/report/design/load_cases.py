@@ -266,13 +266,12 @@ def _lost(chosen: Candidate) -> str:
         fate = Fate(int(loss.fate[0]))
         what = [f"without cable {found.loaded.lost_cable}"] if found.loaded.lost_cable else []
         what += [_warmer(found.case)] if found.case.temperature_change_K else []
-        rest = ""
-        if fate in (Fate.HOLDS, Fate.RESTS_ELSEWHERE):
+        words, is_lost = fate.words, found.loaded.lost_cable is not None
+        if fate is Fate.RESTS_ELSEWHERE or (fate is Fate.HOLDS and not is_lost):
             at, moved = fmt.position(loss.rest.position_m[0]), float(loss.moved_m[0])
-            rest = f", {fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)} away at {at}"
-        parts.append(
-            f"'{found.case.name}': {', '.join(what)}, at the pose above, {fate.words}{rest}."
-        )
+            away = fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)
+            words = f"{Fate.RESTS_ELSEWHERE.words}, {away} away at {at}"
+        parts.append(f"'{found.case.name}': {', '.join(what)}, at the pose above, {words}.")
     if not parts:
         return ""
     return (
@@ -300,8 +299,9 @@ def _warmed(study: Study, chosen: Candidate) -> str:
             whose += f", which a rope of {chosen.grade.material} need not have"
     largest = max(abs(case.temperature_change_K or 0.0) for case in cases)
     paid_m = abs(expansion) * largest * float(chosen.verification.longest_m.max())
+    grows = f"{fmt.trimmed(1e6 * expansion)}\u202f×\u202f10⁻⁶ per kelvin"
     return (
-        f"By a change of temperature cables grow by {fmt.power_of_ten(expansion, '1/K')}, {whose}; "
+        f"By a change of temperature cables grow by {grows}, {whose}; "
         "exit points and platform are taken to stay as they are. With braked winches the platform "
         f"settles. Winches that regulate the pose pay out or haul in up to "
         f"{fmt.millimetres(paid_m)} instead, and no tension changes: then such a case asks for no "

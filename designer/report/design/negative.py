@@ -11,6 +11,7 @@ from designer.report import format as fmt
 from designer.report.blocks import Statement
 from designer.report.design.clearance import clearance_statement
 from designer.report.design.groups import groups_statement
+from designer.report.design.load_cases import carried_away
 from designer.report.design.stiffness import stiffness_statement
 from designer.workspace.result import WorkspaceMap
 
@@ -40,6 +41,8 @@ def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
             yield groups_statement(analysis.groups)
         if selection.reason:
             yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", "bad")
+    if not analysis.has_cable:
+        yield from carried_away(findings)
     yield from _quality_reasons(analysis)
 
 
@@ -101,7 +104,7 @@ def actions(analysis: Analysis, findings: Findings) -> Iterator[str]:
 
 def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
     pose, workspace, found = analysis.pose, analysis.workspace, analysis.qualities
-    yield from _other_grades(analysis)
+    yield from _other_grades(analysis) if not findings.adrift else ()
     if pose is not None and not pose.sizing.statics.is_solved:
         yield Verdict(int(pose.sizing.statics.verdict)).advice
     if workspace is not None and not workspace.is_feasible:
