@@ -242,7 +242,7 @@ def _needs_card(need: CaseNeed) -> Card | None:
         return None
     met = need.found.verification
     facts = (
-        Fact("Load case", need.found.case.name, need.found.loaded.words),
+        Fact("Load case", need.found.case.name, fmt.printed(need.found.loaded.words)),
         Fact("Largest tension", fmt.newtons(met.max_tension_N)),
         Fact("At the position", fmt.position(met.worst_position_m)),
     )

@@ -123,7 +123,7 @@ def _need_row(one: CaseNeed, *, governs: bool) -> Row:
         tension if one.is_held else fmt.MISSING,
         str(found.most_used() or "") if one.is_held else fmt.MISSING,
         fmt.position(met.worst_position_m[:3]),
-        found.loaded.words or fmt.MISSING,
+        fmt.printed(found.loaded.words) or fmt.MISSING,
     )
     return Row(cells, "good" if governs else "" if one.is_held else "bad")
 
@@ -133,8 +133,9 @@ def carried_away(findings: Findings) -> Iterator[Statement]:
     for one in findings.adrift:
         case, robot = one.loaded.case, one.loaded.robot
         how = "blown" if case.wind is not None else "pulled"
+        words = fmt.printed(one.loaded.words)
         text = (
-            f"In the load case '{case.name}', {one.loaded.words}, straight cables cannot hold the "
+            f"In the load case '{case.name}', {words}, straight cables cannot hold the "
             f"platform in {fmt.share(one.share)} of the poses in which they hold it at rest, such "
             f"as {fmt.position(one.place)}: it is pushed with {fmt.newtons(one.push_N)} and weighs "
             f"{fmt.newtons(robot.weight_N)}. Only the weight of rope that hangs far below could "
@@ -160,7 +161,7 @@ def _statement(chosen: Candidate | None) -> Statement:
         return Statement("No rope holds in every load case", text, "bad")
     most = chosen.governing
     where = fmt.position(most.verification.worst_position_m[:3])
-    words = f", {most.loaded.words}" if most.loaded.words else ""
+    words = f", {fmt.printed(most.loaded.words)}" if most.loaded.words else ""
     text = (
         f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
         f"{fmt.utilisation(most.utilisation)} with the platform at {where}{words}."
@@ -243,7 +244,7 @@ def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
             allowable,
             str(found.most_used() or ""),
             fmt.position(met.worst_position_m[:3]),
-            found.loaded.words or "–",
+            fmt.printed(found.loaded.words) or "–",
             *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
             f"{verdict}, governs" if governs else verdict,
         ),

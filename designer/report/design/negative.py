@@ -33,7 +33,7 @@ def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     for need in analysis.needs:
         if not need.is_held:
             where = fmt.position(need.found.verification.worst_position_m)
-            words = f", {need.found.loaded.words}" if need.found.loaded.words else ""
+            words = f", {fmt.printed(need.found.loaded.words)}" if need.found.loaded.words else ""
             text = f"At {where}{words}, no diameter of the configured family holds the platform."
             yield Statement(f"The load case '{need.found.case.name}'", text, "bad")
     if selection is not None and not analysis.has_products:
