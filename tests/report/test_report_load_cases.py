@@ -133,12 +133,15 @@ def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
 
 
 def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> None:
-    assert "No acceleration is in any of them" in statements(first_page(source))["Loads"].text
+    assert (
+        "No acceleration or change of temperature is in any"
+        in statements(first_page(source))["Loads"].text
+    )
     alone = source_of(bare, draws=False)
     text = statements(first_page(alone))["Loads"].text
     assert text == (
-        "One static load case, at rest: no dynamic factor, acceleration, wind, ice or loss of a "
-        "cable is in it."
+        "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a cable "
+        "or change of temperature is in it."
     )
     assert load_cases.section(alone) is None
     assert [case["name"] for case in result_dict(bare)["load_cases"]] == ["static"]
