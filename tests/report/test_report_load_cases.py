@@ -140,8 +140,8 @@ def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> N
     alone = source_of(bare, draws=False)
     text = statements(first_page(alone))["Loads"].text
     assert text == (
-        "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a cable "
-        "or change of temperature is in it."
+        "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a "
+        "cable or change of temperature is in it."
     )
     assert load_cases.section(alone) is None
     assert [case["name"] for case in result_dict(bare)["load_cases"]] == ["static"]
