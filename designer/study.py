@@ -307,9 +307,16 @@ class Study:
         names = [case.name for case in self.load_cases]
         if len({*names}) < len(names):
             raise ValueError(f"two load cases have one name: {names}")
-        if (names or self.uncertainty) and (self.selection is None or self.selection.groups):
-            raise ValueError("load cases and uncertainty need a selection, without groups")
+        if names and self.workspace is None:
+            raise ValueError("load cases need a workspace")
+        if self.selection is not None and names and self.selection.groups:
+            raise ValueError("load cases are not for groups of cables")
+        if self.uncertainty and (self.selection is None or self.selection.groups):
+            raise ValueError("uncertainty needs a selection, without groups")
         for case in self.load_cases:
+            own = case.safety_factor, case.termination_efficiency
+            if self.selection is None and own != (None, None):
+                raise ValueError(f"'{case.name}' changes a selection that is not there")
             if case.wind is not None and self.robot.platform.drag_area_m2 is None:
                 raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")
             along = None if case.wind is None else case.wind.direction

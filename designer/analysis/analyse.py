@@ -26,6 +26,7 @@ from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
+from designer.selection.family_need import CaseNeed, family_needs, most_needed
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
@@ -159,6 +160,8 @@ class Analysis:
         The governing poses, solved again by other methods.
     carries : Carries or None
         What carries the choice of a rope for all cables.
+    needs : tuple of CaseNeed
+        What each load case needs of the configured family, where the study asks for no rope.
     group_slopes : tuple of GroupSlopes
         What the utilisation of each group of cables answers to.
     servable : Servable or None
@@ -180,6 +183,7 @@ class Analysis:
     section_m: float | None = None
     verification: tuple[SecondAnswer, ...] = ()
     carries: Carries | None = None
+    needs: tuple[CaseNeed, ...] = ()
     group_slopes: tuple[GroupSlopes, ...] = ()
     servable: Servable | None = None
     uncertainty: UncertaintyAnalysis | None = None
@@ -227,10 +231,16 @@ class Analysis:
         return self.has_cable and (clear is None or not clear.is_violated)
 
     @property
+    def most_needed(self) -> CaseNeed | None:
+        """The load case that needs the thickest cable of the family, or one that none holds."""
+        return most_needed(self.needs)
+
+    @property
     def has_cable(self) -> bool:
-        """Whether the pose is solved, the workspace served, a product found."""
+        """Whether the pose is solved, the workspace served in all load cases, a product found."""
         pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
         workspace_ok = self.workspace is None or self.workspace.is_feasible
+        workspace_ok = self.most_needed.is_held if self.most_needed else workspace_ok
         return pose_ok and workspace_ok and self.has_products
 
     @property
@@ -346,9 +356,12 @@ def analyse(
             groups = choose_groups_of(
                 study.workspace, study.selection, grades, built, single, reporter
             )
+    needs = family_needs(study, built, reporter)
     qualities = None
     if study.workspace is not None and workspace is not None:
-        qualities = qualities_of(study.workspace, workspace, chosen, groups, built, study.material)
+        qualities = qualities_of(
+            study.workspace, workspace, chosen, groups, built, study.material, needs
+        )
     return Analysis(
         study,
         catalogue,
@@ -361,6 +374,7 @@ def analyse(
         built.section_m,
         second_answers(study, built, pose, workspace, chosen) if explains else (),
         carries_of(study, chosen) if explains and groups is None else None,
+        needs,
         group_slopes(built.robot, study.workspace, groups) if explains and groups else (),
         _servable(study, built, workspace, reporter) if explains else None,
         uncertainty_of(study, chosen, built, reporter) if explains else None,

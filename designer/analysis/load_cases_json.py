@@ -20,7 +20,11 @@ def load_cases_dict(analysis: Analysis) -> Json:
     """Return each load case, each check, and the governing pose; empty where none is chosen."""
     study, chosen = analysis.study, analysis.selection.chosen if analysis.selection else None
     if chosen is None or study.selection is None:
-        return {"load_cases": [], "checks": [], "governing": None}
+        needs = [
+            _case(one.found) | finite({"diameter_m": one.diameter_m, "holds": one.is_held})
+            for one in analysis.needs
+        ]
+        return {"load_cases": needs, "checks": [], "governing": None}
     least_N = study.robot.tension_min_N
     checks = checks_of(chosen, study.selection, least_N, analysis.qualities)
     pose = governing_pose(chosen, study.selection.safety_factor)

@@ -60,6 +60,10 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
             yield "", bad(analysis.study.pose_outside)
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
+    for need in analysis.needs:
+        met = need.found.verification
+        text = _extreme(need.diameter_m, met.max_tension_N) if need.is_held else bad("no cable")
+        yield f"  {escape(need.found.case.name)}", text
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
     for label, text in analysis.hanging.notes():

@@ -279,7 +279,7 @@ def worst_answer(question: Question, reporter: Reporter = SILENT) -> WorstAnswer
         material = built.material(question.study.material)
         found = map_workspace(built.robot, workspace, material, progress=advance)
     if question.cable is None:
-        return WorstAnswer(found, None, *_worst_of_family(found))
+        return WorstAnswer(found, None, *_worst_of_family(found, question))
     if isinstance(question.rope, Rope):
         met, case = _met_in_cases(question, workspace, question.rope)
     else:
@@ -311,10 +311,11 @@ def _met(question: Question, workspace: Workspace, cable: Cable | Cables) -> Ver
     return Verification(place, tension, used, met.longest_m, unknown, met.is_refined)
 
 
-def _worst_of_family(found: WorkspaceMap) -> tuple[FloatArray | None, str]:
+def _worst_of_family(found: WorkspaceMap, question: Question) -> tuple[FloatArray | None, str]:
     if found.sagging is not None:
         needed = f"{1e3 * found.sagging.diameter_m:.4g} mm"
-        return found.sagging.place, f"The pose that needs the thickest cable, {needed}."
+        at_rest = " at rest, without the load cases" if question.study.load_cases else ""
+        return found.sagging.place, f"The pose that needs the thickest cable{at_rest}, {needed}."
     pose = found.infeasible_pose
     if pose is None:
         return None, "Every pose is left out."

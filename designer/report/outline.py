@@ -23,11 +23,12 @@ class PageHeading:
 
 
 class PageSummary(HTMLParser):
-    """What a page says about itself: its title, its named metadata, its headings with an id."""
+    """What a page says about itself: title, language, named metadata, headings with an id."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
         self.title = ""
+        self.language = ""
         self.meta: dict[str, str] = {}
         self.headings: list[PageHeading] = []
         self._open = ""
@@ -37,7 +38,9 @@ class PageSummary(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Begin a heading or the title, or note metadata."""
         values = {name: value or "" for name, value in attrs}
-        if tag == "meta" and "name" in values:
+        if tag == "html":
+            self.language = values.get("lang", "")
+        elif tag == "meta" and "name" in values:
             self.meta[values["name"]] = values.get("content", "")
         elif tag == "title" and not self.title:
             self._open = tag
@@ -59,12 +62,14 @@ class PageSummary(HTMLParser):
 
 
 def add_outline(pdf: bytes, html: str) -> bytes:
-    """Return the PDF with an outline and metadata.
+    """Return the PDF with an outline, metadata, and its language, which readers aloud ask for.
 
-    A heading gets its place from a named destination of its id. PlutoPrint writes one for every
-    id that a link of the page points to; headings without are left out of the outline.
+    Of the structure that they ask for, too, PlutoPrint writes the links alone; the HTML has all.
+    A heading gets its place from a named destination of its id. PlutoPrint writes one for every id
+    that a link of the page points to; headings without are left out of the outline.
     """
     from pypdf import PdfReader, PdfWriter
+    from pypdf.generic import BooleanObject, DictionaryObject, NameObject, TextStringObject
 
     page = PageSummary(html)
     reader = PdfReader(io.BytesIO(pdf))
@@ -72,6 +77,10 @@ def add_outline(pdf: bytes, html: str) -> bytes:
     _add_items(writer, reader, page.headings)
     writer.add_metadata(_metadata(page))
     writer.page_mode = "/UseOutlines"
+    if page.language:
+        writer.root_object[NameObject("/Lang")] = TextStringObject(page.language)
+    shown = DictionaryObject({NameObject("/DisplayDocTitle"): BooleanObject(True)})
+    writer.root_object[NameObject("/ViewerPreferences")] = shown
     stream = io.BytesIO()
     writer.write(stream)
     return stream.getvalue()

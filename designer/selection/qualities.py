@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Cables, Material
+from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import GroupChoice
 from designer.selection.result import SelectionResult
 from designer.study import Workspace
@@ -74,10 +76,11 @@ def design_cable(
     selection: SelectionResult | None,
     groups: GroupChoice | None,
     family: Material,
+    needs: Sequence[CaseNeed] = (),
 ) -> DesignCable | None:
     """Return the cables of the groups, else the chosen product, else the thinnest of the family.
 
-    None where no cable holds everywhere.
+    None where no cable holds everywhere. ``needs`` is what load cases need of the family.
     """
     if groups is not None and groups.chosen is not None:
         products = groups.by_cable
@@ -91,9 +94,11 @@ def design_cable(
         chosen = selection.chosen
         name = f"{chosen.grade.id} {chosen.size.id}"
         return DesignCable(chosen.cable, name, ((chosen.grade, chosen.size),))
-    if found.sagging is None:
+    diameter_m = np.nan if found.sagging is None else found.sagging.diameter_m
+    if needs:
+        diameter_m = float(np.max([one.diameter_m for one in needs]))
+    if np.isnan(diameter_m):
         return None
-    diameter_m = found.sagging.diameter_m
     name = f"{1e3 * diameter_m:.1f} mm of the configured family"
     return DesignCable(family.cable(diameter_m), name)
 
@@ -105,9 +110,13 @@ def qualities_of(
     groups: GroupChoice | None,
     built: AsBuilt,
     material: Material,
+    needs: Sequence[CaseNeed] = (),
 ) -> Qualities | None:
-    """Survey the workspace with the cables of the design; None where no cable holds everywhere."""
-    cable = design_cable(found, selection, groups, built.material(material))
+    """Survey the workspace with the cables of the design; None where no cable holds everywhere.
+
+    ``needs`` is what load cases need of the configured family.
+    """
+    cable = design_cable(found, selection, groups, built.material(material), needs)
     if cable is None:
         return None
     interference = None

@@ -167,18 +167,22 @@ def test_wind_needs_area_and_drag(valid: str, faults_of: FaultsOf) -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "problem"),
-    [
-        ("selection:\n  safety_factor: 4\n", "", "there is no selection"),
-        ("safety_factor: 4", "groups: {a: [1], b: [2, 3]}", "groups of cables are chosen"),
-    ],
-)
-def test_what_does_not_go_with_them(
-    valid: str, faults_of: FaultsOf, old: str, new: str, problem: str
+def test_groups_do_not_go_with_them(valid: str, faults_of: FaultsOf) -> None:
+    grouped = valid.replace("safety_factor: 4", "groups: {a: [1], b: [2, 3]}")
+    (fault,) = faults_of(grouped + "load_cases: [{name: a}]\n")
+    assert "groups of cables are chosen for the static load alone" in fault.problem
+
+
+def test_without_a_selection_they_ask_for_a_diameter(
+    valid: str, study_of: StudyOf, faults_of: FaultsOf
 ) -> None:
-    (fault,) = faults_of(valid.replace(old, new) + "load_cases: [{name: a}]\n")
-    assert problem in fault.problem
+    bare = valid.replace("selection:\n  safety_factor: 4\n", "")
+    study = study_of(bare + "load_cases: [{name: a}]\n")
+    assert study.selection is None
+    assert [case.name for case in study.load_cases] == ["a"]
+    (fault,) = faults_of(bare + "load_cases: [{name: a, safety_factor: 3}]\n")
+    assert fault.field == "load_cases[0].safety_factor"
+    assert "there is no selection" in fault.problem
 
 
 def test_wind_across_a_plane(valid: str, faults_of: FaultsOf) -> None:

@@ -133,12 +133,51 @@ def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
 
 
 def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> None:
-    assert "No acceleration is in any of them" in statements(first_page(source))["Loads"].text
+    assert (
+        "No acceleration or change of temperature is in any"
+        in statements(first_page(source))["Loads"].text
+    )
     alone = source_of(bare, draws=False)
     text = statements(first_page(alone))["Loads"].text
     assert text == (
-        "One static load case, at rest: no dynamic factor, acceleration, wind, ice or loss of a "
-        "cable is in it."
+        "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a "
+        "cable or change of temperature is in it."
     )
     assert load_cases.section(alone) is None
     assert [case["name"] for case in result_dict(bare)["load_cases"]] == ["static"]
+
+
+FAMILY = (
+    YARD.replace("selection: {grades: [unirope-7x19-galvanised], sheave_diameter: 150 mm}", "")
+    + """
+load_cases:
+  - name: static
+  - {name: storm, wind: {speed: 20 m/s, directions: 2}, ice: {thickness: 5 mm}}
+  - {name: cold, temperature_change: -40 K}
+"""
+)
+
+
+def test_without_a_selection_the_diameter_of_each_case_is_told(
+    solve: Callable[[str], Analysis],
+) -> None:
+    found = solve(FAMILY)
+    assert found.workspace is not None
+    assert found.workspace.sagging is not None
+    cases = json.loads(json_text(result_dict(found)))["load_cases"]
+    static, storm, cold = (case["diameter_m"] for case in cases)
+    assert static == pytest.approx(found.workspace.sagging.diameter_m, rel=1e-4)
+    assert storm > cold > static
+    assert [case["temperature_change_K"] for case in cases] == [None, None, -40.0]
+    source = source_of(found, draws=False)
+    page = first_page(source)
+    assert "'storm' governs" in page.verdict.text
+    assert page.card is not None
+    assert page.card.size == f"{1e3 * storm:.2f}\u00a0mm"
+    section = load_cases.section(source)
+    rows = cells(section, "The thinnest diameter")
+    assert [row[0] for row in rows] == ["static", "storm", "cold"]
+    assert "Winches that regulate" in said(section)
+    assert any("storm" in label for label, _ in summary_rows(found))
+    assert found.qualities is not None
+    assert f"{1e3 * storm:.1f} mm" in found.qualities.cable.name

@@ -10,7 +10,7 @@ from designer.report.fonts import with_fonts
 from designer.report.outline import PageHeading, PageSummary, add_outline
 from designer.report.render import render_pdf
 
-PAGE = """<!doctype html><html><head><title>Tom &amp; Co</title>
+PAGE = """<!doctype html><html lang="en"><head><title>Tom &amp; Co</title>
 <meta name="generator" content="us 1.0">
 <meta name="dcterms.created" content="2026-02-03T04:05:06+01:30">
 <style>body { font-family: "Report Sans" }</style></head><body>
@@ -25,7 +25,7 @@ PAGE = """<!doctype html><html><head><title>Tom &amp; Co</title>
 
 def test_summary() -> None:
     page = PageSummary(PAGE)
-    assert page.title == "Tom & Co"
+    assert (page.title, page.language) == ("Tom & Co", "en")
     assert page.meta == {"generator": "us 1.0", "dcterms.created": "2026-02-03T04:05:06+01:30"}
     assert page.headings == [
         PageHeading(1, "top", "Top"),
@@ -43,6 +43,9 @@ def test_outline_holds_linked_headings_by_level() -> None:
     assert [item.title for item in nested] == ["Below"]
     assert reader.metadata is not None
     assert reader.metadata["/CreationDate"] == "D:20260203040506+01'30'"
+    root = reader.trailer["/Root"]
+    assert root["/Lang"] == "en"
+    assert root["/ViewerPreferences"]["/DisplayDocTitle"].value is True
 
 
 def test_a_page_without_metadata_gets_none_invented() -> None:
@@ -55,3 +58,4 @@ def test_a_page_without_metadata_gets_none_invented() -> None:
     assert list(reader.outline) == []
     assert reader.metadata is not None
     assert "/CreationDate" not in reader.metadata
+    assert "/Lang" not in reader.trailer["/Root"]

@@ -50,15 +50,18 @@ def load_case(
 
 
 def load_cases_fit(parts: Parts) -> Iterator[Fault]:
-    """Load cases have a selection that they are for, names of their own, and cables that exist."""
+    """Load cases have a workspace that they are for, names of their own, and cables that exist."""
     cases = parts.raw(_CASES)
     if not isinstance(cases, list) or not cases:
         return
-    if parts.raw("selection") is None:
-        expected = "a selection: load cases are for ropes that can be bought"
-        yield parts.fault(_CASES, "there is no selection", expected)
+    if parts.raw("workspace") is None:
+        expected = "a workspace: a load case is for all its poses"
+        yield parts.fault(_CASES, "there is no workspace", expected)
     if parts.raw("selection.groups") is not None:
-        problem = "groups of cables are chosen for the static load alone"
+        problem = (
+            "groups of cables are chosen for the static load alone: wind loads ropes of different "
+            "thickness in different directions, and all cables are solved with one"
+        )
         yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
     first: dict[str, int] = {}
     for index, case in enumerate(cases):
@@ -80,6 +83,10 @@ def _case_fits(
         yield parts.fault(
             _CASES, "too few cables are left", "a robot with more", index, "cable_lost"
         )
+    for own in ("safety_factor", "termination_efficiency"):
+        if case.get(own) is not None and parts.raw("selection") is None:
+            problem = "there is no selection whose figure it could replace"
+            yield parts.fault(_CASES, problem, "a selection, or a case without it", index, own)
     region = case.get("region")
     if parts.is_planar and isinstance(region, dict) and ("prism" in region or "box" in region):
         problem = "is a solid region, but the robot is planar"

@@ -41,18 +41,28 @@ def section(source: Source) -> Section:
     items = (
         f"Static equilibrium only: a {kind} of {fmt.kilograms(robot.platform.mass_kg)} on "
         f"{robot.n_cables} cables{where}. {_motion(analysis.study)}",
-        "All cables are equal. Each is elastic, carries no bending and no compression.",
+        f"{_alike(analysis)}. Each is elastic, carries no bending and no compression.",
         _loads(robot),
         f"{exits} {_losses(selection)}",
         _thinnest(robot),
         _effects(analysis),
         safety,
-        "Temperature, creep and wear are not counted. Gravity is "
+        f"{_not_counted(analysis.study)} Gravity is "
         f"{fmt.number(STANDARD_GRAVITY_M_PER_S2, 3)}\u00a0m/s².",
         crossing,
     )
     shown = Bullets(tuple(item for item in items if item))
     return Section.of("assumptions", "Assumptions and limits", shown)
+
+
+def _alike(analysis: Analysis) -> str:
+    return "All cables of a group are equal" if analysis.has_groups else "All cables are equal"
+
+
+def _not_counted(study: Study) -> str:
+    if any(case.temperature_change_K for case in study.load_cases):
+        return "Temperature counts as in the load cases; creep and wear are not counted."
+    return "Temperature, creep and wear are not counted."
 
 
 def _motion(study: Study) -> str:

@@ -144,7 +144,7 @@ def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
 def _facts(pose: GoverningPose) -> Facts:
     found = pose.found
     unit = "N" if found.loaded.robot.is_point_mass else "N or N·m"
-    facts = [Fact("Load case", found.case.name, found.loaded.words)]
+    facts = [Fact("Load case", found.case.name, fmt.printed(found.loaded.words))]
     if found.loaded.keeps_lengths:
         facts.append(Fact("At rest", fmt.position(pose.statics.poses.position_m[0])))
     return Facts(

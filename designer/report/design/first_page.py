@@ -19,6 +19,7 @@ from designer.report.design.selection import product_name
 from designer.report.design.source import Source
 from designer.report.design.workspace_figures import cover_picture
 from designer.report.material_class import class_of
+from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import Candidate, SelectionResult
@@ -161,8 +162,11 @@ def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
             f"{_holds(chosen)} Its largest tension is {fmt.newtons(found.max_tension_N)}, "
             f"{fmt.utilisation(found.utilisation)} of what the safety factor allows.{tight}"
         )
-    workspace, pose = analysis.workspace, analysis.pose
-    if workspace is not None and workspace.sagging is not None:
+    workspace, pose, need = analysis.workspace, analysis.pose, analysis.most_needed
+    if need is not None:
+        what = f"every pose of the workspace in every load case; '{need.found.case.name}' governs"
+        diameter_m, tension_N = need.diameter_m, need.found.verification.max_tension_N
+    elif workspace is not None and workspace.sagging is not None:
         worst, what = workspace.sagging, "every pose of the workspace"
         diameter_m, tension_N = worst.diameter_m, worst.max_tension_N
     else:
@@ -182,6 +186,9 @@ def _holds(chosen: Candidate) -> str:
 
 def _negative(analysis: Analysis) -> str:
     workspace, selection = analysis.workspace, analysis.selection
+    if analysis.most_needed is not None and not analysis.most_needed.is_held:
+        name = analysis.most_needed.found.case.name
+        return f"No cable of the configured family holds every pose in the load case '{name}'."
     if workspace is not None and not workspace.is_feasible:
         if selection is not None:
             return (
@@ -193,7 +200,8 @@ def _negative(analysis: Analysis) -> str:
         return "No ropes that the study allows were found that hold every pose of the workspace."
     if selection is not None:
         need = ""
-        if workspace is not None and workspace.sagging is not None:
+        at_rest = not analysis.study.load_cases
+        if at_rest and workspace is not None and workspace.sagging is not None:
             worst = workspace.sagging
             diameter = fmt.millimetres(worst.diameter_m)
             need = f" A cable of the configured family would need {diameter}."
@@ -208,6 +216,8 @@ def _card(analysis: Analysis) -> Card | None:
     if chosen is not None:
         return _rope_card(analysis, chosen)
     workspace, pose = analysis.workspace, analysis.pose
+    if analysis.most_needed is not None:
+        return _needs_card(analysis.most_needed)
     if workspace is not None:
         worst = workspace.sagging
         if worst is None:
@@ -222,6 +232,21 @@ def _card(analysis: Analysis) -> Card | None:
     what, diameter_m, tension_N, where = found
     facts = Fact("Largest tension", fmt.newtons(tension_N)), Fact("At the position", where)
     heading, size = diameter_heading(analysis, what), fmt.millimetres(diameter_m)
+    heading += " at rest" if analysis.study.load_cases else ""
+    return Card(heading, size, "of the configured cable family", Facts(facts))
+
+
+def _needs_card(need: CaseNeed) -> Card | None:
+    """Return what the load cases need of the family; None where one of them is not held."""
+    if not need.is_held:
+        return None
+    met = need.found.verification
+    facts = (
+        Fact("Load case", need.found.case.name, fmt.printed(need.found.loaded.words)),
+        Fact("Largest tension", fmt.newtons(met.max_tension_N)),
+        Fact("At the position", fmt.position(met.worst_position_m)),
+    )
+    heading, size = "Thinnest diameter found for the load cases", fmt.millimetres(need.diameter_m)
     return Card(heading, size, "of the configured cable family", Facts(facts))
 
 

@@ -11,6 +11,7 @@ from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.report.material_class import class_of
 from designer.selection.cases import FEW_SAMPLES, CaseFound
+from designer.selection.family_need import CaseNeed
 from designer.selection.result import Candidate
 from designer.statics.cable_loss import Fate
 from designer.study import Study
@@ -35,12 +36,15 @@ def loads_statement(study: Study) -> Statement:
         return Statement("Loads", f"One static load case, at rest: {without} is in it.", "doubt")
     names = fmt.listing(case.name for case in cases)
     lacks = f" {fmt.capital(without)} is in any of them." if lacking else ""
-    return Statement("Loads", f"The rope is to hold in every load case: {names}.{lacks}")
+    what = "cable" if study.selection is None else "rope"
+    return Statement("Loads", f"The {what} is to hold in every load case: {names}.{lacks}")
 
 
 def section(source: Source) -> Section | None:
     """Return what the chosen rope meets in each load case; None where the study has none."""
     study, selection = source.analysis.study, source.analysis.selection
+    if source.analysis.needs:
+        return _of_family(source, source.analysis.needs)
     if not study.load_cases or selection is None:
         return None
     chosen = selection.chosen
@@ -54,12 +58,7 @@ def section(source: Source) -> Section | None:
         None if chosen is None else _met(chosen, leaves_out=leaves_out),
         _LEFT_OUT if leaves_out else None,
         _lost(chosen) if chosen is not None else None,
-        "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
-        "platform, at the origin of its frame, and times drag coefficient and diameter on each "
-        "unstrained length of a cable, along the wind and at full speed whatever the cable's "
-        "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
-        "cables' own weight; an inertia force points where it is worst, as far as a search from "
-        "14 directions finds it.",
+        _HOW,
         None if chosen is None else _warmed(study, chosen),
         _pulleys(source),
         "The configured family, the shares of the region that sizes serve, stiffness and clearance "
@@ -68,13 +67,75 @@ def section(source: Source) -> Section | None:
     )
 
 
+_HOW = (
+    "Wind makes ½ · 1.25\u00a0kg/m³ · v² of pressure, times drag coefficient and area on the "
+    "platform, at the origin of its frame, and times drag coefficient and diameter on each "
+    "unstrained length of a cable, along the wind and at full speed whatever the cable's "
+    "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
+    "cables' own weight; an inertia force points where it is worst, as far as a search from "
+    "14 directions finds it."
+)
+
+
+def _of_family(source: Source, needs: tuple[CaseNeed, ...]) -> Section:
+    """Return what each load case needs of the configured family."""
+    study = source.analysis.study
+    leaves_out = study.workspace is not None and study.workspace.hangs_below == "exclude"
+    columns: Heads = (
+        *("Load case", Column("Diameter"), Column("Largest tension"), Column("Cable")),
+        *("Platform at", "Direction or loss"),
+    )
+    most = source.analysis.most_needed
+    rows = [_need_row(one, governs=one is most and one.is_held) for one in needs]
+    caption = (
+        "The thinnest diameter of the configured family that was found for each load case, with "
+        "its own ice and drag, where the case asks for most."
+    )
+    keeps = any(case.temperature_change_K for case in study.load_cases)
+    return Section.of(
+        "load-cases",
+        "Load cases",
+        *carried_away(source.findings),
+        _asked(study),
+        Table.of(caption, columns, *rows),
+        _LEFT_OUT if leaves_out else None,
+        _HOW,
+        _KEPT if keeps else None,
+        _pulleys(source),
+        "The maps are those of the static load of the study; stiffness and clearance are those of "
+        "the thickest of these cables, in that load.",
+    )
+
+
+_KEPT = (
+    "By a change of temperature cables grow as the study says, else as steel does, by 12 × 10⁻⁶ "
+    "per kelvin (EN 1993-1-1, 3.2.6), and braked winches let the platform settle. Winches that "
+    "regulate the pose change lengths instead, and no tension."
+)
+
+
+def _need_row(one: CaseNeed, *, governs: bool) -> Row:
+    met, found = one.found.verification, one.found
+    size, tension = fmt.millimetres(one.diameter_m), fmt.newtons(met.max_tension_N)
+    cells = (
+        found.case.name,
+        size if one.is_held else "none holds",
+        tension if one.is_held else fmt.MISSING,
+        str(found.most_used() or "") if one.is_held else fmt.MISSING,
+        fmt.position(met.worst_position_m[:3]),
+        fmt.printed(found.loaded.words) or fmt.MISSING,
+    )
+    return Row(cells, "good" if governs else "" if one.is_held else "bad")
+
+
 def carried_away(findings: Findings) -> Iterator[Statement]:
     """Yield the load cases in which the platform would be blown or pulled away."""
     for one in findings.adrift:
         case, robot = one.loaded.case, one.loaded.robot
         how = "blown" if case.wind is not None else "pulled"
+        words = fmt.printed(one.loaded.words)
         text = (
-            f"In the load case '{case.name}', {one.loaded.words}, straight cables cannot hold the "
+            f"In the load case '{case.name}', {words}, straight cables cannot hold the "
             f"platform in {fmt.share(one.share)} of the poses in which they hold it at rest, such "
             f"as {fmt.position(one.place)}: it is pushed with {fmt.newtons(one.push_N)} and weighs "
             f"{fmt.newtons(robot.weight_N)}. Only the weight of rope that hangs far below could "
@@ -100,7 +161,7 @@ def _statement(chosen: Candidate | None) -> Statement:
         return Statement("No rope holds in every load case", text, "bad")
     most = chosen.governing
     where = fmt.position(most.verification.worst_position_m[:3])
-    words = f", {most.loaded.words}" if most.loaded.words else ""
+    words = f", {fmt.printed(most.loaded.words)}" if most.loaded.words else ""
     text = (
         f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
         f"{fmt.utilisation(most.utilisation)} with the platform at {where}{words}."
@@ -183,7 +244,7 @@ def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
             allowable,
             str(found.most_used() or ""),
             fmt.position(met.worst_position_m[:3]),
-            found.loaded.words or "–",
+            fmt.printed(found.loaded.words) or "–",
             *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
             f"{verdict}, governs" if governs else verdict,
         ),
@@ -206,13 +267,12 @@ def _lost(chosen: Candidate) -> str:
         fate = Fate(int(loss.fate[0]))
         what = [f"without cable {found.loaded.lost_cable}"] if found.loaded.lost_cable else []
         what += [_warmer(found.case)] if found.case.temperature_change_K else []
-        rest = ""
-        if fate in (Fate.HOLDS, Fate.RESTS_ELSEWHERE):
+        words, is_lost = fate.words, found.loaded.lost_cable is not None
+        if fate is Fate.RESTS_ELSEWHERE or (fate is Fate.HOLDS and not is_lost):
             at, moved = fmt.position(loss.rest.position_m[0]), float(loss.moved_m[0])
-            rest = f", {fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)} away at {at}"
-        parts.append(
-            f"'{found.case.name}': {', '.join(what)}, at the pose above, {fate.words}{rest}."
-        )
+            away = fmt.millimetres(moved) if moved < 1.0 else fmt.metres(moved)
+            words = f"{Fate.RESTS_ELSEWHERE.words}, {away} away at {at}"
+        parts.append(f"'{found.case.name}': {', '.join(what)}, at the pose above, {words}.")
     if not parts:
         return ""
     return (
@@ -240,8 +300,9 @@ def _warmed(study: Study, chosen: Candidate) -> str:
             whose += f", which a rope of {chosen.grade.material} need not have"
     largest = max(abs(case.temperature_change_K or 0.0) for case in cases)
     paid_m = abs(expansion) * largest * float(chosen.verification.longest_m.max())
+    grows = f"{fmt.trimmed(1e6 * expansion)}\u202f×\u202f10⁻⁶ per kelvin"
     return (
-        f"By a change of temperature cables grow by {fmt.power_of_ten(expansion, '1/K')}, {whose}; "
+        f"By a change of temperature cables grow by {grows}, {whose}; "
         "exit points and platform are taken to stay as they are. With braked winches the platform "
         f"settles. Winches that regulate the pose pay out or haul in up to "
         f"{fmt.millimetres(paid_m)} instead, and no tension changes: then such a case asks for no "

@@ -11,6 +11,7 @@ from designer.report import format as fmt
 from designer.report.blocks import Statement
 from designer.report.design.clearance import clearance_statement
 from designer.report.design.groups import groups_statement
+from designer.report.design.load_cases import carried_away
 from designer.report.design.stiffness import stiffness_statement
 from designer.workspace.result import WorkspaceMap
 
@@ -29,11 +30,19 @@ def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     if workspace is not None and not workspace.is_feasible:
         parts = _not_served(analysis, workspace, findings.unserved)
         yield Statement("The workspace", " ".join(parts), "bad")
+    for need in analysis.needs:
+        if not need.is_held:
+            where = fmt.position(need.found.verification.worst_position_m)
+            words = f", {fmt.printed(need.found.loaded.words)}" if need.found.loaded.words else ""
+            text = f"At {where}{words}, no diameter of the configured family holds the platform."
+            yield Statement(f"The load case '{need.found.case.name}'", text, "bad")
     if selection is not None and not analysis.has_products:
         if analysis.groups is not None:
             yield groups_statement(analysis.groups)
         if selection.reason:
             yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", "bad")
+    if not analysis.has_cable:
+        yield from carried_away(findings)
     yield from _quality_reasons(analysis)
 
 
@@ -95,7 +104,7 @@ def actions(analysis: Analysis, findings: Findings) -> Iterator[str]:
 
 def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
     pose, workspace, found = analysis.pose, analysis.workspace, analysis.qualities
-    yield from _other_grades(analysis)
+    yield from _other_grades(analysis) if not findings.adrift else ()
     if pose is not None and not pose.sizing.statics.is_solved:
         yield Verdict(int(pose.sizing.statics.verdict)).advice
     if workspace is not None and not workspace.is_feasible:

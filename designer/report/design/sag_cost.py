@@ -73,7 +73,9 @@ def _at_the_worst_poses(analysis: Analysis) -> _Found | None:
         return None
     sagging, massless = workspace.sagging, workspace.massless
     diameters = sagging.diameter_m, massless.diameter_m
-    return "each at its own worst pose", *diameters, sagging.max_tension_N, massless.max_tension_N
+    where = "each at its own worst pose"
+    where += ", at rest" if analysis.study.load_cases else ""
+    return where, *diameters, sagging.max_tension_N, massless.max_tension_N
 
 
 def _at_the_configured_pose(analysis: Analysis) -> _Found | None:

@@ -46,7 +46,8 @@ def section(source: Source) -> Section | None:
     if study.workspace is None or found is None:
         return None
     if source.rope is None:
-        return Section.of("workspace", "The workspace", *_of_family(source, study, found))
+        title = "The workspace at rest" if study.load_cases else "The workspace"
+        return Section.of("workspace", title, *_of_family(source, study, found))
     return Section.of(
         "workspace",
         "The workspace with the chosen rope",

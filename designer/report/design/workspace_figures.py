@@ -101,7 +101,8 @@ def scene_caption(maps: WorkspaceMaps) -> str:
 def cover_caption(maps: WorkspaceMaps) -> str:
     """Return the caption of the workspace on the first page."""
     shown = _span(_shown(maps))
-    return f"Needed diameter of the configured cable family over {_extent(maps)}.{shown}"
+    rest = ", at rest" if maps.study.load_cases else ""
+    return f"Needed diameter of the configured cable family over {_extent(maps)}{rest}.{shown}"
 
 
 def _extent(maps: WorkspaceMaps) -> str:

@@ -1,0 +1,121 @@
+"""Which diameter of the configured family each load case needs, where no rope is to be chosen.
+
+Ice and drag do not grow with the section as weight does, and kept lengths are those of one cable:
+loaded cables are no family. So one diameter is tried in all directions of a case, and the thinnest
+that serves the worst pose in the direction found there is tried next, until none is worse. As
+`designer.workspace.section` seeks the section that needs itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from designer.effects.design import AsBuilt
+from designer.errors import DesignerError
+from designer.model.cable import Cable, Material
+from designer.model.load_case import LoadCase
+from designer.progress import SILENT, Reporter
+from designer.selection.cases import CaseFound, Cases, governing, searched_all
+from designer.study import Study, Workspace
+
+_DIAMETERS_M = np.geomspace(1e-4, 1.0, 81)
+_STILL, _SAME = 1e-9, 1e-6
+_MOST_TURNS = 20
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaseNeed:
+    """What a load case needs of the configured family.
+
+    Parameters
+    ----------
+    diameter_m : float
+        The thinnest diameter found that holds every pose in every direction of the case [m]; NaN
+        where none does.
+    found : CaseFound
+        What it meets where the case asks for most; where none holds, a cable that fails, and where.
+    """
+
+    diameter_m: float
+    found: CaseFound
+
+    @property
+    def is_held(self) -> bool:
+        """Whether a cable of the family holds the case."""
+        return math.isfinite(self.diameter_m)
+
+
+def most_needed(needs: Sequence[CaseNeed]) -> CaseNeed | None:
+    """Return the case that needs the thickest cable, or one that none holds; None of none."""
+    thickest = {id(one): one.diameter_m if one.is_held else math.inf for one in needs}
+    return max(needs, key=lambda one: thickest[id(one)], default=None)
+
+
+def family_needs(study: Study, built: AsBuilt, reporter: Reporter = SILENT) -> tuple[CaseNeed, ...]:
+    """Return what each load case needs where the study asks for no rope; else none."""
+    workspace, needs = study.workspace, []
+    if workspace is None or study.selection is not None or not study.load_cases:
+        return ()
+    with reporter.task("load cases", len(study.load_cases)) as advance:
+        for case in study.load_cases:
+            needs.append(family_need(built, workspace, study.material, case))
+            advance(1)
+    return tuple(needs)
+
+
+def family_need(
+    built: AsBuilt, workspace: Workspace, material: Material, case: LoadCase
+) -> CaseNeed:
+    """Return what a load case needs; ``material`` is the family as its data sheet has it.
+
+    Raises
+    ------
+    DesignerError
+        If the search does not come to an end.
+    """
+    cases = Cases(built.robot, workspace, (case,))
+
+    def cable(diameter_m: float) -> Cable:
+        return built.cable(material.cable(diameter_m))
+
+    diameter_m = float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
+    section_m = 0.0
+    for _ in range(_MOST_TURNS):
+        (tried,) = cases.sampled([[cable(diameter_m)]], lambda _: None)
+        most = governing(tried)
+        if most.verification.holds:
+            most = governing(searched_all(tried))
+        # Of the first trial the pose counts, whether it holds there or not.
+        if section_m > 0.0 and most.utilisation <= 1.0 + _SAME:
+            return CaseNeed(section_m, most)
+        needed_m = _thinnest(most, cable)
+        if math.isnan(needed_m) or needed_m <= section_m * (1.0 + _STILL):
+            return CaseNeed(math.nan, most)
+        section_m = diameter_m = needed_m
+    raise DesignerError(
+        f"no diameter was found that serves the load case '{case.name}': each asks for another one"
+    )
+
+
+def _thinnest(found: CaseFound, cable: Callable[[float], Cable]) -> float:
+    """Return the thinnest diameter that serves the pose found, in its direction [m]; or NaN."""
+    robot = found.loaded.bare[0]
+    if not np.isfinite(found.pose.position_m).all():  # every pose is left out
+        return math.nan
+
+    def serves(diameter_m: float) -> bool:
+        one = found.loaded.on(robot, cable(diameter_m))
+        return found.tension_N(one) <= one.cable.allowable_tension_N
+
+    at = next((k for k, d in enumerate(_DIAMETERS_M.tolist()) if serves(d)), None)
+    if at is None:
+        return math.nan
+    thin, thick = float(_DIAMETERS_M[max(at - 1, 0)]), float(_DIAMETERS_M[at])
+    while thick / thin > 1.0 + _STILL:
+        middle = math.sqrt(thin * thick)
+        thin, thick = (thin, middle) if serves(middle) else (middle, thick)
+    return thick
