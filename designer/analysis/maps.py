@@ -99,6 +99,8 @@ class WorkspaceMaps:
         where the centre lies outside that hull.
     served : Served
         Share of the workspace over diameter.
+    impossible_m : array (n, 3, 3)
+        Triangles in which the part ends that is proved to be served by no rope [m].
     """
 
     study: Study
@@ -107,6 +109,7 @@ class WorkspaceMaps:
     shell: Mapping[str, Field]
     edge: EdgeProfile | None
     served: Served
+    impossible_m: FloatArray
 
     @property
     def region(self) -> Region:
@@ -166,7 +169,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     study, found = as_built(analysis.study, analysis.section_m), analysis.workspace
     if found is None or analysis.sweep_file is None:
         raise ValueError("the analysis has no workspace")
-    region = _workspace(study).region
+    region, part = _workspace(study).region, analysis.servable
     focus = _focus(study, found)
     shell: Mapping[str, Field]
     if isinstance(region, Prism):
@@ -186,6 +189,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
         shell=shell,
         edge=edge_profile(study, focus.position_m),
         served=served(analysis.sweep_file, _workspace(study), found),
+        impossible_m=np.empty((0, 3, 3)) if part is None else part.border_m,
     )
 
 

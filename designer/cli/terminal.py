@@ -60,26 +60,31 @@ class ProgressBars:
     def task(self, name: str, total: int) -> Iterator[Callable[[int], None]]:
         """Open a task of ``total`` steps; yields the function that advances it."""
         bar = self._progress.add_task(name, total=total)
-        began_s, done = time.monotonic(), 0
+        done, first = 0, (0.0, 0.0)
 
         def advance(steps: int) -> None:
-            nonlocal done
+            nonlocal done, first
             done += steps
             self._progress.advance(bar, steps)
+            share = min(done / max(total, 1), 1.0)
+            if first[1] == 0.0:  # what is compiled before the first step says nothing of the others
+                first = time.monotonic(), share
             if not _notes.is_terminal:
-                self._tell(name, min(done / max(total, 1), 1.0), began_s)
+                self._tell(name, share, *first)
 
         yield advance
         self._progress.update(bar, completed=total, total=total)
 
-    def _tell(self, name: str, share: float, began_s: float) -> None:
+    def _tell(self, name: str, share: float, first_s: float, first_share: float) -> None:
         """Write how far a task is, unless that was told a moment ago."""
         now_s = time.monotonic()
         if now_s - self._told_s < _TOLD_EVERY_S or share == 0.0:
             return
         self._told_s = now_s
-        left_s = (now_s - began_s) * (1.0 - share) / share
-        text = f"{now_s - self._began_s:.0f} s: {name}, {share:.0%}, {left_s:.0f} s left"
+        text = f"{now_s - self._began_s:.0f} s: {name}, {share:.0%}"
+        if share > first_share:
+            left_s = (now_s - first_s) * (1.0 - share) / (share - first_share)
+            text += f", {left_s:.0f} s left"
         _notes.print(text, markup=False, soft_wrap=True)
 
 

@@ -105,7 +105,7 @@ def prove(
     enough : float
         Utilisation up to which the cable holds; just above one where it is sized for that.
     progress : callable
-        Called with the share of the volume that is proved.
+        Called with how far it is: the share of the volume that is proved, or that of the time.
     """
     reason = why_not(robot, space.region)
     if reason:
@@ -117,8 +117,8 @@ def prove(
         if now - began >= budget.seconds or search.is_refuted:
             break
         search.step(int(min(budget.boxes - search.boxes, search.batch)))
-        progress(search.fraction)
         before, now = now, time.monotonic()
+        progress(min(max(search.fraction, (now - began) / budget.seconds), 1.0))
         if now - before > _LONG * budget.seconds:
             search.batch = max(search.batch // 2, _FEWEST)
     return search.result(now - began)

@@ -22,10 +22,12 @@ from itertools import product
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
+from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
+from designer.proof.border import Boxes, border_m
 from designer.proof.cover import Cover, covers_of
 from designer.proof.encloser import Encloser, why_not
 from designer.proof.prove import Budget
@@ -39,7 +41,7 @@ _BATCH = 256
 _TWO_SIDES = np.array(list(product((0, 1), repeat=3)))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Servable:
     """Shares of a space, by volume.
 
@@ -51,11 +53,15 @@ class Servable:
         Proved that some rope does, if it is light and strong enough.
     boxes : int
         How many were tried.
+    border_m : array (n, 3, 3)
+        Triangles in which that part ends, inside the region, of a prism in one orientation; else
+        none [m].
     """
 
     impossible: float
     possible: float
     boxes: int
+    border_m: FloatArray
 
 
 def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
@@ -78,7 +84,9 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
         boxes += part.step(int(min(_BATCH, budget.boxes - boxes)))
     whole = sum(part.whole for part in covers)
     impossible, possible = sum(part.no for part in covers), sum(part.yes for part in covers)
-    return Servable(impossible / whole, possible / whole, boxes)
+    has_border = isinstance(space.region, Prism) and len(covers) == 1
+    border = covers[0].border_m() if has_border else np.empty((0, 3, 3))
+    return Servable(impossible / whole, possible / whole, boxes, frozen_array(border))
 
 
 class _Part:
@@ -91,10 +99,18 @@ class _Part:
         self._volume = cover.share(self._low, self._high, corners)
         self.whole = float(self._volume.sum())
         self.no = self.yes = 0.0
+        self._no: list[Boxes] = []
+        self._yes: list[Boxes] = []
 
     @property
     def largest(self) -> float:
         return float(self._volume.max(initial=0.0))
+
+    def border_m(self) -> FloatArray:
+        """Return where boxes that no rope can serve end, and the others begin (n, 3, 3) [m]."""
+        return border_m(
+            self._cover, _joined(self._no), _joined([*self._yes, (self._low, self._high)])
+        )
 
     def step(self, most: int) -> int:
         """Decide the largest boxes, halve the others; return how many there were."""
@@ -105,6 +121,8 @@ class _Part:
         no = ~yes & self._is_impossible(low, high, ~told.solved)
         self.yes += float(volume[yes].sum())
         self.no += float(volume[no].sum())
+        self._no.append((low[no], high[no]))
+        self._yes.append((low[yes], high[yes]))
         left = ~yes & ~no & ((high - low).max(axis=1) > 0.0)
         cut = np.where(told.solved, told.cut, (high - low)[:, :3].argmax(axis=1))[left]
         low, high = low[left], high[left]
@@ -160,3 +178,8 @@ class _Part:
             return False
         y = found.x[:m]
         return bool((rays @ y).max() < -_CLEAR and load @ y > _CLEAR)
+
+
+def _joined(boxes: list[Boxes]) -> Boxes:
+    low, high = zip(*boxes, strict=True)
+    return np.concatenate(low), np.concatenate(high)

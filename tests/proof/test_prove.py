@@ -172,6 +172,11 @@ def test_volumes_that_no_rope_serves_are_bounded_from_both_sides(fast_robot: Rob
     assert found.impossible <= 0.5 <= 1.0 - found.possible
     assert found.impossible > 0.3
     assert found.possible > 0.25
+    x, y, _ = found.border_m.reshape(-1, 3).T
+    steep = np.sqrt(0.75)
+    inward_m = np.minimum(steep * x, steep * (500.0 - x)) - 0.5 * y
+    assert len(inward_m) > 300
+    assert -60.0 < inward_m.min() <= inward_m.max() < 1e-2  # outside the outline, and near
 
 
 def test_a_planar_platform_on_three_cables_is_no_point_mass() -> None:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -308,6 +309,21 @@ class TestPictures:
         image = workspace_scene(maps_of("exclude"))
         assert count(image, palette.LEFT_OUT) > 10_000
         assert count(image, palette.WARNING) == 0
+
+    def test_the_map_shines_through_the_border_of_what_no_rope_serves(self) -> None:
+        maps = maps_of("served")
+        low, high = bounds_m(maps)
+        across = np.array([[low, [*high[:2], low[2]], high], [low, high, [*low[:2], high[2]]]])
+        border = replace(maps, impossible_m=across)
+        without, drawn = workspace_scene(maps), workspace_scene(border)
+        tinted = (without != drawn).any(axis=-1)
+        assert tinted.sum() > 20_000
+        assert count(without, palette.IMPOSSIBLE) == count(drawn, palette.IMPOSSIBLE) == 0
+        mixed = 0.5 * without[tinted] + 0.5 * np.array(rgb(palette.IMPOSSIBLE))
+        assert (np.abs(drawn[tinted] - mixed).max(axis=1) < 3.0).mean() > 0.8
+        told = "no rope of any size holds beyond this (proved)"
+        assert told in workspace_scene_html(border)
+        assert told not in workspace_scene_html(maps)
 
     def test_quantities_differ(self) -> None:
         quantities = (DIAMETER, TENSION, RATIO)

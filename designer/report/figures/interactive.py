@@ -37,6 +37,7 @@ def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) 
     stage = Stage(view_of(maps), SCREEN)
     thinned = maps.thinned()
     add_workspace(stage, thinned, quantity, steps)
+    stage.border(maps.impossible_m)
     stage.lines(overlay.floor_lines(stage.view, bounds_m(maps)), palette.FAINT, 1.0)
     stage.aim()
     scene = _scene(stage)
@@ -120,7 +121,7 @@ def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, vi
     parts.append(_scale(quantity, steps) if steps is not None else "")
     notes = (
         f'<i style="background:{colour}"></i><span>{text}</span>'
-        for colour, text in overlay.meanings(maps.shown)
+        for colour, text in overlay.meanings(maps.shown) + overlay.proved(maps.impossible_m)
     )
     found = "".join(notes)
     parts.append(f'<p class="notes">{found}</p>' if found else "")

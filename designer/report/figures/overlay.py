@@ -109,6 +109,12 @@ def meanings(fields: Iterable[Field]) -> list[tuple[str, str]]:
     return found
 
 
+def proved(triangles_m: FloatArray) -> list[tuple[str, str]]:
+    """Return colour and meaning of the border of what no rope can serve, if it is drawn."""
+    text = "no rope of any size holds beyond this (proved)"
+    return [(palette.IMPOSSIBLE, text)] if len(triangles_m) else []
+
+
 def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     """Write coordinates along the edges of a box (2, 3) that face the camera.
 

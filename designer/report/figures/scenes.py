@@ -23,7 +23,7 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
-from designer.report.figures.stage import Image, Stage
+from designer.report.figures.stage import BORDER_OPACITY, Image, Stage
 from designer.report.figures.view import (
     Frame,
     View,
@@ -185,9 +185,17 @@ def workspace_scene(
     steps = scale_of(maps, quantity)
     stage = Stage(view_of(maps, look.frame))
     add_workspace(stage, maps, quantity, steps)
+    border_m = maps.impossible_m if look is _PAGE else maps.impossible_m[:0]
+    stage.border(border_m)
     with canvas.drawing():
         figure, axes = _taken(stage, bounds_m(maps), look.letters)
-        looks = [(text, {"facecolor": colour}) for colour, text in overlay.meanings(maps.shown)]
+        looks: list[tuple[str, Style]] = [
+            (text, {"facecolor": colour}) for colour, text in overlay.meanings(maps.shown)
+        ]
+        looks += [
+            (text, {"facecolor": colour, "alpha": BORDER_OPACITY})
+            for colour, text in overlay.proved(border_m)
+        ]
         canvas.legend(figure, looks, "lower left", ncols=2)
         if steps is not None:
             steps.bar(figure, quantity.label, cax=figure.add_axes(look.bar))

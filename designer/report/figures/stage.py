@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pyvista import DataSet, PolyData
 
 Image = NDArray[np.uint8]
+BORDER_OPACITY = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +181,15 @@ class Stage:
         hull = pyvista.PolyData.from_regular_faces(points_m.astype(np.float64), faces)
         self.add(hull, colour)
         self.add(hull.extract_feature_edges(feature_angle=20.0), palette.INK, 2.0)
+
+    def border(self, triangles_m: FloatArray) -> None:
+        """Add triangles (n, 3, 3) [m] that let through what lies behind them."""
+        import pyvista
+
+        if len(triangles_m):
+            corners = np.arange(3 * len(triangles_m)).reshape(-1, 3)
+            mesh = pyvista.PolyData.from_regular_faces(triangles_m.reshape(-1, 3), corners)
+            self.add(mesh.clean(), color=palette.IMPOSSIBLE, opacity=BORDER_OPACITY)
 
     def field(self, field: Field, quantity: MapQuantity, steps: Steps | None) -> None:
         """Add a surface (n, m) coloured by a quantity, with lines of equal value.

@@ -1,0 +1,64 @@
+"""Where boxes of one kind end and those of another begin, as triangles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.proof.cover import Cover
+
+Boxes = tuple[FloatArray, FloatArray]
+"""Low and high corners, each (n, 3)."""
+
+
+def border_m(cover: Cover, ones: Boxes, others: Boxes) -> FloatArray:
+    """Return the faces that boxes have in common with others, inside the region.
+
+    Parameters
+    ----------
+    cover : Cover
+        Whose coordinates they have.
+    ones, others : pair of array (n, 3)
+        Low and high corners of boxes that do not overlap.
+
+    Returns
+    -------
+    array (n_triangles, 3, 3)
+        Corners of triangles [m].
+    """
+    triangles = [np.empty((0, 3, 3))]
+    for axis in range(3):
+        low, high, plan = cover.cut(*_touching(ones, others, axis))
+        some = (low <= high).all(axis=1)
+        low, high, plan = low[some], high[some], plan[some]
+        if axis == 2:
+            level = np.broadcast_to(low[:, None, 2:], (*plan.shape[:2], 1))
+            faces = np.concatenate([plan, level], axis=2)
+        else:
+            faces = np.stack([low, high, high, low], axis=1)
+            faces[:, 1, 2], faces[:, 3, 2] = low[:, 2], high[:, 2]
+        triangles += [faces[:, [0, k, k + 1]] for k in range(1, faces.shape[1] - 1)]
+    found = np.concatenate(triangles)
+    edges = found[:, 1:] - found[:, :1]
+    found = found[np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) > 0.0]
+    return cover.places(found.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
+
+
+def _touching(ones: Boxes, others: Boxes, axis: int) -> Boxes:
+    """Return the common faces across an axis, as boxes that are flat along it."""
+    across = [k for k in range(3) if k != axis]
+    found = []
+    for side, facing in ((1, 0), (0, 1)):
+        at, planes = ones[side][:, axis], others[facing][:, axis]
+        order = np.argsort(planes)
+        first, last = (np.searchsorted(planes[order], at, end) for end in ("left", "right"))
+        count = last - first
+        one = np.repeat(np.arange(len(at)), count)
+        nth = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+        other = order[first[one] + nth]
+        low = np.maximum(ones[0][one], others[0][other])
+        high = np.minimum(ones[1][one], others[1][other])
+        low[:, axis] = high[:, axis] = at[one]
+        some = (low < high)[:, across].all(axis=1)
+        found.append((low[some], high[some]))
+    return np.concatenate([low for low, _ in found]), np.concatenate([high for _, high in found])
