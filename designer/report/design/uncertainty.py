@@ -75,9 +75,7 @@ def in_a_sentence(found: UncertaintyAnalysis) -> str:
     text = _odds_words(found.chosen)
     if len(found.shares) > 1:
         most = found.shares[0]
-        text += (
-            f", {_NAMES[most.input].lower()} carries {_percent(most.first_order)} of the spread"
-        )
+        text += f", {_NAMES[most.input].lower()} carries {_percent(most.first_order)} of the spread"
     if found.chosen.not_held:
         missing = fmt.share(found.chosen.not_held, found.samples)
         text += f"; in {missing} of the draws a pose is not held at all, which is not enough"
