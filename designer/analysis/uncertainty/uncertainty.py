@@ -32,7 +32,7 @@ _ALONE, _ALONE_SLOWLY = 1024, 256
 _PROBES = 32
 _END = 1e-3
 """Share of a distribution beyond which its ends are not probed."""
-_LEAST_POINTS = 32
+_LEAST_POINTS = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
