@@ -22,6 +22,7 @@ _HOMES = {
     "designer.model.region": "PointList Prism Rectangle",
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
+    "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
     "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect Selection Study Workspace",
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from designer.model.region import PointList, Prism, Rectangle
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
+    from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
@@ -58,6 +60,7 @@ __all__ = [
     "InputError",
     "Material",
     "Measurements",
+    "Normal",
     "Orientations",
     "OutputError",
     "Platform",
@@ -69,6 +72,8 @@ __all__ = [
     "Robot",
     "Selection",
     "Study",
+    "Uncertainty",
+    "Uniform",
     "Verdict",
     "Workspace",
     "analyse",

@@ -203,6 +203,23 @@ def test_one_pass_and_one_by_one_agree(six_cable_robot: Robot, monkeypatch) -> N
         monkeypatch.undo()
 
 
+@pytest.mark.parametrize("is_planar", [False, True])
+def test_moved_exit_points_in_one_batch_and_one_by_one_agree(is_planar, monkeypatch) -> None:
+    rng = np.random.default_rng(secrets.randbits(32))
+    body = Platform(180.0, wrench_N=np.array([100.0, 0, -50, 0, 0, 0]))
+    exits = ANCHORS[:2] if is_planar else ANCHORS
+    robot = Robot(exits, body, is_planar=is_planar, tilt_rad=np.array([0.0, 0.02]))
+    robot = replace(robot, tilt_rad=np.zeros(2)) if is_planar else robot
+    places = PLACES * [1, 0, 1] if is_planar else PLACES
+    case = LoadCase("cold", ice=Ice(0.002), acceleration_m_per_s2=0.3)
+    loaded = list(case.on(robot, Cable(0.005, 0.15, 1.2e6, 4000.0)))[2]
+    asked = Asked(loaded, replace(POINTS, region=PointList(places)), places)
+    draws = draws_at(ALL, robot, rng.random((25, 4 + 3 * robot.n_cables)))
+    together = asked.utilisation(draws)
+    monkeypatch.setattr(Asked, "is_one_pass", False)
+    np.testing.assert_allclose(together, asked.utilisation(draws), rtol=1e-7)
+
+
 def test_wind_and_lost_cables_are_solved_one_by_one() -> None:
     body = replace(ROBOT, platform=replace(ROBOT.platform, drag_area_m2=1.0))
     cable = Cable(0.006, 0.15, 1.7e6, 5000.0)

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.analysis.uncertainty.draws import Draws
+from designer.analysis.uncertainty.rows import utilisation_of_rows
 from designer.arrays import FloatArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
@@ -70,7 +71,13 @@ class Asked:
         """
         if self.is_one_pass and not draws.moves:
             return self._as_ropes(draws)
-        return np.stack([self._solved(draws.on(self.loaded, k)) for k in range(len(draws))])
+        has_rows = self.is_one_pass and self.loaded.robot.has_one_branch
+        if not has_rows or self.workspace.hangs_below == "exclude":
+            return np.stack([self._solved(draws.on(self.loaded, k)) for k in range(len(draws))])
+        used = utilisation_of_rows(self.loaded, self.places, draws, self._ropes(draws))
+        for k in np.flatnonzero(np.isnan(used).any(axis=1)).tolist():
+            used[k] = self._solved(draws.on(self.loaded, k))
+        return used
 
     def _solved(self, one: Loaded) -> FloatArray:
         if one.keeps_lengths:
@@ -80,23 +87,28 @@ class Asked:
             tension = demand_of(statics.largest_tension_N, statics, self.workspace.hangs_below)
         return np.asarray(tension / one.cable.allowable_tension_N)
 
-    def _as_ropes(self, draws: Draws) -> FloatArray:
+    def _ropes(self, draws: Draws) -> FloatArray:
+        """Return mass per length, EA and allowable tension of each draw (n, 3); ice stays."""
         one, bare = self.loaded, self.loaded.bare[1]
-        added = (draws.linear_mass - 1.0) * bare.linear_density_kg_per_m  # ice stays
-        figures = [
-            one.cable.linear_density_kg_per_m + added,
-            draws.modulus * bare.axial_stiffness_N,
-            draws.breaking_load * bare.allowable_tension_N,
-        ]
-        each = np.column_stack(figures) / draws.payload[:, None]
+        added = (draws.linear_mass - 1.0) * bare.linear_density_kg_per_m
+        return np.column_stack(
+            [
+                one.cable.linear_density_kg_per_m + added,
+                draws.modulus * bare.axial_stiffness_N,
+                draws.breaking_load * bare.allowable_tension_N,
+            ]
+        )
+
+    def _as_ropes(self, draws: Draws) -> FloatArray:
+        robot, each = self.loaded.robot, self._ropes(draws) / draws.payload[:, None]
         order = np.argsort(each[:, 0], kind="stable")
         ropes = [Cable(math.nan, *row) for row in each[order].tolist()]
         poses, cells = Poses.at(self.places), np.arange(len(self.places))
         exclude = self.workspace.hangs_below == "exclude"
-        found = meet(one.robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
+        found = meet(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
         for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
             hard = np.flatnonzero(found.failed[row])
-            add_slowly(found, row, one.robot, poses, ropes[row], cells, exclude, hard)
+            add_slowly(found, row, robot, poses, ropes[row], cells, exclude, hard)
         used = np.empty_like(found.utilisation)
         used[order] = np.where(found.failed, np.inf, found.utilisation)
         return used

@@ -102,7 +102,7 @@ def _indices(
 
     width = max(at.stop for at in columns.values())
     unit = qmc.Sobol(2 * width, rng=rng).random(points)
-    first, second = unit[:, :width], unit[:, width:]
+    first, second = unit[:, ::2], unit[:, 1::2]  # the first coordinates are the most even
     mixed = []
     for at in columns.values():
         one = first.copy()

@@ -114,15 +114,13 @@ def _percent(share: float) -> str:
 def _of_modulus(found: UncertaintyAnalysis) -> Statement:
     """Say what the borrowed modulus alone makes of the answer."""
     used, spread = found.chosen.utilisation, _words("modulus", found.spreads["modulus"])
-    held = used[np.isfinite(used)]
-    low, high = (
-        (fmt.utilisation(float(end)) for end in (held.min(), held.max())) if len(held) else ("", "")
-    )
+    ends = dict.fromkeys(fmt.utilisation(float(end)) for end in (used.min(), used.max()))
+    shown = " to ".join(ends) if len(ends) > 1 else f"{next(iter(ends))} throughout"
     text = (
         f"The modulus of the chosen rope is borrowed from another one and may be off by {spread}. "
-        f"By that alone between {low} and {high} of the rope are used: it is "
-        f"{_odds_words(found.chosen)}. An uncertainty block in the study adds payload, mass, "
-        "breaking load and exit points, and the share of each."
+        f"By that alone the utilisation is {shown}: the rope is {_odds_words(found.chosen)}. "
+        "An uncertainty block in the study adds payload, mass, breaking load and exit points, and "
+        "the share of each."
     )
     return Statement("Borrowed modulus", text, "" if found.chosen.probability == 1.0 else "bad")
 
