@@ -234,4 +234,7 @@ def _root(unit: Unit) -> Unit:
 def _registry() -> UnitRegistry[float]:
     from pint import UnitRegistry
 
-    return UnitRegistry()
+    try:  # as pint has once read its definitions on this machine, which takes a quarter second
+        return UnitRegistry(cache_folder=":auto:")
+    except Exception:  # there is no folder for that, or another process is just writing there
+        return UnitRegistry()

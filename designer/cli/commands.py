@@ -5,6 +5,7 @@ Nothing heavy is imported here: `designer --help` and `designer catalog` answer 
 
 from __future__ import annotations
 
+import atexit
 import gc
 import shlex
 import sys
@@ -80,6 +81,7 @@ _OBJECTS_BEFORE_SEARCH = 100_000
 def main() -> None:
     """Run the command line; a user's mistake ends with one line a fault and exit status 2."""
     gc.set_threshold(_OBJECTS_BEFORE_SEARCH)
+    atexit.register(gc.freeze)  # what is left goes with the process: to search it takes a second
     settle_in()
     with readable_output():
         try:

@@ -6,11 +6,16 @@ They are the DejaVu fonts that come with Matplotlib, which draws the charts in t
 from __future__ import annotations
 
 import base64
+import hashlib
 import html
 import io
 import re
+from contextlib import suppress
 from functools import lru_cache
+from importlib.metadata import version
 from pathlib import Path
+
+from designer.io.output import write_whole
 
 FACES = (
     ("Report Sans", 400, "normal", "DejaVuSans"),
@@ -26,7 +31,8 @@ _COMMON = frozenset(
     "⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃₄₅₆₇₈₉–—…−√∞≈≤≥→•◦▪▸▾\u202f"
     + "".join(map(chr, [*range(0x20, 0x7F), *range(0xA0, 0x100), *range(0x391, 0x3CA)]))
 )
-"""Letters of most pages, in every font, so that it is made once for all pages of a run."""
+"""Letters of most pages, in every font, so that it is made once for all pages on a machine."""
+_ALONE = "".join(sorted(_COMMON))
 _NOT_SHOWN = re.compile(r'<script.*?</script>|srcdoc="[^"]*"|base64,[\w+/=]+', re.DOTALL)
 """Of a page: what has no text, or fonts of its own."""
 _LAST_NAME = 6
@@ -48,7 +54,24 @@ def with_fonts(page: str) -> str:
 
 @lru_cache(maxsize=2 * len(FACES))
 def _letters_of(file: str, letters: str) -> str:
-    """Return these letters of a font as a WOFF file in base64."""
+    """Return these letters of a font as a WOFF file in base64, kept for other runs."""
+    from platformdirs import user_cache_path
+
+    made_of = (file, letters, version("matplotlib"), version("fonttools"))
+    name = hashlib.sha256(repr(made_of).encode()).hexdigest()[:16]
+    kept = user_cache_path("cdpr-designer", appauthor=False) / "fonts" / f"{name}.woff"
+    try:
+        font = kept.read_bytes()
+    except OSError:
+        font = _subset(file, letters)
+        if letters == _ALONE:
+            with suppress(OSError):
+                kept.parent.mkdir(parents=True, exist_ok=True)
+                write_whole(kept, font)
+    return base64.b64encode(font).decode()
+
+
+def _subset(file: str, letters: str) -> bytes:
     import matplotlib
     from fontTools import subset
 
@@ -67,4 +90,4 @@ def _letters_of(file: str, letters: str) -> str:
         names.names = [one for one in names.names if one.nameID <= _LAST_NAME]
         font["name"] = names
         subset.save_font(font, stream, options)
-    return base64.b64encode(stream.getvalue()).decode()
+    return stream.getvalue()

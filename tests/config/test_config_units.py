@@ -1,6 +1,10 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -176,3 +180,19 @@ def test_format(value: float, dimension: Dimension, text: str) -> None:
 def test_format_can_be_read_back(value: float) -> None:
     back = read_quantity(format_SI(value, LENGTH), LENGTH)
     assert back == pytest.approx(value, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("left", [None, b"half"])
+def test_units_are_known_where_pint_can_keep_nothing_or_finds_it_half_written(
+    tmp_path: Path, left: bytes | None
+) -> None:
+    read = "from designer.units import LENGTH, read_quantity as q; print(q('2 mm', LENGTH))"
+    cache = tmp_path if left else os.devnull
+    for _ in range(2 if left else 1):
+        done = subprocess.run(
+            [sys.executable, "-c", read], env={**os.environ, "XDG_CACHE_HOME": str(cache)},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        assert done.stdout == "0.002\n"
+        for kept in tmp_path.rglob("*.pickle"):
+            kept.write_bytes(left or b"")

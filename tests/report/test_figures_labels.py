@@ -117,20 +117,3 @@ def test_a_picture_is_cut_above_and_below_what_it_shows() -> None:
         assert cut.size == (WIDTH_PX, 120)
     with Image.open(io.BytesIO(overlay.png(EMPTY))) as whole:
         assert whole.size == (WIDTH_PX, HEIGHT_PX)
-
-
-def test_shared_logarithmic_axes_are_linear_when_they_are_emptied(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Else some versions of Matplotlib warn that they cannot begin at zero."""
-    from matplotlib.figure import Figure
-
-    scales: list[str] = []
-    with canvas.drawing():
-        figure = canvas.sheet(50.0)
-        figure.subplots(1, 2, sharey=True)[0].set_yscale("log")
-        monkeypatch.setattr(
-            Figure, "clear", lambda self: scales.extend(axes.get_yscale() for axes in self.axes)
-        )
-        canvas.empty(figure)
-    assert scales == ["linear", "linear"]

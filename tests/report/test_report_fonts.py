@@ -11,11 +11,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import platformdirs
 import pypdf
 import pytest
 from fontTools.ttLib import TTFont
 
 from designer.analysis.analyse import Analysis
+from designer.report import fonts
 from designer.report.blocks import Report
 from designer.report.design.first_page import FirstPage
 from designer.report.design.report import design_report
@@ -28,6 +30,7 @@ from pathlib import Path
 from designer.report.render import render_pdf
 Path(sys.argv[2]).write_bytes(render_pdf(Path(sys.argv[1]).read_text(encoding="utf-8")))
 """
+NOWHERE = Path(os.devnull) / "no folder"
 NO_FONTS = '<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig/>'
 
 
@@ -50,9 +53,9 @@ def test_without_any_font_installed_the_pdf_is_the_same(
     page.write_text(render_html(report, paged=True), encoding="utf-8")
     none.write_text(NO_FONTS, encoding="utf-8")
     made = []
-    for name, fonts in (("with", {}), ("without", {"FONTCONFIG_FILE": str(none)})):
+    for name, settings in (("with", {}), ("without", {"FONTCONFIG_FILE": str(none)})):
         file = tmp_path / f"{name}.pdf"
-        environment = {k: v for k, v in os.environ.items() if k != "FONTCONFIG_FILE"} | fonts
+        environment = {k: v for k, v in os.environ.items() if k != "FONTCONFIG_FILE"} | settings
         command = [sys.executable, "-c", PRINT, str(page), str(file)]
         subprocess.run(command, env=environment, check=True, timeout=120)
         made.append([page.extract_text() for page in pypdf.PdfReader(file).pages])
@@ -68,6 +71,27 @@ def test_a_page_carries_the_letters_that_it_shows_and_few_others() -> None:
         assert set(map(ord, "abΣ√")) <= set(font.getBestCmap())
         assert ord("Ж") not in font.getBestCmap()
     assert fonts_in(with_fonts("<head></head><p>plain</p>")) == []
+
+
+@pytest.mark.parametrize("has_folder", [True, False])
+def test_the_fonts_of_most_pages_are_made_once_on_a_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, has_folder: bool
+) -> None:
+    monkeypatch.setattr(
+        platformdirs, "user_cache_path", lambda *_, **__: tmp_path if has_folder else NOWHERE
+    )
+    page = "<head></head><p style='font-family: \"Report Mono\"'>a b</p>"
+    asked = []
+    subset = fonts._subset
+    monkeypatch.setattr(fonts, "_subset", lambda *what: asked.append(what) or subset(*what))
+    made = []
+    for shown in (page, page, page.replace("b", "Ж")):
+        fonts._letters_of.cache_clear()  # as in another run
+        made.append(with_fonts(shown))
+    assert made[0] == made[1]
+    assert ord("Ж") in fonts_in(made[2])[0].getBestCmap()
+    assert len(asked) == (2 if has_folder else 3)
+    assert len([*tmp_path.rglob("*")]) == (2 if has_folder else 0)  # a folder and one font
 
 
 def test_every_letter_of_a_report_is_in_its_fonts(report: Report[FirstPage]) -> None:

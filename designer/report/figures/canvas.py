@@ -10,6 +10,7 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Literal
 from xml.sax.saxutils import escape, quoteattr
 
@@ -22,6 +23,7 @@ from designer.report.figures import palette
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backends.backend_svg import RendererSVG
     from matplotlib.figure import Figure
     from matplotlib.patheffects import AbstractPathEffect
     from matplotlib.text import Annotation
@@ -83,8 +85,22 @@ def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
 
     size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
     figure = Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
-    FigureCanvasSVG(figure)
+    FigureCanvasSVG(figure).get_renderer = partial(_ruler, figure)
     return figure
+
+
+def _ruler(figure: Figure) -> RendererSVG:
+    """Return what measures the texts of a figure, as large as they are printed."""
+    figure.dpi = 72
+    return _one_ruler()
+
+
+@cache
+def _one_ruler() -> RendererSVG:
+    """One for all figures: Matplotlib makes one anew at each question, which then knows no text."""
+    from matplotlib.backends.backend_svg import RendererSVG
+
+    return RendererSVG(1.0, 1.0, io.StringIO())
 
 
 def decimals(ticks: ArrayLike) -> int:
@@ -151,7 +167,7 @@ def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray
 
 
 def svg(figure: Figure, key: str, title: str) -> str:
-    """Return the figure as an ``<svg>`` element that scales with its surroundings, and empty it.
+    """Return the figure as an ``<svg>`` element that scales with its surroundings.
 
     Inside `drawing`. ``key`` is put before every id, so that several charts can stand in one page;
     the title tells what the chart shows to those who cannot see it.
@@ -164,21 +180,7 @@ def svg(figure: Figure, key: str, title: str) -> str:
     assert isinstance(sheet, FigureCanvasSVG)
     sheet.print_svg(stream, metadata=nothing)  # `savefig` would draw everything twice
     text = stream.getvalue()
-    words = _words(figure)
-    empty(figure)
-    return _standalone(text[text.index("<svg") :].strip(), key, title, words)
-
-
-def empty(figure: Figure) -> None:
-    """Break the reference cycles of a figure, which Python would clear up much later.
-
-    Axes that share a logarithmic scale give it up first: each would be reset to begin at zero
-    while the others still are logarithmic, and some versions of Matplotlib complain.
-    """
-    for axes in figure.axes:
-        if "log" in (axes.get_xscale(), axes.get_yscale()):
-            axes.set(xscale="linear", yscale="linear")
-    figure.clear()
+    return _standalone(text[text.index("<svg") :].strip(), key, title, _words(figure))
 
 
 def _words(figure: Figure) -> str:
@@ -194,9 +196,9 @@ def _standalone(text: str, key: str, title: str, words: str) -> str:
     for reference in (' id="', 'xlink:href="#', "url(#"):
         text = text.replace(reference, f"{reference}{key}-")
     # A hundredth of a point is enough, and halves the size of a contour plot.
-    shorter = re.compile(r"(\.\d\d)\d+")
+    further = re.compile(r"(?<=\.\d\d)\d+")
     text = re.sub(
-        r' d="[^"]+"', lambda path: shorter.sub(r"\1", path.group()).replace(" \n", "\n"), text
+        r' d="[^"]+"', lambda path: further.sub("", path.group()).replace(" \n", "\n"), text
     )
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height)="[^"]*"', "", head)

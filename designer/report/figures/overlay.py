@@ -10,6 +10,7 @@ import io
 from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 _SIDES = (
     ((0, 1), "center", "bottom"),
@@ -39,6 +41,7 @@ _SIDES = (
 """Where a text may stand, right and up, and how it is aligned then."""
 _OVER_TEXT, _OVER_LINE, _BY_ORDER = 1000.0, 5.0, 0.02
 """What it costs to cover a text or a point of a line, and to take the next place of the list."""
+_EXTENTS: WeakKeyDictionary[Text, Any] = WeakKeyDictionary()
 
 
 def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
@@ -63,7 +66,7 @@ def over(image: Image, letters: float = 1.0) -> tuple[Figure, Axes]:
 
 
 def finished(figure: Figure) -> Image:
-    """Return the picture (1000, 1600, 3) with what was written over it, and empty the figure."""
+    """Return the picture (1000, 1600, 3) with what was written over it."""
     from matplotlib.backend_bases import FigureCanvasBase
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -71,8 +74,8 @@ def finished(figure: Figure) -> Image:
     assert isinstance(sheet, FigureCanvasAgg)
     figure.draw(sheet.get_renderer())
     image = _pixels(sheet)[..., :3].copy()
-    canvas.empty(figure)
-    FigureCanvasBase(figure)  # in place of the one that holds the pixels
+    figure.clear()  # its texts know the canvas that drew them, which holds the pixels
+    FigureCanvasBase(figure)  # in place of that
     return image
 
 
@@ -261,7 +264,7 @@ def write_clear(
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
     taken = _boxes(
         *(bar.get_tightbbox() for bar in axes.figure.axes[1:]),
-        *(other.get_window_extent() for other in axes.texts if other is not label),
+        *(_extent(other) for other in axes.texts if other is not label),
     )
 
     size = np.asarray(label.get_window_extent().size, dtype=np.float64)
@@ -307,6 +310,13 @@ def obstacles(view: View, lines_m: Iterable[FloatArray]) -> FloatArray:
         at = np.linspace(0.0, along[-1], max(int(along[-1] / 6.0), 2))
         parts.append(np.stack([np.interp(at, along, corners[:, k]) for k in (0, 1)], axis=1))
     return np.concatenate(parts)
+
+
+def _extent(text: Text) -> Any:
+    """Where a text stands that stays there; to find it out for all again and again takes long."""
+    if text not in _EXTENTS:
+        _EXTENTS[text] = text.get_window_extent()
+    return _EXTENTS[text]
 
 
 def _boxes(*boxes: Any) -> FloatArray:

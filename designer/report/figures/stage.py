@@ -169,6 +169,8 @@ class Stage:
             cloud["colour"] = colour
         ball = pyvista.Sphere(radius=radius_m, theta_resolution=16, phi_resolution=16)
         balls = cloud.glyph(geom=ball, scale=False, orient=False)
+        if not one:
+            balls.set_active_scalars("colour")
         self.add(balls, colour if one else None)
 
     def hull(self, points_m: FloatArray, colour: str) -> None:
