@@ -167,6 +167,8 @@ def _solve_over_pulleys(
             task.inverse_weight_m_per_N,
             is_thorough=is_thorough,
         )
+        if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
+            return solution, np.empty(0), 0.0
         with np.errstate(invalid="ignore"):  # forces are infinite at infinite section
             weight = solution.weight_N_per_m[:, None] * task.relative_weights
             downward = weight * solution.length_m - solution.force_z_N
@@ -220,7 +222,7 @@ def _try_other_branches(
 
     Writes what is better into the solution and the run of the cables.
     """
-    hard = np.isin(solution.verdict, OPEN)
+    hard = np.logical_or.reduce([solution.verdict == verdict for verdict in OPEN])
     at = np.flatnonzero(hard | (seeks_better & (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return

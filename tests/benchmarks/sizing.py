@@ -1,21 +1,31 @@
 """Sizing and statics of random poses against SciPy pose by pose, in the same run.
 
     python tests/benchmarks/sizing.py [--poses 1000000]
+    python tests/benchmarks/sizing.py --against OTHER/.venv/bin/python [--runs 5]
 
 The baselines are what a user would write: the paper's equations in NumPy, given to SLSQP and to
 `root` with a massless start. Ratios are what counts; absolute times depend on the machine.
+
+With ``--against`` this checkout and another size the same poses by turns, each turn in a process of
+its own: on all threads by the clock, on one by processor time, which hardly depends on what else
+the machine does, beside the time of a fixed piece of NumPy in the same process. ``--against`` its
+own Python tells how much of a difference is chance.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import resource
+import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.optimize import minimize, root
@@ -29,6 +39,8 @@ from designer.sizing.newton import size_poses
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless, solve_sagging
 from designer.study import Workspace
+from designer.workspace import sweep
+from designer.workspace.store import sweep_file
 from designer.workspace.sweep import map_workspace
 
 STEEL = Material(7800.0, 200e9, 180e6)
@@ -165,6 +177,77 @@ def compare(name: str, robot: Robot, poses: Poses, n_baseline: int) -> None:
     print(f"  difference {np.median(agreement):.0e} (median), {max(agreement):.0e} (largest)")
 
 
+def fixed_work() -> None:
+    """Some NumPy that no checkout changes."""
+    x = np.linspace(0.1, 2.0, 2**14)
+    for _ in range(50):
+        x = np.sqrt(1.0 + x * x) - 0.4
+
+
+def costs_us(poses: int) -> dict[str, float]:
+    """Return what a pose costs through the public API, and the fixed work [µs].
+
+    The least of some repetitions. Of six cables no other branches are sought, which takes a
+    thousand times as long. Where this process has one processor, by processor time.
+    """
+    is_alone = len(os.sched_getaffinity(0)) == 1
+    os.cpu_count = lambda: len(os.sched_getaffinity(0))  # threads of our pool
+    clock = time.process_time if is_alone else time.perf_counter
+
+    def cost(work: Callable[[], object], count: int, repeats: int) -> float:
+        work()
+        spent = []
+        for _ in range(repeats):
+            start = clock()
+            work()
+            spent.append(clock() - start)
+        return 1e6 * min(spent) / count
+
+    three, six = poses_of_three(poses), poses_of_six(poses)
+    workspace, robot = Workspace(REGION, samples=poses), six_cables()
+    found = {"fixed work": cost(fixed_work, 1, 9)}
+    sized = {
+        "3 cables": lambda p: size_poses(FAST, p, STEEL),
+        "6 cables": lambda p: size_poses(robot, p, STEEL, seeks_better=False),
+    }
+    for (name, size), those in zip(sized.items(), (three, six), strict=True):
+        found[name] = cost(lambda size=size, those=those: in_chunks(size, those), poses, 5)
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "sweep.nc"
+        found["sweep, 3 cables"] = cost(lambda: sweep_only(workspace, file), poses, 3)
+    return found
+
+
+def sweep_only(workspace: Workspace, file: Path) -> None:
+    """Size, survey and store every sample, without the search between them."""
+    gathered = sweep._Gathered(workspace)
+    with sweep_file(file, FAST.n_cables, {}) as store:
+        for positions in workspace.positions_m():
+            some, sizing = sweep.size_worst(FAST, workspace, positions, STEEL)
+            gathered.add(some, sizing)
+            store(some, sizing)
+
+
+def compare_checkouts(pythons: list[str], poses: int, runs: int) -> None:
+    """Print costs of each checkout and their ratio, from medians over alternating runs."""
+    for threads in sorted({os.cpu_count() or 1, 1}):
+        taken: list[list[dict[str, float]]] = [[] for _ in pythons]
+        for _ in range(runs):
+            for mine, python in zip(taken, pythons, strict=True):
+                command = [python, "-P", __file__, "--costs-only", str(threads)]
+                run = subprocess.run(
+                    [*command, "--poses", str(poses)], check=True, capture_output=True, text=True
+                )
+                mine.append(json.loads(run.stdout))
+        print(f"{threads} threads, {poses} poses, medians of {runs} runs [µs]")
+        for name in taken[0][0]:
+            median = [statistics.median(one[name] for one in mine) for mine in taken]
+            beside = [statistics.median(one[name] / one["fixed work"] for one in m) for m in taken]
+            each = "   ".join(f"{us:9.3f}" for us in median)
+            tail = f"   ratio {beside[0] / beside[1]:.2f}" if len(pythons) > 1 else ""
+            print(f"  {name:16} {each}{tail}")
+
+
 def peak_memory_MB(samples: int) -> float:
     """Peak of a process of its own that maps the workspace."""
     command = [sys.executable, __file__, "--map-only", str(samples)]
@@ -181,11 +264,22 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--poses", type=int, default=1_000_000)
     parser.add_argument("--baseline", type=int, default=60)
+    parser.add_argument("--against", help="Python of the other checkout")
+    parser.add_argument("--runs", type=int, default=5, help="of each checkout")
     parser.add_argument("--map-only", type=int, help=argparse.SUPPRESS)
+    parser.add_argument("--costs-only", type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.costs_only:
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: arguments.costs_only])
+        print(json.dumps(costs_us(arguments.poses)))
+        return
+    if arguments.against:
+        compare_checkouts([sys.executable, arguments.against], arguments.poses, arguments.runs)
+        return
     if arguments.map_only:
         map_only(arguments.map_only)
         return
+    compare_checkouts([sys.executable], arguments.poses, 1)
     print(f"{os.cpu_count()} threads")
     compare("3 cables, 3 DOF", FAST, poses_of_three(arguments.poses), arguments.baseline)
     compare("6 cables, 6 DOF", six_cables(), poses_of_six(arguments.poses), arguments.baseline)
