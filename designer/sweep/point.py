@@ -13,6 +13,7 @@ from designer.analysis.result_json import Json, size_dict
 from designer.api import catalogue
 from designer.documents.document import Document
 from designer.documents.node import Key, Node
+from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.errors import DesignerError, InputError
 from designer.grades.registry import Catalogue
@@ -50,8 +51,7 @@ class Base:
         root = self.document.root
         for keys, node in changes:
             root = root.with_value(keys, node)
-        plugins = _plugins(self.with_plugins)
-        known = load_effects(plugins)
+        plugins, known = _plugins(self.with_plugins), _known(self.with_plugins)
         document = replace(self.document, root=root)
         path = Path(document.name)
         return study_of(checked(document, known), document, path, known, plugins)
@@ -87,6 +87,11 @@ class Base:
 @cache
 def _plugins(with_plugins: bool) -> Plugins:
     return find_plugins(with_plugins)
+
+
+@cache
+def _known(with_plugins: bool) -> KnownEffects:
+    return load_effects(_plugins(with_plugins))
 
 
 @cache
@@ -133,17 +138,22 @@ def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
     try:
         result = base.result(base.study(changes))
         return [value_at(result, name) for name in base.keep], why_negative(result)
-    except InputError as error:
+    except Exception as error:  # whatever a plugin or a library may raise
+        reason = why_not(error)
+    return [None] * len(base.keep), reason
+
+
+def why_not(error: Exception) -> str:
+    """Return in a line why a study gave no result."""
+    if isinstance(error, InputError):
         fault = error.faults[0]
         expected = f" (expected {fault.expected})" if fault.expected else ""
-        reason = f"{fault.field}: {fault.problem}{expected}"
-    except DesignerError as error:
-        reason = str(error).partition("\n")[0]
-    except KeyError as error:
-        reason = f"there is no {error.args[0]} in this result"
-    except Exception as error:  # whatever a plugin or a library may raise
-        reason = f"{type(error).__name__}: {error}"
-    return [None] * len(base.keep), reason
+        return f"{fault.field}: {fault.problem}{expected}"
+    if isinstance(error, DesignerError):
+        return str(error).partition("\n")[0]
+    if isinstance(error, KeyError):
+        return f"there is no {error.args[0]} in this result"
+    return f"{type(error).__name__}: {error}"
 
 
 def why_negative(result: Json) -> str:
