@@ -23,6 +23,8 @@ _HOMES = {
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
     "designer.model.verdict": "Verdict",
+    "designer.optimum.optimise": "optimise",
+    "designer.optimum.result": "Optimum",
     "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect Selection Study Workspace",
 }
@@ -42,6 +44,8 @@ if TYPE_CHECKING:
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
     from designer.model.verdict import Verdict
+    from designer.optimum.optimise import optimise
+    from designer.optimum.result import Optimum
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
 
@@ -58,6 +62,7 @@ __all__ = [
     "InputError",
     "Material",
     "Measurements",
+    "Optimum",
     "Orientations",
     "OutputError",
     "Platform",
@@ -76,6 +81,7 @@ __all__ = [
     "diagnose",
     "example_file",
     "example_names",
+    "optimise",
     "read_study",
     "size",
     "write_report",
