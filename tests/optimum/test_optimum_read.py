@@ -10,6 +10,7 @@ from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, plan_of, written
 from designer.errors import InputError
 from designer.optimum.optimise import optimised_text
 from designer.optimum.read import read_optimisation
+from designer.resources import example_file, example_names
 
 
 def lines(path: Path) -> list[str]:
@@ -90,6 +91,13 @@ def test_a_mistake_gets_one_line(tmp_path: Path, old: str, new: str, line: str) 
     assert old in OF_POSE
     found = lines(written(tmp_path, OF_POSE.replace(old, new)))
     assert any(line in one for one in found), found
+
+
+def test_the_shipped_example_reads() -> None:
+    plan = read_optimisation(example_file("optimise/yard"), with_plugins=False)
+    assert plan.given == (0.0, 0.0, 26.0)
+    assert plan.limits[0].most == 4500.0
+    assert "optimise/yard" not in example_names()
 
 
 def test_no_variables_and_a_study_that_is_none(tmp_path: Path) -> None:
