@@ -24,6 +24,8 @@ _HOMES = {
     "designer.model.space": "Orientations",
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
+    "designer.optimum.optimise": "optimise",
+    "designer.optimum.result": "Optimum",
     "designer.resources": "example_file example_names",
     "designer.study": "CableGroup DeclaredEffect Selection Study Workspace",
 }
@@ -44,6 +46,8 @@ if TYPE_CHECKING:
     from designer.model.space import Orientations
     from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
+    from designer.optimum.optimise import optimise
+    from designer.optimum.result import Optimum
     from designer.resources import example_file, example_names
     from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
 
@@ -61,6 +65,7 @@ __all__ = [
     "Material",
     "Measurements",
     "Normal",
+    "Optimum",
     "Orientations",
     "OutputError",
     "Platform",
@@ -81,6 +86,7 @@ __all__ = [
     "diagnose",
     "example_file",
     "example_names",
+    "optimise",
     "read_study",
     "size",
     "write_report",

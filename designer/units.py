@@ -123,6 +123,29 @@ def split_quantity(given: object) -> tuple[float, str] | None:
     return float(number[0]), str(given).strip()[number.end() :].strip()
 
 
+def in_SI(given: object) -> float:
+    """Return the SI value of a quantity of whatever kind; a bare number is one already.
+
+    Raises
+    ------
+    QuantityError
+        If it is none.
+    """
+    parts = split_quantity(given)
+    try:
+        if parts is None or not math.isfinite(parts[0]):
+            raise _MisreadError("is not a number")
+        value, unit = parts
+        return (
+            float(_registry().Quantity(value, _unit(unit)).to_root_units().magnitude)
+            if unit
+            else value
+        )
+    except _MisreadError as error:
+        hint = f"; did you mean '{error.nearest}'?" if error.nearest else ""
+        raise QuantityError(f"{describe(given)} {error.problem}", f"a quantity{hint}") from None
+
+
 def format_SI(value: float, dimension: Dimension) -> str:
     """Return ``value`` (in SI) as text with its SI unit, such as ``0.002 m`` or ``2e11 Pa``."""
     shown = f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0

@@ -21,6 +21,7 @@ from designer.cli.catalog import catalog
 from designer.cli.compare import compare
 from designer.cli.import_robot import import_robot
 from designer.cli.lengths import lengths
+from designer.cli.optimise import optimise
 from designer.cli.options import (
     NEGATIVE_ANSWER,
     WRONG_INPUT,
@@ -69,6 +70,7 @@ app.add_typer(catalog, name="catalog")
 app.command()(lengths)
 app.command()(compare)
 app.command()(sweep)
+app.command()(optimise)
 app.command("import")(import_robot)
 app.command()(verify)
 app.command()(schema)

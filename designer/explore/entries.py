@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.documents import edits
 from designer.documents.node import Key, path_text
-from designer.explore import edits
 from designer.explore.fields import Field, keys_of
 from designer.explore.reading import Reading
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 
 from designer.documents.document import Document, decode, document_of, read_bytes
-from designer.documents.modeline import with_schema_moved
-from designer.documents.node import Key
 from designer.effects.known import KnownEffects
 from designer.errors import DesignerError, Fault, InputError, OutputError
-from designer.explore import edits
 from designer.explore.fields import Field, study_fields
+from designer.io.config.moved import moved_to
 from designer.io.config.reader import checked, study_of
 from designer.io.config.schema import StudySection
 from designer.io.output import write_whole
@@ -68,28 +65,9 @@ class Reading:
 
     def moved_to(self, folder: Path) -> str:
         """Return the text with the relative paths in it as they are from a folder."""
-        start = self.context.path.parent
-        if self.document is None or folder.resolve() == start.resolve():
+        if self.document is None:
             return self.text
-        root, text = self.document.root, self.text
-        files = root.child("catalogues")
-        count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
-        places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
-        for keys in [*places, ("measurements", "file"), ("document", "logo")]:
-            node = root
-            for key in keys:
-                node = node.child(key) or node
-            if isinstance(node.content, str) and not Path(node.content).is_absolute():
-                to = _relative(start / node.content, folder)
-                text = edits.with_value(text, keys, edits.scalar(to))
-        return with_schema_moved(text, start, lambda path: _relative(path, folder))
-
-
-def _relative(path: Path, folder: Path) -> str:
-    try:
-        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-    except ValueError:  # on another drive
-        return path.resolve().as_posix()
+        return moved_to(folder, self.text, self.document, self.context.path.parent)
 
 
 def digest_of(text: str) -> str:

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import frozen_array
+from designer.documents import edits
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
-from designer.explore import edits
 from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History

@@ -119,6 +119,27 @@ def undone_at_end() -> Iterator[Undo]:
         _undo_at_end.remove(undo)
 
 
+@contextmanager
+def ends_gently() -> Iterator[Callable[[], bool]]:
+    """Hand out what tells whether Ctrl-C was pressed in the block; a second time it ends all."""
+    asked = False
+
+    def ask(*_: object) -> None:
+        nonlocal asked
+        asked = True
+        signal.signal(signal.SIGINT, before)
+
+    before = signal.getsignal(signal.SIGINT)
+    is_ours = before is _end  # in the background, or without a command line, it is left alone
+    if is_ours:
+        signal.signal(signal.SIGINT, ask)
+    try:
+        yield lambda: asked
+    finally:
+        if is_ours:
+            signal.signal(signal.SIGINT, before)
+
+
 def _end(number: int, _: FrameType | None) -> NoReturn:
     """Undo what is half-done, and leave without a look back.
 

@@ -132,17 +132,22 @@ def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
     try:
         result = base.result(base.study(changes))
         return [value_at(result, name) for name in base.keep], why_negative(result)
-    except InputError as error:
+    except Exception as error:  # whatever a plugin or a library may raise
+        reason = why_not(error)
+    return [None] * len(base.keep), reason
+
+
+def why_not(error: Exception) -> str:
+    """Return in a line why a study gave no result."""
+    if isinstance(error, InputError):
         fault = error.faults[0]
         expected = f" (expected {fault.expected})" if fault.expected else ""
-        reason = f"{fault.field}: {fault.problem}{expected}"
-    except DesignerError as error:
-        reason = str(error).partition("\n")[0]
-    except KeyError as error:
-        reason = f"there is no {error.args[0]} in this result"
-    except Exception as error:  # whatever a plugin or a library may raise
-        reason = f"{type(error).__name__}: {error}"
-    return [None] * len(base.keep), reason
+        return f"{fault.field}: {fault.problem}{expected}"
+    if isinstance(error, DesignerError):
+        return str(error).partition("\n")[0]
+    if isinstance(error, KeyError):
+        return f"there is no {error.args[0]} in this result"
+    return f"{type(error).__name__}: {error}"
 
 
 def why_negative(result: Json) -> str:

@@ -110,7 +110,9 @@ class Stage:
         image = Pillow.fromarray(vtk_to_numpy(pixels).reshape(height, width, 3))
         return np.asarray(image.reduce(self.pen.samples))[::-1]  # VTK counts rows from below
 
-    def add(self, mesh: DataSet, colour: Any = None, width: float = 1.0) -> None:
+    def add(
+        self, mesh: DataSet, colour: Any = None, width: float = 1.0, opacity: float = 1.0
+    ) -> None:
         """Add a mesh, unless it is empty, in one colour or in those that its scalars are."""
         from matplotlib.colors import to_rgb
         from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
@@ -125,6 +127,7 @@ class Stage:
         look = actor.GetProperty()
         look.LightingOff()
         look.SetLineWidth(width)
+        look.SetOpacity(opacity)
         look.SetColor(*to_rgb("white" if colour is None else colour))
         self.scene.AddActor(actor)
 
@@ -191,7 +194,7 @@ class Stage:
         if len(triangles_m):
             corners = np.arange(3 * len(triangles_m)).reshape(-1, 3)
             mesh = pyvista.PolyData.from_regular_faces(triangles_m.reshape(-1, 3), corners)
-            self.add(mesh.clean(), color=palette.IMPOSSIBLE, opacity=BORDER_OPACITY)
+            self.add(mesh.clean(), palette.IMPOSSIBLE, opacity=BORDER_OPACITY)
 
     def field(self, field: Field, quantity: MapQuantity, steps: Steps | None) -> None:
         """Add a surface (n, m) coloured by a quantity, with lines of equal value.

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.documents.document import document_of
-from designer.explore.edits import scalar, value_text, with_value, without
+from designer.documents.edits import scalar, value_text, with_value, without
 from designer.resources import example_file, example_names
 
 TEXT = """\

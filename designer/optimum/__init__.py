@@ -1,0 +1,1 @@
+"""The robot optimised: fields of a study as design variables, a result of it as the objective."""

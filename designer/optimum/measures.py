@@ -1,0 +1,313 @@
+"""What a design is judged by: a value of its result, and a quick way to it for the search.
+
+The quick way solves few samples, half of them on the border of the region, and looks closer only
+about the worst of them; the verified value is that of the whole result. A measure without a quick
+way takes it from a whole result over few samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from designer.arrays import FloatArray, frozen_array
+from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade
+from designer.model.region import PointList
+from designer.model.robot import Poses
+from designer.model.space import Space
+from designer.selection.cases import governing
+from designer.selection.compare import Entry
+from designer.selection.products import is_allowed, products_of, undominated
+from designer.selection.select import at_samples
+from designer.selection.verify import verify_sizes
+from designer.sizing.newton import size_poses
+from designer.study import Objective, Selection, Study, Workspace, as_built_by
+from designer.sweep.point import value_at
+from designer.units import FORCE, LENGTH, MASS, NUMBER, Dimension
+from designer.workspace.demand import demand_of, diameter_demand, rope_demand
+from designer.workspace.refine import Demand, Worst
+from designer.workspace.section import section_of_workspace
+
+_CLOSE = 0.9
+"""Utilisation at the samples from which on it is looked closer."""
+_HARDLY = 1e-3
+_REACHES, _CLOUD = 0.1 * 0.5 ** np.arange(6.0), 24
+VOLUME = Dimension("a volume", "m^3", "200 m^3")
+
+
+class NotHeldError(Exception):
+    """A design has no value: why, and how far it is from one, so that a search is led to it.
+
+    ``violation`` is below 1 where all poses are held but something is too weak, and 1 plus the
+    share of the poses that are not held otherwise.
+    """
+
+    def __init__(self, violation: float, reason: str) -> None:
+        super().__init__(reason)
+        self.violation, self.reason = violation, reason
+
+
+class Quick:
+    """What a design comes to at few samples; computed where it is asked for."""
+
+    def __init__(self, study: Study, grades: tuple[Grade, ...], samples: int) -> None:
+        self._study, self._grades, self._samples = study, grades, samples
+
+    @cached_property
+    def workspace(self) -> Workspace:
+        """The workspace with few samples, half of them on the border, where most extremes lie."""
+        workspace = self.evenly
+        if workspace.region.is_discrete:
+            return workspace
+        border, rng = workspace.region.border(), np.random.default_rng(workspace.seed)
+        quarter = 1 + workspace.samples // 4
+        counts = (1 + quarter // max(len(each), 1) for each in (border.edges_m, border.faces_m))
+        points = [border.landmarks_m(), border.samples_m(rng, *counts)]
+        points.append(workspace.region.inside_m(rng, 2 * quarter))
+        return replace(workspace, region=PointList(frozen_array(np.concatenate(points))))
+
+    @cached_property
+    def evenly(self) -> Workspace:
+        """The workspace with few samples, evenly spread."""
+        workspace = self._study.workspace
+        assert workspace is not None
+        return replace(workspace, samples=min(self._samples, workspace.samples))
+
+    @property
+    def selection(self) -> Selection:
+        """How the rope is chosen."""
+        assert self._study.selection is not None
+        return self._study.selection
+
+    @cached_property
+    def _built(self) -> AsBuilt:
+        built = as_built_by(self._study)
+        section_m = section_of_workspace(built, self.workspace, self._study.material)
+        return replace(built, section_m=section_m)
+
+    @cached_property
+    def worst(self) -> Worst:
+        """Return the place that needs the thickest cable of the family, and that diameter [m].
+
+        Raises
+        ------
+        NotHeldError
+            If no cable of the family holds some place.
+        """
+        built, workspace = self._built, self.workspace
+        places = np.concatenate([*workspace.places()])
+        material = built.material(self._study.material)
+        sizing = size_poses(built.robot, Poses.at(places), material, seeks_better=False)
+        demand = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
+        not_held = float(np.isposinf(demand).mean())
+        if not_held:
+            raise NotHeldError(1.0 + not_held, "no cable holds in all of the workspace")
+        if np.isneginf(demand).all():
+            raise NotHeldError(2.0, "every pose is left out")
+        at, hangs_below = int(demand.argmax()), workspace.hangs_below
+        closer = diameter_demand(built.robot, material, hangs_below, seeks_better=False)
+        return climbed(self.evenly.space, closer, places[at], float(demand[at]))
+
+    @cached_property
+    def rope(self) -> Entry:
+        """Return the rope that would be chosen.
+
+        Raises
+        ------
+        NotHeldError
+            If none holds.
+        """
+        found = at_samples(
+            self.workspace, self.selection, self._grades, self._built, self._study.load_cases
+        )
+        holding = [one for one in found if one.verification.holds]
+        if not holding:
+            raise NotHeldError(*_why_no_rope(found))
+        decides: Objective = next(
+            (o for o in self.selection.objectives if o != "stiffness"), "mass"
+        )
+        ranked = sorted(holding, key=lambda one: one.figures.burden(decides))
+        best = next((one for one in ranked if self._holds(one)), None)
+        if best is None:
+            raise NotHeldError(_HARDLY, "no rope is strong enough")
+        return best
+
+    def _holds(self, entry: Entry) -> bool:
+        allowable = governing(entry.cases).loaded.cable.allowable_tension_N
+        is_far = entry.verification.utilisation < _CLOSE
+        return is_far or self._tension_N(entry) <= allowable
+
+    def _tension_N(self, entry: Entry) -> float:
+        """Return what a rope meets in the case that governs, about its worst sample as well."""
+        found = governing(entry.cases)
+        one, hangs_below = found.loaded, self.evenly.hangs_below
+        if one.lost_cable is not None:
+            return found.verification.max_tension_N
+        demand = rope_demand(one.robot, one.cable, hangs_below, seeks_better=False)
+        worst = climbed(
+            replace(self.evenly, region=found.case.region or self.evenly.region).space,
+            lambda places: demand(places)[:, 0],
+            found.verification.worst_position_m,
+            found.verification.max_tension_N,
+        )
+        return worst.demand
+
+    @property
+    def diameter_m(self) -> float:
+        """The thickest cable of the family that a place needs [m]."""
+        return self.worst.demand
+
+    @property
+    def max_tension_N(self) -> float:
+        """Largest tension of the rope; of the cable of the family where none is chosen [N]."""
+        if self._study.selection is not None:
+            return self._tension_N(self.rope)
+        built = self._built
+        pose, material = Poses.at(self.worst.place), built.material(self._study.material)
+        return float(size_poses(built.robot, pose, material).statics.largest_tension_N)
+
+    @property
+    def usable_volume_m3(self) -> float:
+        """What the rope serves that serves most [m³]."""
+        products = products_of(self.selection, self._grades, self._built)
+        cables = [one.cable for one in products]
+        met = verify_sizes(self._built.robot, self.evenly, cables, gives_up=False)
+        volume = self.evenly.region.volume_m3 or 0.0
+        return volume * max(one.served for one in met)
+
+
+def climbed(space: Space, demand: Demand, place: FloatArray, value: float) -> Worst:
+    """Return the largest demand about a place, by clouds of trials that shrink.
+
+    A search for the best design finds every gap between samples that lets a thinner rope pass.
+    """
+    rng, size = np.random.default_rng(0), np.ptp(space.bounds, axis=0)
+    for reach in _REACHES if not space.is_discrete else ():
+        cloud = space.nearest(place + reach * size * rng.uniform(-1.0, 1.0, (_CLOUD, len(size))))
+        asked = demand(cloud)
+        at = int(np.argmax(asked))
+        if asked[at] > value:
+            place, value = cloud[at], float(asked[at])
+    return Worst(place, value)
+
+
+def _why_no_rope(found: list[Entry]) -> tuple[float, str]:
+    """Return how far the ropes are from holding, and why none does."""
+    if not found:
+        return 2.0, "no rope can be tried"
+    least = min(one.verification.utilisation for one in found)
+    if np.isfinite(least):
+        return 1.0 - 1.0 / least, "no rope is strong enough"
+    shares = [one.sampled.not_held / max(one.sampled.samples, 1) for one in found]
+    return 1.0 + min(*shares, 1.0), "no rope holds in all of the workspace"
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """One value of a result.
+
+    Parameters
+    ----------
+    name, title : str
+        As a file calls it, and as a reader does.
+    path : str
+        Where ``result.json`` has it.
+    dimension : Dimension
+        Its kind of quantity.
+    sign : int
+        1 where less is better, -1 where more is.
+    quick : callable or None
+        The quick way.
+    of_result : callable or None
+        From a result, where that takes more than the path.
+    """
+
+    name: str
+    title: str
+    path: str
+    dimension: Dimension
+    sign: int = 1
+    quick: Callable[[Quick], float] | None = None
+    of_result: Callable[[Mapping[str, Any]], float | None] | None = None
+
+    def value(self, result: Mapping[str, Any]) -> float | None:
+        """Return what a result has; None where it has none.
+
+        Raises
+        ------
+        KeyError
+            If results never have it, see `designer.sweep.point.value_at`.
+        """
+        found: Any = (self.of_result or (lambda one: value_at(dict(one), self.path)))(result)
+        return float(found) if isinstance(found, int | float) else None
+
+
+def _usable(result: Mapping[str, Any]) -> float | None:
+    sizes = (result.get("selection") or {}).get("usable", [])
+    return max((one["volume_m3"] for one in sizes if one["volume_m3"] is not None), default=None)
+
+
+MEASURES: Mapping[str, Measure] = {
+    one.name: one
+    for one in (
+        Measure(
+            "rope_mass", "mass of all ropes", "answer.total_mass_kg", MASS,
+            quick=lambda met: met.rope.figures.mass_kg,
+        ),
+        Measure(
+            "rope_cost", "price of all ropes", "selection.chosen.cost", NUMBER,
+            quick=lambda met: met.rope.figures.cost,
+        ),
+        Measure(
+            "max_tension", "largest tension", "selection.chosen.max_tension_N", FORCE,
+            quick=lambda met: met.max_tension_N,
+        ),
+        Measure(
+            "diameter", "needed diameter", "workspace.sagging.diameter_m", LENGTH,
+            quick=lambda met: met.diameter_m,
+        ),
+        Measure(
+            "usable_volume", "usable volume", "selection.usable", VOLUME, -1,
+            quick=lambda met: met.usable_volume_m3, of_result=_usable,
+        ),
+    )
+}  # fmt: skip
+"""By the name that a file may use."""
+
+
+def measure_at(path: str, sign: int = 1) -> Measure:
+    """Return the measure at a path of ``result.json``."""
+    return Measure(path, path, path, NUMBER, sign)
+
+
+def for_study(measure: Measure, study: Study) -> Measure:
+    """Return the measure as this study has it: of groups, and without a selection."""
+    if measure.name == "max_tension" and study.selection is None:
+        return replace(measure, path="workspace.sagging.max_tension_N")
+    if study.selection is not None and study.selection.groups and measure.name != "diameter":
+        return replace(measure, quick=None)
+    return measure
+
+
+def promising(study: Study, grades: tuple[Grade, ...]) -> tuple[Grade, ...]:
+    """Return the grades with those sizes that no other beats in mass, strength and stiffness.
+
+    Of a whole catalogue those are few; the verified result tries them all.
+    """
+    if study.selection is None:
+        return ()
+    allowed = [grade for grade in grades if is_allowed(grade, study.selection.grades)]
+    products = products_of(study.selection, allowed, as_built_by(study))
+    by_price = "cost" in study.selection.objectives
+    kept = {id(one.size) for one in undominated(products, by_price=by_price)}
+    trimmed = [
+        replace(grade, sizes=tuple(size for size in grade.sizes if id(size) in kept))
+        for grade in allowed
+        if any(id(size) in kept for size in grade.sizes)
+    ]
+    return tuple(trimmed)

@@ -1,0 +1,173 @@
+"""What an optimisation varies, within which bounds, for what: known whole before it begins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from designer.arrays import FloatArray
+from designer.documents.document import Document
+from designer.documents.node import Key, Node, path_text
+from designer.optimum.measures import Measure
+from designer.sweep.point import Base, Change
+
+_ROUNDING = 1e-9
+_STEPS = 1000
+"""A bound's range has so many steps, or up to ten times as many: no mast is set to a micrometre."""
+Values = tuple[float, ...]
+"""One for each variable, in its unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """A field that goes with a variable: it is ``origin + slope · value``, in ``unit``."""
+
+    keys: tuple[Key, ...]
+    origin: float
+    slope: float
+    unit: str
+
+    def node(self, value: float) -> Node:
+        """Return what the study has in this field at a value of the variable."""
+        text = f"{self.origin + self.slope * value + 0.0:.10g} {self.unit}".rstrip()
+        return Node(1, text, is_plain=not self.unit)
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One thing to choose.
+
+    Parameters
+    ----------
+    name : str
+        As the file calls it.
+    ties : tuple of Tie
+        The fields of the study that it sets.
+    low, high : float
+        Its bounds.
+    unit : str
+        Of both, as the file has it; empty for SI.
+    given : float or None
+        Its value in the study as it is; None where its fields have no common one.
+    is_offset : bool
+        Whether it is a change of what the study has.
+    """
+
+    name: str
+    ties: tuple[Tie, ...]
+    low: float
+    high: float
+    unit: str
+    given: float | None
+    is_offset: bool
+
+    def at(self, share: float) -> float:
+        """Return the value at a share of the range, in round steps."""
+        step = 10.0 ** math.floor(math.log10((self.high - self.low) / _STEPS))
+        value = round((self.low + share * (self.high - self.low)) / step) * step
+        return min(max(float(f"{value:.10g}"), self.low), self.high)
+
+    def share(self, value: float) -> float:
+        """Return where in the range a value lies, from 0 to 1."""
+        return (value - self.low) / (self.high - self.low)
+
+    def bound_at(self, value: float) -> str:
+        """Return which bound a value stands at: ``lower``, ``upper``, or empty for none."""
+        share = self.share(value)
+        return "lower" if share < 1e-3 else "upper" if share > 1.0 - 1e-3 else ""
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The paths of its fields."""
+        return tuple(path_text(tie.keys) for tie in self.ties)
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """What a result may be at most, or at least [SI]."""
+
+    measure: Measure
+    most: float = math.inf
+    least: float = -math.inf
+
+    def excess(self, value: float) -> float:
+        """Return by how much a value breaks it, over the limit; zero where it is kept."""
+        over = max(value - self.most, self.least - value, 0.0)
+        bound = abs(self.most if value > self.most else self.least)
+        return over / bound if bound else over
+
+    def is_broken_by(self, result: Mapping[str, Any]) -> bool:
+        """Tell whether a whole result breaks it, or does not have it."""
+        value = self.measure.value(result)
+        return value is None or self.excess(value) > _ROUNDING
+
+    @property
+    def words(self) -> str:
+        """The limit, such as ``at most``, without its value."""
+        return "at most" if math.isfinite(self.most) else "at least"
+
+    @property
+    def value(self) -> float:
+        """The one of the two that is set."""
+        return self.most if math.isfinite(self.most) else self.least
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """When to stop: designs that are tried, and seconds; None for no limit of time."""
+
+    evaluations: int
+    time_s: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """An optimisation.
+
+    Parameters
+    ----------
+    name : str
+        Of its file.
+    document : Document
+        The study as it is.
+    text : str
+        The study that designs are made from, as text: its region does not follow its anchors.
+    base : Base
+        The same, to put values into.
+    region_stays : bool
+        Whether the text had to be changed for that.
+    variables, objective, limits, budget
+        What is chosen, for what, within what, for how long.
+    starts, seed, samples : int
+        Searches from different populations; of their random numbers; poses tried of each design.
+    """
+
+    name: str
+    document: Document
+    text: str
+    base: Base
+    region_stays: bool
+    variables: tuple[Variable, ...]
+    objective: Measure
+    limits: tuple[Limit, ...]
+    budget: Budget
+    starts: int
+    seed: int
+    samples: int
+
+    def values(self, shares: FloatArray) -> Values:
+        """Return the values at shares of the ranges (n_variables,)."""
+        return tuple(v.at(float(x)) for v, x in zip(self.variables, shares, strict=True))
+
+    def changes(self, values: Values) -> list[Change]:
+        """Return what these values put into the study."""
+        pairs = zip(self.variables, values, strict=True)
+        return [(tie.keys, tie.node(value)) for variable, value in pairs for tie in variable.ties]
+
+    @property
+    def given(self) -> Values | None:
+        """Return the values of the study as it is; None where a variable has none."""
+        values = tuple(v.given for v in self.variables if v.given is not None)
+        return values if len(values) == len(self.variables) else None

@@ -1,0 +1,196 @@
+"""From ``OPTIMISE.yaml`` to a plan: read, and check everything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from designer.documents import edits
+from designer.documents.document import Document, FileKind, decode, document_of, read_bytes
+from designer.documents.document import read_document as read_file
+from designer.documents.faults import schema_faults
+from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNumber
+from designer.documents.node import Key
+from designer.documents.section import Section
+from designer.errors import Fault, InputError
+from designer.model.region import Prism, Rectangle
+from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
+from designer.optimum.plan import Budget, Limit, Plan
+from designer.optimum.variables import variables_of
+from designer.spelling import did_you_mean
+from designer.study import Study
+from designer.sweep.point import Base
+from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
+
+OPTIMISATION = FileKind("an optimisation, with study, variables and objective", "study: crane.yaml")
+_OBJECTIVE = f"{', '.join(MEASURES)}, or {{minimise: a path into result.json}}"
+_LIMIT = "a quantity, or {at_most: 5 kN}, or {at_least: 0.2 m}"
+_FIRST_EVALUATIONS, _EVALUATIONS_EACH = 150, 150
+Time = Annotated[float, QuantityField(TIME, above=0.0, at_most=1e6)]
+
+
+class BudgetSection(Section):
+    """When the search ends."""
+
+    evaluations: Annotated[int, WholeNumber(10, 1_000_000)] | None = None
+    time: Time | None = None
+
+
+class OptimiseSection(Section):
+    """The whole file."""
+
+    study: Text = Field(description="the path of a study, such as crane.yaml")
+    variables: FreeMapping = Field(description="a mapping from fields of the study to bounds")
+    objective: Any = Field(description=_OBJECTIVE)
+    constraints: FreeMapping = Field(default_factory=dict)
+    budget: BudgetSection = BudgetSection()
+    starts: Annotated[int, WholeNumber(1, 20)] = 2
+    seed: Annotated[int, WholeNumber(0, 2**31)] = 0
+    samples: Annotated[int, WholeNumber(20, 100_000)] = 300
+    region: Literal["stays", "follows"] = "stays"
+
+
+def read_optimisation(path: Path, with_plugins: bool = True) -> Plan:
+    """Return the plan of an optimisation.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong with it, or with its study.
+    """
+    document = read_file(path, OPTIMISATION)
+    faults = list(document.faults)
+    try:
+        section = OptimiseSection.model_validate(document.root.data())
+    except ValidationError as error:
+        raise InputError([*faults, *schema_faults(error, document, OptimiseSection)]) from None
+    if not section.variables:
+        expected = "at least one field of the study"
+        faults.append(document.fault(("variables",), "the mapping is empty", expected))
+    study_path = path.parent / section.study
+    raw = read_bytes(study_path, str(study_path))
+    text = decode(raw, str(study_path))
+    given = document_of(raw, str(study_path))
+    study = Base(given, (), with_plugins).study()
+    variables = variables_of(document, given, faults)
+    moves_anchors = any("anchors" in tie.keys for one in variables for tie in one.ties)
+    fixed = _with_fixed_regions(text, given, study) if moves_anchors else text
+    if section.region == "follows":
+        fixed = text
+    objective = _objective(document, section.objective, faults)
+    limits = _limits(document, section.constraints, study, faults)
+    measures = [one for one in (objective, *(limit.measure for limit in limits)) if one]
+    kept = tuple(one.path for one in measures)
+    base = Base(document_of(fixed.encode(), str(study_path)), kept, with_plugins)
+    faults += _faults_of_measures(document, study, measures, base)
+    if faults or objective is None:
+        raise InputError(faults)
+    evaluations = _FIRST_EVALUATIONS + _EVALUATIONS_EACH * len(variables)
+    return Plan(
+        name=path.stem,
+        document=given,
+        text=fixed,
+        base=base,
+        region_stays=fixed != text,
+        variables=variables,
+        objective=for_study(objective, study),
+        limits=tuple(replace(one, measure=for_study(one.measure, study)) for one in limits),
+        budget=Budget(section.budget.evaluations or evaluations, section.budget.time),
+        starts=section.starts,
+        seed=section.seed,
+        samples=section.samples,
+    )
+
+
+def _with_fixed_regions(text: str, document: Document, study: Study) -> str:
+    """Return a study whose regions stay where they are when its anchors move."""
+    cases = document.root.child("load_cases")
+    count = len(cases.content) if cases is not None and isinstance(cases.content, tuple) else 0
+    places: list[tuple[Key, ...]] = [("workspace", "region")]
+    places += [("load_cases", k, "region") for k in range(count)]
+    anchors = study.robot.exit_points_m
+    for place in places:
+        for shape in ("prism", "rectangle"):
+            written = edits.value_text(text, (*place, shape))
+            if written is not None and written.strip("'\"") == "anchors":
+                over = Prism.over if shape == "prism" else Rectangle.over
+                found = over(anchors, 0.0, (0.0, 1.0))
+                corners = found.polygon_m if isinstance(found, Prism) else found.ends_m
+                rounded = np.round(corners, 9) + 0.0
+                points = ", ".join(f"[{x:.10g}, {y:.10g}]" for x, y in rounded)
+                text = edits.with_value(text, (*place, shape), f"[{points}]")
+    return text
+
+
+def _objective(document: Document, given: Any, faults: list[Fault]) -> Measure | None:
+    if isinstance(given, str) and given in MEASURES:
+        return MEASURES[given]
+    if isinstance(given, dict) and len(given) == 1:
+        ((way, path),) = given.items()
+        if way in ("minimise", "maximise") and isinstance(path, str):
+            return measure_at(path, 1 if way == "minimise" else -1)
+    name = given if isinstance(given, str) else ""
+    expected = _OBJECTIVE + did_you_mean(name, MEASURES)
+    faults.append(document.fault(("objective",), f"{describe(given)} is not known", expected))
+    return None
+
+
+def _limits(
+    document: Document, given: Mapping[str, Any], study: Study, faults: list[Fault]
+) -> tuple[Limit, ...]:
+    found = []
+    for name, one in given.items():
+        place: tuple[Key, ...] = ("constraints", name)
+        measure = MEASURES.get(name) or measure_at(name)
+        usual = "at_most" if measure.sign > 0 else "at_least"
+        is_told = isinstance(one, dict) and len(one) == 1
+        ((way, value),) = one.items() if is_told else ((usual, one),)
+        if way not in ("at_most", "at_least") or isinstance(value, dict | list):
+            faults.append(document.fault(place, f"{describe(value)} is no limit", _LIMIT))
+            continue
+        try:
+            is_named = name in MEASURES
+            limit = read_quantity(value, measure.dimension) if is_named else in_SI(value)
+        except QuantityError as error:
+            faults.append(document.fault(place, error.problem, error.expected))
+            continue
+        most, least = (limit, -math.inf) if way == "at_most" else (math.inf, limit)
+        found.append(Limit(measure, most, least))
+    return tuple(found)
+
+
+def _faults_of_measures(
+    document: Document, study: Study, measures: list[Measure], base: Base
+) -> list[Fault]:
+    """Return a fault for each measure that results of this study do not have."""
+    faults, result = [], None
+    for measure in measures:
+        is_objective = measure is measures[0]
+        place: tuple[Key, ...] = ("objective",) if is_objective else ("constraints", measure.name)
+        if measure.name in MEASURES:
+            part = "workspace" if measure.name == "diameter" else "selection"
+            has_volume = study.workspace is None or study.workspace.region.volume_m3 is not None
+            missing = getattr(study, part) is None
+            if measure.name == "max_tension" and study.workspace is not None:
+                missing = False
+            if missing or (measure.name == "usable_volume" and not has_volume):
+                problem = f"the study has no {part}" if missing else "the region has no volume"
+                expected = f"{part}: in the study, or another objective"
+                faults.append(document.fault(place, problem, expected))
+            continue
+        try:
+            result = base.result(base.study()) if result is None else result
+            measure.value(result)
+        except KeyError as error:
+            key, names = error.args
+            expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
+            if is_objective:
+                expected += f"; or {', '.join(MEASURES)}"
+            faults.append(document.fault(place, f"results have no '{key}' there", expected))
+    return faults

@@ -1,0 +1,259 @@
+"""What an optimisation found, and how far it is to be believed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from designer import __version__
+from designer.analysis.analyse import Analysis
+from designer.analysis.comparison import Comparison, Line
+from designer.analysis.result_json import Json
+from designer.arrays import FloatArray
+from designer.documents.plain import json_text
+from designer.optimum.plan import Limit, Plan, Values
+from designer.optimum.search import Searched
+from designer.optimum.trial import Trial
+
+_NEAR = 0.02
+"""Of each range: two designs that are no further apart are the same place."""
+_SAME = 1e-6
+_WORSE = {
+    "workspace.stiffness.largest_displacement_m_per_N": 1,
+    "workspace.interference.min_distance_m": -1,
+    "selection.chosen.max_tension_N": 1,
+}
+"""What nobody asked for may be paid with: 1 where more is worse, -1 where less is."""
+_NOTABLE = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """The objective along one variable through the optimum, all others as they are there.
+
+    ``objective`` is NaN where the design does not hold [SI].
+    """
+
+    values: tuple[float, ...]
+    objective: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Optimum:
+    """What an optimisation found.
+
+    Parameters
+    ----------
+    plan : Plan
+        What was asked.
+    searched : Searched
+        All designs that were tried.
+    best : Trial
+        The design that is answered, as the search saw it.
+    given, optimised : Analysis
+        The study as it is, and with the design's values: in full.
+    before, after : float or None
+        The verified objective of both [SI]; None where there is none.
+    breaches : tuple of Limit
+        What the verified design breaks.
+    rejected : tuple of Trial
+        Designs that looked better in the search, and were not, in full.
+    comparison : Comparison
+        Both results side by side.
+    text : str
+        The study with the design's values, as it is to lie where the study does.
+    profiles : tuple of Profile
+        One for each variable.
+    """
+
+    plan: Plan
+    searched: Searched
+    best: Trial
+    given: Analysis
+    optimised: Analysis
+    before: float | None
+    after: float | None
+    breaches: tuple[Limit, ...]
+    rejected: tuple[Trial, ...]
+    comparison: Comparison
+    text: str
+    profiles: tuple[Profile, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether the design holds as asked, verified."""
+        return self.optimised.is_positive and self.after is not None and not self.breaches
+
+    @property
+    def given_holds(self) -> bool:
+        """Whether the study as it is holds as asked."""
+        result = self.comparison.a
+        return self.given.is_positive and not any(
+            one.is_broken_by(result) for one in self.plan.limits
+        )
+
+    @property
+    def is_better(self) -> bool:
+        """Whether a design was found that holds, and is better than the study as it is."""
+        if not self.holds or self.after is None:
+            return False
+        if self.before is None or not self.given_holds:
+            return True
+        sign = self.plan.objective.sign
+        return sign * self.after < sign * self.before - _SAME * abs(self.before)
+
+    @property
+    def gain(self) -> float | None:
+        """Relative change of the objective; None where the study as it is has none."""
+        if self.before is None or self.after is None or not self.before:
+            return None
+        return self.after / self.before - 1.0
+
+    @property
+    def worsened(self) -> list[Line]:
+        """What got notably worse by it, of what is not asked for: give, and clearance."""
+        lines = (line for line in self.comparison.answers if line.path in _WORSE)
+        return [one for one in lines if (one.relative or 0.0) * _WORSE[one.path] > _NOTABLE]
+
+    @property
+    def off(self) -> float | None:
+        """Verified value over that of the search, less one; None without either."""
+        if self.after is None or not self.best.value or math.isnan(self.best.value):
+            return None
+        return self.after / self.best.value - 1.0
+
+    @property
+    def starts(self) -> tuple[Trial | None, ...]:
+        """The best design of each start; None where it found none that holds."""
+        sign = self.plan.objective.sign
+        return tuple(self.searched.best_of(k + 1, sign) for k in range(self.plan.starts))
+
+    def agrees(self, trial: Trial | None) -> bool:
+        """Tell whether a start came to the place of the answer, within some of each range."""
+        return trial is not None and is_near(self.plan, trial.values, self.best.values, _NEAR)
+
+    @property
+    def reasons(self) -> list[tuple[str, int]]:
+        """Why designs do not hold, and how many for each, most first."""
+        return Counter(t.reason for t in self.searched.trials if not t.holds).most_common()
+
+    def to_dict(self) -> Json:
+        """Return what ``optimise.json`` holds."""
+        plan, found = self.plan, self.searched
+        objective = plan.objective
+        return {
+            "format": 1,
+            "name": plan.name,
+            "study": plan.document.name,
+            "better": self.is_better,
+            "holds": self.holds,
+            "proved": False,
+            "objective": {
+                "name": objective.name,
+                "path": objective.path,
+                "unit": objective.dimension.unit,
+                "goal": "minimise" if objective.sign > 0 else "maximise",
+                "before": self.before,
+                "after": self.after,
+                "relative": self.gain,
+                "in_search": finite(self.best.value),
+                "in_search_before": finite(found.trials[0].value),
+            },
+            "variables": [self._variable(k) for k in range(len(plan.variables))],
+            "constraints": [
+                {
+                    "name": one.measure.name,
+                    one.words.replace(" ", "_"): one.value,
+                    "value": one.measure.value(self.comparison.b),
+                    "holds": one not in self.breaches,
+                }
+                for one in plan.limits
+            ],
+            "starts": [
+                {
+                    "seed": plan.seed + k,
+                    "best": None if trial is None else finite(trial.value),
+                    "values": None if trial is None else list(trial.values),
+                    "same_place": self.agrees(trial),
+                    "spread": None if k >= len(found.spreads) else _numbers(found.spreads[k]),
+                }
+                for k, trial in enumerate(self.starts)
+            ],
+            "search": {
+                "evaluations": len(found.trials) - 1,
+                "ended": found.ended,
+                "elapsed_s": found.elapsed_s,
+                "samples": plan.samples,
+                "region_stays": plan.region_stays,
+                "not_held": [{"reason": why, "designs": count} for why, count in self.reasons],
+                "rejected": [list(one.values) for one in self.rejected],
+            },
+            "convergence": [
+                {"design": k, "best": finite(value)} for k, value in enumerate(self.best_so_far)
+            ],
+            "provenance": {
+                "version": __version__,
+                "study_sha256": plan.document.sha256,
+                "created": self.optimised.provenance.created.isoformat(timespec="seconds"),
+            },
+        }
+
+    def _variable(self, k: int) -> Json:
+        one, value = self.plan.variables[k], self.best.values[k]
+        return {
+            "name": one.name,
+            "fields": list(one.fields),
+            "unit": one.unit,
+            "is_offset": one.is_offset,
+            "bounds": [one.low, one.high],
+            "before": one.given,
+            "after": value,
+            "at_bound": one.bound_at(value) or None,
+        }
+
+    @property
+    def best_so_far(self) -> list[float]:
+        """The objective of the best design that holds up to each one that was tried [SI]."""
+        sign, best, values = self.plan.objective.sign, math.nan, []
+        for one in self.searched.trials:
+            if one.holds and not sign * one.value >= sign * best:
+                best = one.value
+            values.append(best)
+        return values
+
+    def to_json(self) -> str:
+        """Return what ``optimise.json`` holds, as text."""
+        return json_text(self.to_dict())
+
+    def to_csv(self) -> str:
+        """Return every design that was tried, one a row."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        names = [f"{v.name} [{v.unit}]" if v.unit else v.name for v in self.plan.variables]
+        writer.writerow(["start", "turn", *names, self.plan.objective.name, "reason"])
+        for one in self.searched.trials:
+            value = "" if math.isnan(one.value) else f"{one.value:.10g}"
+            values = one.values or [""] * len(names)
+            writer.writerow([one.start, one.round, *values, value, one.reason])
+        return stream.getvalue()
+
+
+def is_near(plan: Plan, a: Values, b: Values, share: float) -> bool:
+    """Tell whether two designs are no further apart than a share of each variable's range."""
+    each = zip(plan.variables, a, b, strict=True)
+    return all(abs(one.share(x) - one.share(y)) <= share for one, x, y in each)
+
+
+def finite(value: float) -> float | None:
+    """Return a number; None for what is none."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _numbers(values: FloatArray) -> list[Any]:
+    return [finite(float(x)) for x in np.asarray(values)]

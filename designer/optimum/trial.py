@@ -1,0 +1,134 @@
+"""One design: its values put into the study, and what it comes to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from designer.analysis.result_json import Json
+from designer.grades.grade import Grade
+from designer.model.verdict import Verdict
+from designer.optimum.measures import Measure, NotHeldError, Quick
+from designer.optimum.plan import Limit, Plan, Values
+from designer.study import Study, require_enough_cables
+from designer.sweep.point import why_negative, why_not
+
+NO_STUDY = 3.0
+"""Violation of a design that is no valid study: worse than one that holds nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A design that was tried.
+
+    Parameters
+    ----------
+    values : tuple of float
+        Of the variables.
+    value : float
+        Of the objective [SI]; NaN where there is none.
+    violation : float
+        0 where the design holds as asked; else how far it is from that, see
+        `designer.optimum.measures.NotHeldError`.
+    reason : str
+        What is wrong with it; empty for nothing.
+    start, round : int
+        Search that tried it, and which turn of it; 0 for the study as it is.
+    """
+
+    values: Values
+    value: float
+    violation: float
+    reason: str
+    start: int = 0
+    round: int = 0
+
+    @property
+    def holds(self) -> bool:
+        """Whether the design is as asked."""
+        return self.violation == 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Examiner:
+    """Tries designs of a plan; ``grades`` are those worth a try."""
+
+    plan: Plan
+    grades: tuple[Grade, ...]
+
+    def trial(self, values: Values | None) -> Trial:
+        """Try a design; None for the study as it is. Never fails: a reason is a result."""
+        changes = () if values is None else self.plan.changes(values)
+        value, violation, reason = math.nan, NO_STUDY, ""
+        try:
+            value, violation, reason = self._met(self.plan.base.study(changes))
+        except NotHeldError as error:
+            violation, reason = error.violation, error.reason
+        except Exception as error:  # whatever a plugin or a library may raise
+            reason = why_not(error)
+        return Trial(values or self.plan.given or (), value, violation, reason)
+
+    def _met(self, study: Study) -> tuple[float, float, str]:
+        """Return the objective, and the worst breach of a limit."""
+        require_enough_cables(study)
+        figures = _Figures(self, study)
+        value = figures.of(self.plan.objective)
+        breaches = [(one.excess(figures.of(one.measure)), one) for one in self.plan.limits]
+        excess, limit = max(breaches, key=lambda each: each[0], default=(0.0, None))
+        if excess == 0.0 or limit is None:
+            return value, 0.0, ""
+        return value, excess / (1.0 + excess), broken(limit)
+
+
+def broken(limit: Limit) -> str:
+    """Return that a limit is broken, for the reader of a report."""
+    what = f"{limit.value:.6g} {limit.measure.dimension.unit}".rstrip()
+    return f"{limit.measure.title} is not {limit.words} {what}"
+
+
+class _Figures:
+    """The measures of one design, by the quick way where they have one."""
+
+    def __init__(self, examiner: Examiner, study: Study) -> None:
+        self._plan, self._study = examiner.plan, study
+        self._quick = Quick(study, examiner.grades, examiner.plan.samples)
+        self._result: Json | None = None
+
+    def of(self, measure: Measure) -> float:
+        if measure.quick is not None:
+            value = measure.quick(self._quick)
+        else:
+            value = self._from_result(measure)
+        if math.isnan(value):
+            raise NotHeldError(1.0, f"there is no {measure.title}")
+        return value
+
+    def _from_result(self, measure: Measure) -> float:
+        found = measure.value(self._whole())
+        return math.nan if found is None else found
+
+    def _whole(self) -> Json:
+        """Return the result over few samples.
+
+        Raises
+        ------
+        NotHeldError
+            If it is no answer.
+        """
+        if self._result is None:
+            study, workspace = self._study, self._study.workspace
+            if workspace is not None:
+                few = min(self._plan.samples, workspace.samples)
+                study = replace(study, workspace=replace(workspace, samples=few))
+            self._result = self._plan.base.result(study)
+        reason = why_negative(self._result)
+        if reason:
+            raise NotHeldError(1.0 + _share_not_held(self._result), reason)
+        return self._result
+
+
+def _share_not_held(result: Json) -> float:
+    workspace = result.get("workspace")
+    if workspace is None:
+        return 1.0
+    return 1.0 - float(workspace["statuses"][Verdict.SOLVED.label]) / float(workspace["samples"])

@@ -1,0 +1,214 @@
+"""The variables of an optimisation file: which fields they set, and within which bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain
+
+from pydantic import ValidationError
+
+from designer.documents.document import Document
+from designer.documents.faults import schema_faults
+from designer.documents.node import Key, Node, path_keys, path_text
+from designer.errors import Fault
+from designer.io.config.schema import StudySection
+from designer.optimum.plan import Tie, Variable
+from designer.units import QuantityError, describe, in_SI, split_quantity
+
+_SPEC = (
+    "[low, high], or {fields: [robot.anchors.*.2], bounds: [9 m, 13 m]}, or offset: [-1 m, 1 m] "
+    "in place of bounds"
+)
+_EVERY = "*"
+
+
+def variables_of(document: Document, study: Document, faults: list[Fault]) -> tuple[Variable, ...]:
+    """Return the variables of a file; those that are wrong are left out, with a fault more."""
+    root = document.root.child("variables")
+    assert root is not None and isinstance(root.content, dict)
+    found: list[Variable] = []
+    taken: dict[str, str] = {}
+    for name, node in root.content.items():
+        try:
+            variable = _variable(name, node, study.root)
+            _check_values(variable, study)
+        except _WrongError as error:
+            faults.append(document.fault(("variables", name, *error.keys), *error.args))
+            continue
+        for field in variable.fields:
+            if field in taken:
+                problem = f"{field} is set by '{taken[field]}' already"
+                faults.append(document.fault(("variables", name), problem, "each field once"))
+            taken[field] = name
+        found.append(variable)
+    return tuple(found)
+
+
+class _WrongError(Exception):
+    """What is wrong with a variable, what was expected, and where in it."""
+
+    def __init__(self, problem: str, expected: str = _SPEC, *keys: Key) -> None:
+        super().__init__(problem, expected)
+        self.keys = keys
+
+
+def _variable(name: str, node: Node, study: Node) -> Variable:
+    if not isinstance(node.content, dict):
+        low, high, unit = _ends(node)
+        return _tied(name, {name: 1.0}, low, high, unit, study, is_offset=False)
+    unknown = [key for key in node.content if key not in ("fields", "bounds", "offset")]
+    if unknown:
+        raise _WrongError(f"unknown field '{unknown[0]}'", "one of fields, bounds, offset")
+    bounds, offset = node.child("bounds"), node.child("offset")
+    given = bounds or offset
+    if given is None or (bounds and offset):
+        raise _WrongError("has not one of bounds and offset")
+    low, high, unit = _ends(given)
+    factors = _factors(name, node.child("fields"))
+    return _tied(name, factors, low, high, unit, study, is_offset=offset is not None)
+
+
+def _ends(node: Node) -> tuple[float, float, str]:
+    """Return both ends of a range, and their unit."""
+    each = node.content if isinstance(node.content, tuple) else ()
+    ends = [part for part in map(_quantity, each) if part is not None]
+    if len(each) != 2 or len(ends) != 2:
+        raise _WrongError(f"{describe(node.data())} is no range")
+    (low, unit), (high, other) = ends
+    if unit != other:
+        raise _WrongError(f"its bounds are in '{unit}' and '{other}'", "both in one unit")
+    if not low < high:
+        shown = f"{low:g} {unit}".rstrip(), f"{high:g} {unit}".rstrip()
+        raise _WrongError(f"the lower bound {shown[0]} is not below {shown[1]}", "[lower, upper]")
+    return low, high, unit
+
+
+def _quantity(node: Node | None) -> tuple[float, str] | None:
+    """Return number and unit of a value; None where it is none."""
+    is_text = node is not None and isinstance(node.content, str)
+    return split_quantity(node.content) if node is not None and is_text else None
+
+
+def _factors(name: str, node: Node | None) -> dict[str, float]:
+    """Return the fields of a variable, each with what its value is multiplied by there."""
+    if node is None:
+        return {name: 1.0}
+    if isinstance(node.content, str):
+        return {node.content: 1.0}
+    if isinstance(node.content, tuple):
+        texts = [child.content for child in node.content]
+        fields = [text for text in texts if isinstance(text, str)]
+        if not fields or len(fields) < len(texts):
+            expected = "paths such as robot.anchors.0.2; in brackets without brackets of their own"
+            raise _WrongError("is no list of fields", expected, "fields")
+        return dict.fromkeys(fields, 1.0)
+    factors = {}
+    for field, child in node.content.items():
+        part = _quantity(child)
+        if part is None or part[1] or not part[0]:
+            raise _WrongError(f"{describe(child.data())} is no factor", "such as 1 or -1", "fields")
+        factors[field] = part[0]
+    return factors
+
+
+def _tied(
+    name: str,
+    factors: dict[str, float],
+    low: float,
+    high: float,
+    unit: str,
+    study: Node,
+    *,
+    is_offset: bool,
+) -> Variable:
+    ties, values = [], []
+    for field, factor in factors.items():
+        for keys in _spread(path_keys(field), study, field):
+            written = _written(study, keys)
+            if written is None and is_offset:
+                problem = f"{field}: the study has no number there"
+                raise _WrongError(problem, "bounds, or a field that the study gives")
+            tie = _tie(keys, factor, unit, written, is_offset=is_offset)
+            ties.append(tie)
+            if is_offset:
+                values.append(0.0)
+            elif written is not None:
+                values.append(_in_unit(written, unit) / factor)
+    same = len(values) == len(ties) and max(values) - min(values) <= 1e-9 * (high - low)
+    given = float(f"{values[0]:.10g}") if same else None
+    return Variable(name, tuple(ties), low, high, unit, given, is_offset)
+
+
+def _spread(keys: tuple[Key, ...], study: Node, field: str) -> list[tuple[Key, ...]]:
+    """Return the paths that one with ``*`` stands for: every item of the list there."""
+    if _EVERY not in keys:
+        return [keys]
+    at = keys.index(_EVERY)
+    node: Node | None = study
+    for key in keys[:at]:
+        node = node.child(key) if node else None
+    if node is None or not isinstance(node.content, tuple):
+        raise _WrongError(f"{field}: the study has no list there", "the path of a list before '*'")
+    each = ((*keys[:at], k, *keys[at + 1 :]) for k in range(len(node.content)))
+    return list(chain.from_iterable(_spread(one, study, field) for one in each))
+
+
+def _written(study: Node, keys: Sequence[Key]) -> tuple[float, str] | None:
+    """Return number and unit of a field as the study has it; None where it has none."""
+    node: Node | None = study
+    for key in keys:
+        node = node.child(key) if node else None
+    return _quantity(node)
+
+
+def _tie(
+    keys: tuple[Key, ...],
+    factor: float,
+    unit: str,
+    written: tuple[float, str] | None,
+    *,
+    is_offset: bool,
+) -> Tie:
+    """Return the tie of a field, which keeps the unit that the study has there where it can."""
+    own = unit if written is None else written[1]
+    scale = 1.0 if own == unit else _SI(1.0, unit)
+    origin = written[0] if is_offset and written is not None else 0.0
+    if own not in (unit, ""):
+        return Tie(keys, _SI(origin, own), factor * scale, "")
+    return Tie(keys, origin, factor * scale, own)
+
+
+def _in_unit(written: tuple[float, str], unit: str) -> float:
+    return written[0] if written[1] == unit else _SI(*written) / _SI(1.0, unit)
+
+
+def _SI(value: float, unit: str) -> float:
+    try:
+        return in_SI(f"{value!r} {unit}")
+    except QuantityError as error:
+        raise _WrongError(error.problem, error.expected) from None
+
+
+def _in_bounds_unit(variable: Variable, tie: Tie, value: float) -> Node:
+    """Return a value of a field in the unit of the bounds, which may be one of another kind."""
+    node, unit = tie.node(value), variable.unit
+    if unit == tie.unit:
+        return node
+    return Node(1, f"{float(node.as_written()) / _SI(1.0, unit):.10g} {unit}")
+
+
+def _check_values(variable: Variable, study: Document) -> None:
+    """Refuse a field that there is not, and bounds that it cannot have by itself."""
+    for tie, value in (
+        (tie, end) for tie in variable.ties for end in (variable.low, variable.high)
+    ):
+        field = path_text(tie.keys)
+        try:
+            root = study.root.with_value(tie.keys, _in_bounds_unit(variable, tie, value))
+        except KeyError:
+            raise _WrongError(f"{field}: the study has no such field", "its path there") from None
+        try:
+            StudySection.model_validate(root.data())
+        except ValidationError as error:
+            fault = schema_faults(error, study, StudySection)[0]
+            raise _WrongError(f"{field}: {fault.problem}", fault.expected) from None

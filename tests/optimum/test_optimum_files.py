@@ -1,0 +1,76 @@
+"""What an optimisation writes, from Python and from the command line."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from optimum_cases import OF_POSE, OF_YARD, YARD, optimum, written
+
+import designer
+from designer.cli.commands import main
+from designer.optimum.page import headline, optimum_report, trust_lines, write_optimum
+
+
+@pytest.mark.slow
+def test_the_optimised_study_is_the_design_wherever_it_lies(tmp_path: Path) -> None:
+    found = optimum(tmp_path, OF_YARD, YARD)
+    folder = tmp_path / "out"
+    folder.mkdir()
+    write_optimum(found, folder)
+    names = {file.name for file in folder.iterdir()}
+    assert {"optimise.html", "optimise.pdf", "optimise.json", "designs.csv"} <= names
+    study = designer.read_study(folder / "crane.optimised.yaml", with_plugins=False)
+    robot = found.optimised.study.robot
+    assert study.robot.exit_points_m.tolist() == robot.exit_points_m.tolist()
+    text = (folder / "crane.optimised.yaml").read_text()
+    assert text.startswith("# a small crane\n") and "# mast tops" in text
+    told = json.loads((folder / "optimise.json").read_text())
+    assert told["objective"]["after"] == found.optimised.to_dict()["answer"]["total_mass_kg"]
+    assert told["better"] is found.is_better
+    rows = (folder / "designs.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(found.searched.trials)
+    comparison = json.loads((folder / "comparison.json").read_text())
+    assert comparison["same"] is False
+
+
+def test_the_page_says_what_is_not_proved(tmp_path: Path) -> None:
+    found = optimum(tmp_path, OF_POSE.replace("150", "30"))
+    assert "not proved the best" in trust_lines(found)[0]
+    assert "−" in headline(found)
+    report = optimum_report(found, found.optimised.provenance.created)
+    assert [one.id for one in report.sections] == ["answer", "variables", "differences", "trust"]
+
+
+def test_nothing_better_is_no_gain(tmp_path: Path) -> None:
+    """The study as it is has the highest masts that may be."""
+    plan = OF_POSE.replace("[6 m, 12 m]", "[6 m, 10 m]").replace("[-4 m, 6 m]", "[-1 m, 1 m]")
+    found = optimum(tmp_path, plan.replace("150", "40"))
+    assert not found.is_better and found.holds
+    assert headline(found).startswith("Nothing better was found")
+
+
+def test_the_package_offers_it(tmp_path: Path) -> None:
+    found = designer.optimise(written(tmp_path, OF_POSE.replace("150", "10")), with_plugins=False)
+    assert isinstance(found, designer.Optimum)
+
+
+@pytest.mark.slow
+def test_the_command_writes_all_or_nothing(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = written(tmp_path, OF_YARD, YARD)
+    monkeypatch.setattr(sys, "argv", ["designer", "optimise", path.name, "--no-plugins"])
+    main()
+    assert "Mass of all ropes" in capsys.readouterr().out
+    folder = tmp_path / "masts-optimum"
+    for name in ("optimise.pdf", "comparison.html", "given/report.pdf", "optimised/report.pdf"):
+        assert (folder / name).stat().st_size > 0
+    path.write_text(OF_YARD.replace("rope_mass", "rope"))
+    monkeypatch.setattr(sys, "argv", ["designer", "optimise", path.name, "-o", "other"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert "masts.yaml:2: objective: 'rope' is not known" in capsys.readouterr().err
+    assert not (tmp_path / "other").exists()
