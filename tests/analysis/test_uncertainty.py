@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from dataclasses import replace
 from statistics import NormalDist
 
@@ -134,9 +133,8 @@ def test_the_interval_is_the_exact_one(successes: int, trials: int) -> None:
     assert exact_interval(successes, trials) == pytest.approx((exact.low, exact.high), rel=1e-9)
 
 
-@pytest.mark.parametrize("exits", [True, False])
-def test_each_draw_is_what_brute_force_finds_on_random_robots(exits: bool) -> None:
-    seed = secrets.randbits(32)
+@pytest.mark.parametrize(("seed", "exits"), [(11, True), (12, True), (13, False)])
+def test_each_draw_is_what_brute_force_finds_on_random_robots(seed: int, exits: bool) -> None:
     rng = np.random.default_rng(seed)
     anchors = ANCHORS + rng.uniform(-3, 3, (3, 3))
     robot = Robot(anchors, Platform(float(rng.uniform(50, 400))))
@@ -167,7 +165,7 @@ def test_probability_against_brute_force_sampling() -> None:
     study, chosen = study_of(asked, rope("a", FINE))
     found = odds(study, chosen)
     size = found.chosen.candidate.size
-    rng, count, enough = np.random.default_rng(secrets.randbits(32)), 1000, 0
+    rng, count, enough = np.random.default_rng(21), 1000, 0
     cable = found.chosen.candidate.cable
     for _ in range(count):
         payload, strong = 1 + 0.05 * rng.normal(), 1 + 0.04 * rng.normal()
@@ -186,7 +184,7 @@ def test_probability_against_brute_force_sampling() -> None:
 
 
 def test_one_pass_and_one_by_one_agree(six_cable_robot: Robot, monkeypatch) -> None:
-    rng = np.random.default_rng(secrets.randbits(32))
+    rng = np.random.default_rng(22)
     wrench = np.array([300.0, -200, 100, 0, 0, 0])
     heavy = replace(six_cable_robot, platform=replace(six_cable_robot.platform, wrench_N=wrench))
     places = np.array([[5.0, -3, -60], [0, 0, -40], [-20, 10, -80]])
@@ -205,7 +203,7 @@ def test_one_pass_and_one_by_one_agree(six_cable_robot: Robot, monkeypatch) -> N
 
 @pytest.mark.parametrize("is_planar", [False, True])
 def test_moved_exit_points_in_one_batch_and_one_by_one_agree(is_planar, monkeypatch) -> None:
-    rng = np.random.default_rng(secrets.randbits(32))
+    rng = np.random.default_rng(23)
     body = Platform(180.0, wrench_N=np.array([100.0, 0, -50, 0, 0, 0]))
     exits = ANCHORS[:2] if is_planar else ANCHORS
     robot = Robot(exits, body, is_planar=is_planar, tilt_rad=np.array([0.0, 0.02]))
