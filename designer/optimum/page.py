@@ -105,10 +105,11 @@ def headline(found: Optimum) -> str:
     """Return what came out, in a line."""
     objective, gain = found.plan.objective, found.gain
     before, after = (value_text(objective, one) for one in (found.before, found.after))
+    title = objective.title if objective.title == objective.path else fmt.capital(objective.title)
     if found.is_better and gain is not None and found.given_holds:
-        return f"{fmt.capital(objective.title)}: {before} → {after}, {fmt.signed_percent(gain)}"
+        return f"{title}: {before} → {after}, {fmt.signed_percent(gain)}"
     if found.is_better:
-        return f"{fmt.capital(objective.title)}: {after}; the robot as given does not hold"
+        return f"{title}: {after}; the robot as given does not hold as asked"
     if found.holds:
         return f"Nothing better was found than the robot as given, {before}"
     return "No design was found that holds as asked"
@@ -123,9 +124,10 @@ def trust_lines(found: Optimum) -> list[str]:
         f"{searched.elapsed_s:.0f} s, until {_ENDED[searched.ended]}."
     ]
     if found.off is not None:
+        poses = f", with {fmt.plural(plan.samples, 'pose')} of each design,"
         lines.append(
-            f"Verified in full: {value_text(plan.objective, found.after)}; the search, with "
-            f"{fmt.plural(plan.samples, 'pose')} of each design, had "
+            f"Verified in full: {value_text(plan.objective, found.after)}; the search"
+            f"{poses if found.given.study.workspace else ''} had "
             f"{value_text(plan.objective, found.best.value)} ({fmt.signed_percent(found.off)})."
         )
     if found.rejected:

@@ -62,7 +62,9 @@ def test_the_command_writes_all_or_nothing(tmp_path: Path, monkeypatch, capsys) 
     monkeypatch.chdir(tmp_path)
     path = written(tmp_path, OF_YARD, YARD)
     monkeypatch.setattr(sys, "argv", ["designer", "optimise", path.name, "--no-plugins"])
-    main()
+    with pytest.raises(SystemExit) as done:
+        main()
+    assert done.value.code == 0
     assert "Mass of all ropes" in capsys.readouterr().out
     folder = tmp_path / "masts-optimum"
     for name in ("optimise.pdf", "comparison.html", "given/report.pdf", "optimised/report.pdf"):

@@ -78,9 +78,11 @@ def _view(
     for a, b in zip(before.exit_points_m[moved], after.exit_points_m[moved], strict=True):
         arrow = {"arrowstyle": "->", "color": palette.INK, "shrinkA": 4.0, "shrinkB": 4.0}
         axes.annotate("", b[plane], a[plane], arrowprops=arrow, zorder=5)
-    exits = after.exit_points_m[:, plane]
-    centre, size = where_m[plane], float(np.ptp(exits, axis=0).max())
-    for text, place in canvas.names_of(exits, 0.06 * size):
+    centre = where_m[plane]
+    each = np.stack([robot.exit_points_m[:, plane] for robot in (before, after)])
+    is_outer = np.linalg.norm(each[0] - centre, axis=1) > np.linalg.norm(each[1] - centre, axis=1)
+    outer = np.where(is_outer[:, None], each[0], each[1])
+    for text, place in canvas.names_of(outer, 0.06 * float(np.ptp(outer, axis=0).max())):
         away = (place - centre) / max(float(np.linalg.norm(place - centre)), 1e-9)
         canvas.note(axes, text, tuple(place), tuple(13.0 * away), ha="center", va="center")
     axes.plot(*where_m[plane], marker="s", markersize=3.5, color=palette.INK, zorder=6)
