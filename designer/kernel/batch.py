@@ -42,7 +42,8 @@ class Solution:
     massless_tension_N : array (n_poses,)
         Largest tension of straight, weightless cables [N]; NaN outside their hull.
     potential : array (n_poses,)
-        Estimate of what other branches could gain, relative, by `designer.kernel.branches`.
+        Estimate of what other branches could gain, relative, by `designer.kernel.branches`; zero
+        where it was not asked for.
     """
 
     verdict: VerdictArray
@@ -66,6 +67,7 @@ def solve_batch(
     inverse_weight_m_per_N: float | None,
     *,
     is_thorough: bool = False,
+    rates_branches: bool = True,
 ) -> Solution:
     """Solve the statics of poses (n_poses,), or size the cables if no weight is given.
 
@@ -80,6 +82,8 @@ def solve_batch(
         strength allows.
     is_thorough : bool
         Whether to look for other branches as well, which takes a thousand times as long.
+    rates_branches : bool
+        Whether to estimate what they could gain, which takes twice as long as to solve the poses.
 
     Raises
     ------
@@ -105,7 +109,7 @@ def solve_batch(
     if inverse_weight != 0.0:  # at infinite section nothing is chosen
         if is_thorough:
             share_out(search_range, count, _SHARE, *asked)
-        if not robot.has_one_branch:
+        if rates_branches and not robot.has_one_branch:
             share_out(rate_range, count, _SHARE, situation, figures, sizing, out, potential)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[:, None]

@@ -28,8 +28,8 @@ def kernel(function: Function) -> Function:
     options = {"nogil": True, "cache": True, "error_model": "numpy", "fastmath": _FAST}
     compiled: Any = numba.njit(**options)(function)
     # Numba takes cached code for fresh as long as the function's own file is unchanged, although
-    # it contains what the function calls; here any change in this folder makes it stale.
-    compiled._cache._cache_file._source_stamp = _stamp("kernel")
+    # it contains what the function calls; here any change in these folders makes it stale.
+    compiled._cache._cache_file._source_stamp = _stamp("kernel", "physics")
     result: Function = compiled
     return result
 
@@ -45,7 +45,7 @@ def exact(function: Function) -> Function:
 def exact_kernel(function: Function) -> Function:
     """Compile a loop over boxes the same way; otherwise as `kernel`."""
     compiled: Any = numba.njit(nogil=True, cache=True, error_model="numpy")(function)
-    compiled._cache._cache_file._source_stamp = _stamp("kernel", "proof/enclosure")
+    compiled._cache._cache_file._source_stamp = _stamp("kernel", "physics", "proof/enclosure")
     result: Function = compiled
     return result
 

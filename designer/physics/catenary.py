@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
 
-_LARGEST_THETA = 350.0  # sinh² stays finite
+LARGEST_THETA = 350.0  # sinh² stays finite
 
 
 def position_m(
@@ -172,12 +172,12 @@ def _length_from_pull(p: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatA
     """Return the root l of the closure for a given pull p; it lies below 1/(κ p), where θ = 0."""
     p, X, D, kappa = np.broadcast_arrays(p, X, D, kappa)
     low, high = np.zeros(p.shape), 1.0 / (kappa * p)
-    theta = np.minimum(0.5 / p, _LARGEST_THETA)
+    theta = np.minimum(0.5 / p, LARGEST_THETA)
     straight = np.hypot(D, X * np.sinh(theta) / theta)
     length = straight / (1.0 + kappa * p * straight)
     for _ in range(200):
-        theta = np.minimum(0.5 * (1.0 / p - kappa * length), _LARGEST_THETA)
-        f, slope = _closure(theta, length, X, D, kappa)
+        theta = np.minimum(0.5 * (1.0 / p - kappa * length), LARGEST_THETA)
+        f, slope = closure(theta, length, X, D, kappa)
         # The same closure, but now its slope in l, with θ going along.
         fall = -0.5 * kappa * slope + _closure_slope_in_length(theta, length, X, D, kappa)
         low, high = np.where(f > 0.0, length, low), np.where(f > 0.0, high, length)
@@ -214,6 +214,14 @@ def forces_from_length(
     kappa = w / EA
     with np.errstate(over="ignore"):  # far from the root the closure grows like exp(2 θ)
         theta = _theta_from_length(length, X, D, kappa)
+    return forces_from_theta(theta, length, X, D, kappa, w)
+
+
+def forces_from_theta(
+    theta: FloatArray, length: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatArray,
+    w: FloatArray,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Return the forces F_x and F_z at the attachment point from the root θ of the closure [N]."""
     p = 1.0 / (2.0 * theta + kappa * length)
     y = _mean_tension(length, theta)
     return np.asarray(w * p * X), _force_z(length, y, D, kappa, w)
@@ -225,12 +233,12 @@ def _theta_from_length(
     """Return the root θ of the closure, infinity for a folded vertical cable, NaN for none."""
     low = np.full(length.shape, np.log(1e-9))
     low = np.minimum(low, np.log(np.maximum(kappa * length, 1e-30)) - 20.0)
-    high = np.full(length.shape, np.log(_LARGEST_THETA))
+    high = np.full(length.shape, np.log(LARGEST_THETA))
     u = np.clip(0.5 * np.log(np.maximum(6.0 * (length / np.hypot(X, D) - 1.0), 1e-8)), low, high)
-    reachable = _closure(np.exp(low), length, X, D, kappa)[0] < 0.0
-    folded = _closure(np.exp(high), length, X, D, kappa)[0] < 0.0
+    reachable = closure(np.exp(low), length, X, D, kappa)[0] < 0.0
+    folded = closure(np.exp(high), length, X, D, kappa)[0] < 0.0
     for _ in range(200):
-        f, slope = _closure(np.exp(u), length, X, D, kappa)
+        f, slope = closure(np.exp(u), length, X, D, kappa)
         low, high = np.where(f < 0.0, u, low), np.where(f < 0.0, high, u)
         with np.errstate(divide="ignore", invalid="ignore"):
             # Newton on the logarithm of the closure, which is nearly straight at both ends.
@@ -245,7 +253,7 @@ def _theta_from_length(
     return np.where(reachable & ~(folded & (X > 0.0)), theta, np.nan)
 
 
-def _closure(
+def closure(
     theta: FloatArray, length: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return D² q² + X² g² S - l² over l², free of cancellation at l ≈ chord, and its θ slope."""
@@ -277,7 +285,7 @@ def _closure_slope_in_length(
 ) -> FloatArray:
     """Return the slope of D² q² + X² g² S - l² in l at fixed θ, over l², where g = 1 - κ l p.
 
-    At fixed θ the pull is 1/(2θ + κ l), as in `_closure`.
+    At fixed θ the pull is 1/(2θ + κ l), as in `closure`.
     """
     width = 2.0 * theta + kappa * length
     coth = 1.0 / np.tanh(theta)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.kernel.calling import plain
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.physics import catenary
@@ -51,7 +52,7 @@ def cables_of_length(
         free = length_m - run.wrap_m
         force_x, force_z = np.where(
             free > 0.0,
-            catenary.forces_from_length(
+            _forces_N(
                 np.where(free > 0.0, free, 1.0),
                 geometry.horizontal_distance_m,
                 geometry.drop_m,
@@ -76,3 +77,23 @@ def cables_of_length(
         run=run,
         force_N=force_N,
     )
+
+
+def _forces_N(
+    length_m: FloatArray,
+    horizontal_distance_m: FloatArray,
+    drop_m: FloatArray,
+    axial_stiffness_N: float | FloatArray,
+    weight_N_per_m: float | FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return what `catenary.forces_from_length` does, cable by cable in compiled code."""
+    from designer.kernel.fixed_length import solve_thetas
+
+    kappa_per_m = np.asarray(weight_N_per_m) / axial_stiffness_N
+    length, X, D, kappa, w = map(
+        plain,
+        np.broadcast_arrays(length_m, horizontal_distance_m, drop_m, kappa_per_m, weight_N_per_m),
+    )
+    theta = np.empty(length.shape)
+    solve_thetas(length.ravel(), X.ravel(), D.ravel(), kappa.ravel(), theta.reshape(-1))
+    return catenary.forces_from_theta(theta, length, X, D, kappa, w)

@@ -139,9 +139,11 @@ def solve_task(
     force = None if task.force_N is None else np.broadcast_to(task.force_N, poses.position_m.shape)
     task = replace(task, force_N=None if force is None else force.reshape(count, 3))
 
-    solution, run = _solve_over_pulleys(robot, flat, task, is_thorough=False)
+    solution, run = _solve_over_pulleys(
+        robot, flat, task, is_thorough=False, rates_branches=seeks_better
+    )
     _judge_unsolved(robot, flat, solution, task)
-    _try_other_branches(robot, flat, solution, run, task, seeks_better=seeks_better)
+    _try_other_branches(robot, flat, solution, run, task)
     if robot.pulley_radius_m == 0.0:
         return solution, run
     shape = (*poses.shape, robot.n_cables)
@@ -150,7 +152,13 @@ def solve_task(
 
 
 def _solve_over_pulleys(
-    robot: Robot, flat: Poses, task: Task, *, is_thorough: bool, turns: int = 5
+    robot: Robot,
+    flat: Poses,
+    task: Task,
+    *,
+    is_thorough: bool,
+    rates_branches: bool,
+    turns: int = 5,
 ) -> tuple[Solution, PulleyRun]:
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
@@ -166,6 +174,7 @@ def _solve_over_pulleys(
             task.strength_m * each,
             task.inverse_weight_m_per_N,
             is_thorough=is_thorough,
+            rates_branches=rates_branches,
         )
         if robot.pulley_radius_m == 0.0:  # no cable leaves at an angle that matters
             return solution, np.empty(0), 0.0
@@ -185,7 +194,12 @@ def _solve_over_pulleys(
     at = np.flatnonzero(gap_rad > _STILL_RAD)
     if len(at) > 0:
         again = _solve_over_pulleys(
-            robot, part_of(flat, at), task.part(at), is_thorough=is_thorough, turns=2 * turns
+            robot,
+            part_of(flat, at),
+            task.part(at),
+            is_thorough=is_thorough,
+            rates_branches=rates_branches,
+            turns=2 * turns,
         )
         _replace(solution, run, at, *again)
     return solution, run
@@ -213,21 +227,21 @@ def _try_other_branches(
     solution: Solution,
     run: PulleyRun,
     task: Task,
-    *,
-    seeks_better: bool,
 ) -> None:
-    """Search again where nothing is found or proved, or where another branch may be better.
+    """Search again where nothing is found or proved, or another branch is rated to be better.
 
     Of branches that are as good, one without cables far longer than their chords is preferred.
 
     Writes what is better into the solution and the run of the cables.
     """
     hard = np.logical_or.reduce([solution.verdict == verdict for verdict in OPEN])
-    at = np.flatnonzero(hard | (seeks_better & (solution.potential > _WORTH_A_SEARCH)))
+    at = np.flatnonzero(hard | (solution.potential > _WORTH_A_SEARCH))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
     some = part_of(flat, at)
-    again, its_run = _solve_over_pulleys(robot, some, task.part(at), is_thorough=True)
+    again, its_run = _solve_over_pulleys(
+        robot, some, task.part(at), is_thorough=True, rates_branches=False
+    )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
         burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
