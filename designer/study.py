@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
 
-from designer.arrays import FloatArray, require_number, require_one_of
+from designer.arrays import FloatArray, frozen_array, require_number, require_one_of
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.known import KnownEffects
@@ -85,7 +86,9 @@ class Workspace:
         Memory stays flat, however many there are.
         """
         size = max(CHUNK // self.orientations.count, 1)
-        for chunk in self.region.samples_m(self.samples, self.sampling, self.seed):
+        what = self.samples, self.sampling, self.seed
+        few = self.samples <= CHUNK
+        for chunk in _kept_samples_m(self.region, *what) if few else self.region.samples_m(*what):
             yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
 
     def places(self) -> Iterator[FloatArray]:
@@ -114,6 +117,14 @@ class Workspace:
     def sample_count(self) -> int:
         """How many positions there are to try, for a progress bar (an estimate)."""
         return sum(map(len, self.positions_m())) if self.region.is_discrete else self.samples
+
+
+@lru_cache(maxsize=8)
+def _kept_samples_m(
+    region: Region, count: int, sampling: Sampling, seed: int
+) -> tuple[FloatArray, ...]:
+    """Return the samples of a region: every candidate of a selection is tried at the same."""
+    return tuple(map(frozen_array, region.samples_m(count, sampling, seed)))
 
 
 @dataclass(frozen=True, slots=True)
