@@ -255,6 +255,7 @@ def test_numbers_of_sections_count_up(reports: dict[str, Report[FirstPage]]) -> 
         "inputs",
         "checks",
         "carries",
+        "uncertainty",
         "workspace",
         "selection",
         "stiffness",
