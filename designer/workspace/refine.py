@@ -288,7 +288,8 @@ class _Search:
             asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
             own = np.take_along_axis(asked, some.extreme[:, None, None], axis=2)[..., 0]
             rises = own.max(axis=1) > some.value
-            on_border = np.flatnonzero(slides & ~rises & np.isneginf(own).any(axis=1))
+            outside = np.isneginf(own)
+            on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
                 slid = self._slide(some[on_border], trials[on_border], own[on_border])
                 trials[on_border, -1], own[on_border, -1] = slid

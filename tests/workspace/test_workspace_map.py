@@ -299,6 +299,19 @@ def test_the_search_slides_along_what_does_not_count() -> None:
     assert worst_of(box, behind_a_plane, nowhere).demand == pytest.approx(along.max(), rel=1e-7)
 
 
+def test_among_places_of_which_few_count_the_best_that_was_asked_is_found() -> None:
+    box = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations())
+    asked = [-np.inf]
+
+    def dust(x):
+        counts = np.sin(1e5 * x.sum(axis=1)) > 0.99
+        values = np.where(counts, -((x - 0.4) ** 2).sum(axis=1), -np.inf)
+        asked.append(values.max(initial=-np.inf))
+        return values
+
+    assert worst_of(box, dust, np.empty((0, 3))).demand == max(asked)
+
+
 def test_every_point_of_a_list_is_tried_for_every_extreme() -> None:
     """Neighbours that share a cell of the pool differ in what they are extreme in."""
     points = np.random.default_rng(1).random((9000, 3))
