@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from designer.documents.fields import QuantityField
 from designer.documents.node import Key, Node, path_text
 from designer.io.config.columns import ColumnSection
+from designer.io.config.orientation import OrientationSection
 from designer.study import Entry
 from designer.units import NUMBER, Dimension, format_SI
 
@@ -54,7 +55,11 @@ def _entries(
         yield Entry(path_text(place), DEFAULT, _in_SI(value, dimension))
     elif isinstance(value, tuple) and value and isinstance(value[0], BaseModel):
         for index, item in enumerate(value):
-            yield Entry(path_text((*place, index)), _given(node.child(index)), str(item))
+            yield Entry(
+                path_text((*place, index)),
+                _given(node.child(index)),
+                _in_words(item, node.child(index)),
+            )
     elif isinstance(value, dict) and value:
         for name, item in value.items():
             if isinstance(item, tuple):
@@ -69,6 +74,14 @@ def _entries(
     else:
         for index, row in enumerate(value):
             yield from _entries(row, node.child(index), (*place, index), dimension)
+
+
+def _in_words(section: BaseModel, node: Node | None) -> str:
+    """Return what a section in a list gives, in SI units."""
+    if isinstance(section, OrientationSection):
+        return str(section)
+    given = (entry for entry in all_entries(section, node) if entry.given != DEFAULT)
+    return ", ".join(f"{entry.field} {entry.value_SI}" for entry in given)
 
 
 def _in_SI(value: Any, dimension: Dimension) -> str:

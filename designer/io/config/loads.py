@@ -45,11 +45,3 @@ class IceSection(Section):
 
     thickness: fields.IceThickness = Field(description="a length such as '10 mm'")
     density: fields.Density = 900.0
-
-
-def plainly(value: object) -> str:
-    """Return a value of a load case for the table of inputs, sections in brackets."""
-    if not isinstance(value, Section):
-        return f"{value:g}" if isinstance(value, float) else str(value)
-    given = ((name, part) for name, part in value if name in value.model_fields_set)
-    return "{" + ", ".join(f"{name}: {plainly(part)}" for name, part in given) + "}"

@@ -43,7 +43,6 @@ from designer.io.config.loads import (
     IceSection,
     LostCable,
     WindSection,
-    plainly,
 )
 from designer.io.config.orientation import (
     EulerSection,
@@ -322,14 +321,6 @@ class LoadCaseSection(Section):
     safety_factor: fields.SafetyFactor | None = None
     termination_efficiency: fields.Efficiency | None = None
     region: Region | None = None
-
-    def __str__(self) -> str:
-        """Return what it sets, in SI units."""
-        return ", ".join(
-            f"{name} {plainly(value)}"
-            for name, value in self
-            if name != "name" and name in self.model_fields_set
-        )
 
 
 class MeasuredCableSection(Section):
