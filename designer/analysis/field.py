@@ -172,7 +172,7 @@ class Sag:
     cable : int
         Which cable, from 0.
     on_chord_m, on_cable_m : array (3,)
-        Points on the straight line and on the cable, one above the other [m].
+        Points on the straight line and on the cable, square to the line [m].
     """
 
     cable: int
@@ -181,20 +181,17 @@ class Sag:
 
     @property
     def depth_m(self) -> float:
-        """How far the cable hangs below the straight line [m]."""
+        """How far the cable strays from the straight line [m]."""
         return float(np.linalg.norm(self.on_chord_m - self.on_cable_m))
 
 
 def largest_sag(statics: Statics) -> Sag:
-    """Return where a cable of a solved pose hangs farthest below its chord."""
+    """Return where a cable of a solved pose strays farthest from its chord."""
     curves = cable_curves_m(statics, 401)
-    start, span = curves[:, :1], curves[:, -1:] - curves[:, :1]
-    along = np.einsum("cnk,cok->cn", (curves - start)[..., :2], span[..., :2])
-    length = np.sum(span[..., :2] ** 2, axis=-1)
-    share = along / np.where(length > 0.0, length, np.inf)
-    on_chord = start + share[..., None] * span
-    depth = np.where(length > 0.0, on_chord[..., 2] - curves[..., 2], 0.0)
+    chord = curves[:, -1] - curves[:, 0]
+    along = chord / np.linalg.norm(chord, axis=1, keepdims=True)
+    offset = curves - curves[:, :1]
+    on_chord = curves[:, :1] + np.einsum("cnk,ck->cn", offset, along)[..., None] * along[:, None]
+    depth = np.linalg.norm(curves - on_chord, axis=2)
     cable, place = np.unravel_index(int(np.argmax(depth)), depth.shape)
-    on_cable = curves[cable, place]
-    level = np.array([*on_cable[:2], on_chord[cable, place, 2]])
-    return Sag(int(cable), level if depth.max() > 0.0 else on_cable, on_cable)
+    return Sag(int(cable), on_chord[cable, place], curves[cable, place])

@@ -6,16 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.analysis.field import cable_curves_m
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses
 from designer.selection.cases import CaseFound
 from designer.selection.result import Candidate
 from designer.statics.inverse import Statics
+from designer.statics.shape import sag_m, stretch_m
 from designer.statics.task import PulleyRun
-
-_NODE, _SHARE = np.polynomial.legendre.leggauss(32)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,8 +117,8 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         statics.length_m[0].tolist(),
         *(end.tolist() for end in ends),
         np.arcsin(pulls @ _up(found.loaded) / np.linalg.norm(pulls, axis=1)).tolist(),
-        _sags_m(statics).tolist(),
-        _stretches_m(statics).tolist(),
+        sag_m(statics)[0].tolist(),
+        stretch_m(statics)[0].tolist(),
         (strength_N / tension).tolist(),
         frequency.tolist(),
         pulls,
@@ -163,25 +161,6 @@ def _only(statics: Statics) -> Statics:
         run=PulleyRun(run.exit_points_m.reshape(-1, 3), run.wrap_m.reshape(-1)),
         **{name: getattr(statics, name)[0] for name in names},
     )
-
-
-def _sags_m(statics: Statics) -> FloatArray:
-    """Return the largest distance of each cable from its chord (n_cables,) [m]."""
-    curves = cable_curves_m(_only(statics))
-    chord = curves[:, -1] - curves[:, 0]
-    along = chord / np.linalg.norm(chord, axis=1, keepdims=True)
-    off = curves - curves[:, :1]
-    across = off - np.einsum("npj,nj->np", off, along)[..., None] * along[:, None]
-    return np.asarray(np.linalg.norm(across, axis=2).max(axis=1))
-
-
-def _stretches_m(statics: Statics) -> FloatArray:
-    """Return the integral of the strain over each free cable (n_cables,) [m]."""
-    length, x, z, stiffness, weight = (
-        np.broadcast_to(v[0], statics.length_m[0].shape)[:, None] for v in statics.catenaries
-    )
-    tension = np.hypot(x, z - weight * length * (1.0 + _NODE) / 2.0)
-    return np.asarray((tension * _SHARE / 2.0 * length / stiffness).sum(axis=1))
 
 
 def _loads(one: Loaded) -> list[tuple[str, FloatArray]]:

@@ -9,12 +9,12 @@ import numpy as np
 from designer.analysis.field import cable_curves_m, chords_m
 from designer.arrays import FloatArray
 from designer.explore.question import Question
-from designer.explore.shape import exit_angle_rad, sag_m, stretch_m
 from designer.model.cable import Cable, Cables
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.rest import resting_places
+from designer.statics.shape import exit_angle_rad, sag_m, stretch_m
 from designer.statics.stiffness import is_stable, largest_displacement_m_per_N, platform_stiffness
 
 

@@ -11,7 +11,6 @@ from designer.arrays import BoolArray, FloatArray
 from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
 from designer.explore.question import Question, Rope
-from designer.explore.shape import sag_m
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.robot import Poses
@@ -22,6 +21,7 @@ from designer.selection.groups.trials import verify_groups
 from designer.selection.products import Product, is_allowed, products_of, undominated
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.shape import sag_m
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import demand_of, is_left_out, size_worst

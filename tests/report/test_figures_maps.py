@@ -24,6 +24,7 @@ from designer.report.figures.colours import DIAMETER, RATIO, TENSION, tension_of
 from designer.resources import example_file
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import size_poses
+from designer.statics.shape import sag_m
 from designer.study import DeclaredEffect
 
 pytestmark = pytest.mark.slow
@@ -162,11 +163,13 @@ class TestCables:
         statics = size_poses(THREE, Poses.at([250.0, 200.0, -120.0]), STEEL).statics
         sag = largest_sag(statics)
         geometry = statics.geometry()
-        span = geometry.horizontal_distance_m[sag.cable]
-        weight = statics.weight_N_per_m[0] * geometry.chord_m[sag.cable] / span
-        parabola = weight * span**2 / (8.0 * statics.force_x_N[sag.cable])
+        span, chord = geometry.horizontal_distance_m[sag.cable], geometry.chord_m[sag.cable]
+        along = np.subtract.reduce(chords_m(statics)[sag.cable])
+        # Of the weight per chord the part across it, w X / l, over the pull along it, H l / X.
+        parabola = statics.weight_N_per_m[0] * span**2 / (8.0 * statics.force_x_N[sag.cable])
         assert sag.depth_m == pytest.approx(parabola, rel=2e-2)
-        assert sag.on_chord_m[:2] == pytest.approx(sag.on_cable_m[:2])
+        assert sag.depth_m == pytest.approx(sag_m(statics).max(), rel=1e-5)
+        assert (sag.on_cable_m - sag.on_chord_m) @ along == pytest.approx(0.0, abs=1e-9 * chord**2)
 
     def test_tilted_base_keeps_the_cables_on_its_exit_points(self) -> None:
         tilted = replace(THREE, tilt_rad=np.array([0.02, -0.01]))

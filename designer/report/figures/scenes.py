@@ -160,7 +160,7 @@ def _label_robot(
         return
     sag = largest_sag(statics)
     top, low = view.pixels(np.stack([sag.on_chord_m, sag.on_cable_m]))
-    if np.hypot(*(low - top)) > 12.0:  # as a dimension, from the straight line down to the cable
+    if np.hypot(*(low - top)) > 12.0:  # as a dimension, from the straight line to the cable
         arrow: Style = {"arrowstyle": "|-|,widthA=0.25,widthB=0.25", "linewidth": 0.9}
         ends: Style = {"color": palette.INK, "shrinkA": 0.0, "shrinkB": 0.0}
         axes.annotate("", low, top, arrowprops=arrow | ends)
