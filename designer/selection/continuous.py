@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
+from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Material
@@ -23,7 +26,12 @@ _STILL = 1e-7
 
 
 def continuous_optimum(
-    workspace: Workspace, grade: Grade, allowance: Allowance, built: AsBuilt
+    workspace: Workspace,
+    grade: Grade,
+    allowance: Allowance,
+    built: AsBuilt,
+    *,
+    doubtful: Sequence[FloatArray] = (),
 ) -> tuple[Material, float]:
     """Return the family of a grade, and the thinnest member that holds everywhere [m].
 
@@ -31,7 +39,8 @@ def continuous_optimum(
     fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
     the worst pose alone. With an effect that adds to a cable all figures depend on the diameter,
     and its member is sought as in `designer.workspace.section`. NaN where no member holds, or none
-    that the sheave allows.
+    that the sheave allows. ``doubtful`` are places (n, n_coordinates) of the workspace at which
+    members may fail: they are tried first.
     """
     unbent = replace(allowance, sheave_diameter_m=None)
 
@@ -42,6 +51,9 @@ def continuous_optimum(
 
     def worst_with(family: Material) -> Worst:
         demand_with = partial(diameter_demand, built.robot, family, workspace.hangs_below)
+        for places in doubtful:
+            if np.isposinf(demand_with()(places)).any():
+                return Worst(places[0], math.inf)
         (worst,) = worst_over_samples(workspace, demand_with)
         # Where every pose is left out, nothing is served.
         return Worst(worst.place, math.inf) if worst.demand == -math.inf else worst

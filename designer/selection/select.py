@@ -26,10 +26,13 @@ from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.proven import CaseProof, prove_governing
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
-from designer.selection.usable import Usable, usable
+from designer.selection.usable import Usable, serves, usable
 from designer.selection.verify import Verification, verify_sizes
+from designer.statics.sizes import is_quick
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
+
+_FEW = 16  # places that tell which grade serves most, where each pose takes long
 
 
 def select(
@@ -62,8 +65,7 @@ def select(
     alternatives: list[GradeOutcome] = []
     if chosen is None:
         others = [g for g in grades if g not in allowed and not g.why_only_by_name]
-        found = trial.outcomes(others)[0] if others else []
-        alternatives = [o for o in found if o.outcome == "fits"]
+        alternatives = trial.outcomes(others, only_fitting=True)[0] if others else []
     return SelectionResult(
         outcomes=tuple(outcomes),
         chosen=chosen,
@@ -130,8 +132,10 @@ class _Trial:
     proof_s: float = 0.0
     proofs: dict[int, CaseProof] = field(default_factory=dict)
 
-    def outcomes(self, grades: Sequence[Grade]) -> tuple[list[GradeOutcome], list[NotTried]]:
-        """Try all sizes of these grades."""
+    def outcomes(
+        self, grades: Sequence[Grade], *, only_fitting: bool = False
+    ) -> tuple[list[GradeOutcome], list[NotTried]]:
+        """Try all sizes of these grades; what became of them, or of those with one that holds."""
         entries = self.sampled(grades)
         tried = {id(entry.size) for entry in entries}
         why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
@@ -159,8 +163,9 @@ class _Trial:
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
                 own = [e for e in entries if e.grade is grade]
-                if own:
-                    found.append(self._outcome(grade, own, front))
+                best = best_of(own, self.selection.objectives, _nothing_left)
+                if best is not None or (own and not only_fitting):
+                    found.append(self._outcome(grade, own, front, best))
                 advance(1)
         return found, not_tried
 
@@ -224,10 +229,18 @@ class _Trial:
         entry.figures = replace(entry.figures, stiffness_N_per_m=found)
 
     def _outcome(
-        self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry]
+        self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry], best: Entry | None
     ) -> GradeOutcome:
         allowance = Allowance.of(self.selection)
-        family, optimum = continuous_optimum(self.cases.workspace, grade, allowance, self.built)
+        not_held = [
+            one.sampled.worst_m[:1]
+            for entry in entries
+            for one in entry.cases
+            if one.sampled.not_held and one.case.region is None
+        ]
+        family, optimum = continuous_optimum(
+            self.cases.workspace, grade, allowance, self.built, doubtful=not_held[:1]
+        )
         objectives = self.selection.objectives
         candidates = {
             id(entry): Candidate(
@@ -245,7 +258,6 @@ class _Trial:
             for entry in entries
             for standing, reason in [standing_of(entry, front, objectives)]
         }
-        best = best_of(entries, objectives, _nothing_left)
         outcome: Outcome = "no_finite_cable" if math.isnan(optimum) else "too_thin"
         return GradeOutcome(
             grade=grade,
@@ -267,13 +279,20 @@ def _usable(
     outcomes: Sequence[GradeOutcome],
     chosen: Candidate | None,
 ) -> Usable | None:
-    """Return what the sizes of the chosen grade serve, or of the one whose best serves most."""
+    """Return what the sizes of the chosen grade serve, or of the one whose best serves most.
+
+    The latter at a few poses only where each takes long.
+    """
     shown = [o for o in outcomes if o.candidates]
     if chosen is not None:
         shown = [o for o in shown if o.grade is chosen.grade]
 
+    few = workspace.thinned(_FEW)
+
     def most_served(outcome: GradeOutcome) -> float:
         cables = [c.cable for c in outcome.candidates]
+        if not is_quick(robot):
+            return max(float(serves(robot, workspace, c, few).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
     for one in [max(shown, key=most_served)] if len(shown) > 1 else shown:

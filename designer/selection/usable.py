@@ -67,6 +67,14 @@ class Usable:
         return first if first < len(self.sizes) else None
 
 
+def serves(robot: Robot, workspace: Workspace, cable: Cable, places: FloatArray) -> BoolArray:
+    """Tell which places (n, n_coordinates) count and keep a cable within its allowable tension."""
+    statics = solve_sagging(robot, Poses.at(places), cable)
+    counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))
+
+
 def usable(
     robot: Robot, workspace: Workspace, grade: Grade, cables: Sequence[tuple[Size, Cable]]
 ) -> Usable:
@@ -76,16 +84,10 @@ def usable(
     that the study leaves out because a cable hangs below the platform is not served.
     """
 
-    def serves(cable: Cable, some: FloatArray) -> BoolArray:
-        statics = solve_sagging(robot, Poses.at(some), cable)
-        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-        with np.errstate(invalid="ignore"):
-            return np.asarray(counts & (statics.largest_tension_N <= cable.allowable_tension_N))
-
     samples = 0
     served, lost = np.zeros((2, len(cables)))
     for some in workspace.places():
-        each = np.stack([serves(cable, some) for _, cable in cables])
+        each = np.stack([serves(robot, workspace, cable, some) for _, cable in cables])
         at = each.reshape(len(cables), -1, workspace.orientations.count).all(axis=2)
         samples += at.shape[1]
         served += at.sum(axis=1)

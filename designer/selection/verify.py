@@ -173,10 +173,40 @@ def verify_sizes(
             alive = [k for k in order if not (gives_up and settled[k])]
             x, y, z, turn = space.cells(some, _CELLS_A_SIDE).T
             cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
-            met = _meet(robot, workspace, some, [cables[k] for k in alive], cells, gives_up)
-            totals.add(alive, some, met, counts)
+            totals.samples += len(some) * counts
+            while alive:
+                # Of a slow robot one by one: what refutes a cable refutes most of the others.
+                now, alive = (alive[:1], alive[1:]) if is_slow and gives_up else (alive, [])
+                met = _meet(robot, workspace, some, [cables[k] for k in now], cells, gives_up)
+                totals.add(now, some, met, counts)
+                if alive and _refutes(met):
+                    place = totals.of(now[0]).worst_m[:1]
+                    alive = _survivors(robot, workspace, cables, alive, place, totals)
             progress(len(some) if counts else 0)
     return [totals.of(k) for k in range(len(cables))]
+
+
+def _refutes(met: Meets) -> bool:
+    return bool(met.failed.any() or (met.utilisation > 1.0).any())
+
+
+def _survivors(
+    robot: Robot,
+    workspace: Workspace,
+    cables: Sequence[Cable],
+    alive: Sequence[int],
+    place: FloatArray,
+    totals: _Totals,
+) -> list[int]:
+    """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
+    left = []
+    for k in alive:
+        met = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
+        if _refutes(met):
+            totals.add([k], place, met, counts=False)
+        else:
+            left.append(k)
+    return left
 
 
 def _meet(
@@ -215,9 +245,6 @@ class _Totals:
         self.not_held_m = np.full((n_tried, n_coordinates), np.nan)
 
     def add(self, rows: Sequence[int], positions: FloatArray, met: Meets, counts: bool) -> None:
-        self.samples += len(positions) * counts
-        if not rows:
-            return
         self.tried[rows] += len(positions) * counts
         higher = met.utilisation > self.utilisation[rows]
         self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])

@@ -13,6 +13,7 @@ from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.selection.verify import refined, verify, verify_sizes
+from designer.statics import sizes
 from designer.statics.inverse import solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out
@@ -162,3 +163,28 @@ def test_slow_robot_gives_up_on_what_is_settled(fast_robot) -> None:
     whole, _ = verify_sizes(robot, workspace, [thin, thick], gives_up=False)
     assert whole.is_complete
     assert whole.utilisation >= first.utilisation > 1.0
+
+
+def test_of_a_slow_robot_one_pose_refutes_the_others(
+    fast_robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pulleys = replace(fast_robot, pulley_radius_m=0.4)
+    workspace, tried = Workspace(LOW, samples=60), cables()
+    each = verify_sizes(pulleys, workspace, tried, gives_up=False)
+    asked: list[int] = []
+
+    def counted(robot, poses, cable, **options):
+        asked.append(len(poses.position_m))
+        return solve_sagging(robot, poses, cable, **options)
+
+    monkeypatch.setattr(sizes, "solve_sagging", counted)
+    found = verify_sizes(pulleys, workspace, tried)
+    for one, whole in zip(found, each, strict=True):
+        assert (one.utilisation <= 1.0) == (whole.utilisation <= 1.0)
+        assert one.utilisation <= whole.utilisation * (1.0 + 1e-12)
+        assert one.is_complete or not one.utilisation <= 1.0
+    fails = sum(one.utilisation > 1.0 for one in each)
+    assert 0 < fails < len(tried)
+    # All that fail ask for one pose each, but for the first, and for those that it does not refute.
+    assert sum(count > 1 for count in asked) <= 2 * (len(tried) - fails) + 3
+    assert asked.count(1) >= fails - 3
