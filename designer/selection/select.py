@@ -163,9 +163,9 @@ class _Trial:
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
                 own = [e for e in entries if e.grade is grade]
-                best = best_of(own, self.selection.objectives, _nothing_left)
-                if best is not None or (own and not only_fitting):
-                    found.append(self._outcome(grade, own, front, best))
+                its_best = best_of(own, self.selection.objectives, _nothing_left)
+                if its_best is not None or (own and not only_fitting):
+                    found.append(self._outcome(grade, own, front, its_best))
                 advance(1)
         return found, not_tried
 
