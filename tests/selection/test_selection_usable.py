@@ -42,7 +42,9 @@ def test_share_is_that_of_the_poses_that_need_no_more(fast_robot) -> None:
     assert shares[-1] == 1.0
 
 
-def test_where_nothing_holds_it_is_shown_for_what_serves_most(fast_robot) -> None:
+@pytest.mark.parametrize("pulley_radius_m", [0.0, 0.4])
+def test_where_nothing_holds_it_is_shown_for_what_serves_most(fast_robot, pulley_radius_m) -> None:
+    fast_robot = replace(fast_robot, pulley_radius_m=pulley_radius_m)
     workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=500)
     grades = [rope("thin", [4.0, 6.0]), rope("nearly", [12.0, 14.0])]
     found = select(fast_robot, workspace, Selection(None, 2.0), grades)
@@ -50,6 +52,18 @@ def test_where_nothing_holds_it_is_shown_for_what_serves_most(fast_robot) -> Non
     assert found.usable is not None
     assert found.usable.grade.id == "nearly"
     assert 0.0 < found.usable.sizes[-1].fraction < 1.0
+
+
+def test_of_a_slow_robot_a_part_of_the_samples_is_asked_and_counted(fast_robot) -> None:
+    pulleys = replace(fast_robot, pulley_radius_m=0.4)
+    workspace = Workspace(Prism.over(TRIANGLE, 30.0, (-200.0, -50.0)), samples=4000)
+    grade = rope("a", [10.0, 12.0])
+    cables = [(size, grade.cable(size, 2.0)) for size in grade.sizes]
+    every, some = (usable(robot, workspace, grade, cables) for robot in (fast_robot, pulleys))
+    assert (every.samples, some.samples) == (4000, 1000)
+    for whole, part in zip(every.sizes, some.sizes, strict=True):
+        assert 0.1 < whole.fraction < 0.9
+        assert part.fraction == pytest.approx(whole.fraction, abs=0.06)  # 4 deviations
 
 
 def test_points_have_no_volume(fast_robot) -> None:

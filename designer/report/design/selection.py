@@ -248,7 +248,7 @@ def usable_table(found: Usable, kind: str = "") -> Table:
     shown = len(found.sizes) if first is None else first + 1
     caption = (
         f"How much of the workspace each size of {found.grade.id} serves with its own figures, "
-        "by the samples."
+        f"by {fmt.count(found.samples)} samples."
     )
     if not found.is_nested:
         caption += " The sizes are not nested: some serve less than a thinner one."
