@@ -16,12 +16,13 @@ from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.grades.grade import Size
 from designer.model.region import Prism
-from designer.model.robot import Poses
+from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.selection.result import Candidate, GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging
+from designer.statics.sizes import is_quick
 from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
@@ -29,6 +30,7 @@ from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
 _MOST_SAMPLES = 20_000
+_FEW_PLACES, _FEW_POSITIONS = 2000, 100  # of robots that are slow to solve
 _CHUNK = 2**18
 _THIN_M = 1e-3
 
@@ -186,7 +188,7 @@ def _other_policy(analysis: Analysis) -> OtherPolicy | None:
     if workspace is None or found is None or found.census.hangs_below == 0:
         return None
     other: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
-    changed = replace(_few(workspace), hangs_below=other)
+    changed = replace(_few(built.robot, workspace), hangs_below=other)
     material = built.material(analysis.study.material)
     return OtherPolicy(other, map_workspace(built.robot, changed, material))
 
@@ -201,13 +203,18 @@ def _hanging(analysis: Analysis) -> float | None:
     robot, cable = analysis.built.robot, analysis.qualities.cable.cable
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
-        for positions in _few(workspace).places()
+        for positions in _few(robot, workspace).places()
     ]
     return float(np.concatenate(hangs).mean())
 
 
-def _few(workspace: Workspace) -> Workspace:
-    return replace(workspace, samples=min(workspace.samples, _MOST_SAMPLES))
+def _few(robot: Robot, workspace: Workspace) -> Workspace:
+    """Return the same with fewer positions where each pose takes long."""
+    if is_quick(robot):
+        most = _MOST_SAMPLES
+    else:
+        most = max(_FEW_PLACES // workspace.orientations.count, _FEW_POSITIONS)
+    return replace(workspace, samples=min(workspace.samples, most))
 
 
 def _unserved(analysis: Analysis) -> Unserved | None:
