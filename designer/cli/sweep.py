@@ -81,9 +81,7 @@ def _print_summary(found: xr.Dataset) -> None:
 
     from designer.cli.terminal import bare_table, show
 
-    table = bare_table(
-        "", "least", "median", "most", "points", title=f"{found.sizes['point']} points"
-    )
+    table = bare_table("", "least", "median", "most", "points", title=_points(found.sizes["point"]))
     for name, kept in found.filter_by_attrs(role="kept").items():
         values = kept.values[~np.isnan(kept.values)] if kept.dtype.kind == "f" else np.array([])
         if len(values):
@@ -93,4 +91,8 @@ def _print_summary(found: xr.Dataset) -> None:
         show(table)
     reasons, counts = np.unique([why for why in found.reason.values if why], return_counts=True)
     for count, why in sorted(zip(counts, reasons, strict=True), reverse=True)[:10]:
-        show(f"{count} points: {why}", markup=False)
+        show(f"{_points(count)}: {why}", markup=False)
+
+
+def _points(count: int) -> str:
+    return f"{count} point{'' if count == 1 else 's'}"

@@ -57,7 +57,21 @@ def test_each_point_is_what_the_study_says(tmp_path: Path) -> None:
         assert float(found["pose.optimum.diameter_m"][point]) == float(alone.sizing.diameter_m)
     above = found.isel(point=1)  # above its anchors no cable holds it
     assert np.isnan(above["pose.optimum.diameter_m"])
-    assert above["reason"].item().startswith("the configured pose: ")
+    assert above["reason"].item() == "the configured pose: no cables hold it"
+
+
+def test_a_result_that_some_points_do_not_have_takes_nothing_else_along(tmp_path: Path) -> None:
+    study = STUDY.replace("[10, 17, 10]]", "[10, 17, 10], [10, 9, 12]]")
+    sweep = """study: crane.yaml
+vary: {robot.anchors: [[[0, 0, 10], [20, 0, 10], [10, 17, 10]],
+  [[0, 0, 10], [20, 0, 10], [10, 17, 10], [10, 9, 12]]]}
+keep: [pose.optimum.diameter_m, pose.sagging.lengths_m.3]
+"""
+    swept(written(tmp_path, sweep, study), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    assert found["pose.optimum.diameter_m"].notnull().all()
+    assert found["pose.sagging.lengths_m.3"].isnull().values.tolist() == [True, False]
+    assert found.reason.values.tolist() == ["there is no pose.sagging.lengths_m.3 here", ""]
 
 
 def test_a_point_that_is_no_study_is_kept_with_its_reason(tmp_path: Path) -> None:
