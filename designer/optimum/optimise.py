@@ -111,7 +111,7 @@ def _beats(a: Optimum, b: Optimum, sign: int) -> bool:
 def _candidates(plan: Plan, searched: Searched) -> list[Trial]:
     """Return the best designs that are well apart, the best first."""
     sign = plan.objective.sign
-    tried = [one for one in searched.trials if one.values]
+    tried = [one for one in searched.trials if one.values and plan.is_within(one.values)]
     if not tried:
         raise DesignerError("the search was ended before it had tried a design")
     ranked = sorted(tried, key=lambda t: (t.violation, sign * t.value if t.holds else math.inf))

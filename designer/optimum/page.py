@@ -139,6 +139,11 @@ def trust_lines(found: Optimum) -> list[str]:
         each = (f"{one.label} {change(one)}" for one in found.worsened)
         lines.append(f"Paid with what was not asked for: {fmt.listing(each)}.")
     lines.append(_starts_text(found))
+    outside = [
+        one.name for one in plan.variables if one.given is not None and not one.is_within(one.given)
+    ]
+    if outside:
+        lines.append(f"Outside the bounds in the robot as given: {fmt.listing(outside)}.")
     at_bounds = [
         f"{one.name} at its {bound} bound"
         for one, value in zip(plan.variables, found.best.values, strict=True)
@@ -152,6 +157,8 @@ def trust_lines(found: Optimum) -> list[str]:
 def _starts_text(found: Optimum) -> str:
     agree = sum(found.agrees(one) for one in found.starts)
     n = len(found.starts)
+    if all(one is None for one in found.starts):
+        return "No start came to a design that holds."
     if n == 1:
         return "One start only: whether another comes to the same place is not known."
     if agree == n:

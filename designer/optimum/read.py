@@ -25,7 +25,7 @@ from designer.optimum.plan import Budget, Limit, Plan
 from designer.optimum.variables import variables_of
 from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.sweep.point import Base
+from designer.sweep.point import Base, value_at
 from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
 
 OPTIMISATION = FileKind("an optimisation, with study, variables and objective", "study: crane.yaml")
@@ -186,7 +186,10 @@ def _faults_of_measures(
             continue
         try:
             result = base.result(base.study()) if result is None else result
-            measure.value(result)
+            value = value_at(result, measure.path)
+            if isinstance(value, str | dict | list):
+                problem = f"{measure.path} is {'a text' if isinstance(value, str) else 'a list'}"
+                faults.append(document.fault(place, problem, "a number of result.json"))
         except KeyError as error:
             key, names = error.args
             expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from optimum_cases import OF_POSE, OF_YARD, YARD, optimum, written
+from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, optimum, written
 
 import designer
 from designer.cli.commands import main
@@ -50,6 +50,28 @@ def test_nothing_better_is_no_gain(tmp_path: Path) -> None:
     found = optimum(tmp_path, plan.replace("150", "40"))
     assert not found.is_better and found.holds
     assert headline(found).startswith("Nothing better was found")
+
+
+def test_the_answer_keeps_the_bounds_even_where_the_robot_as_given_does_not(
+    tmp_path: Path,
+) -> None:
+    plan = OF_POSE.replace("[6 m, 12 m]", "[6 m, 9 m]").replace("[-4 m, 6 m]", "[1 m, 2 m]")
+    found = optimum(tmp_path, plan.replace("150", "30"))
+    assert found.best.values == (1.0, 9.0)  # the given ones of 0 and 10 m pull with less
+    assert not found.is_better and found.holds
+    assert "Outside the bounds in the robot as given: shift and" in " ".join(trust_lines(found))
+    assert [found._variable(k)["at_bound"] for k in range(2)] == ["lower", "upper"]
+
+
+def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
+    found = optimum(
+        tmp_path,
+        OF_POSE.replace("150", "10"),
+        STUDY.replace("pose: [10, 6, 4]", "pose: [10, 6, 14]"),
+    )
+    assert not found.holds
+    assert "No start came to a design that holds." in trust_lines(found)
+    optimum_report(found, found.optimised.provenance.created)
 
 
 def test_the_package_offers_it(tmp_path: Path) -> None:
