@@ -60,14 +60,14 @@ def sweep(
     path = output or Path(f"{plan.stem}.zarr")
     count = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else "1")
     make = running.cluster(cluster) if cluster else running.processes(count)
-    with opened(path, laid_out) as store, ProgressBars() as bars:
-        before = laid_out.n_points - sum(map(len, store.pending()))
-        if before:
-            print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
-        running.run(laid_out, base, store, make, count, bars)
-    found = read_store(path)
     folder = path.with_name(f"{path.stem}-report")
-    with output_folder(folder) as building:
+    with output_folder(folder) as building:  # made first: what is in its way shows before the work
+        with opened(path, laid_out) as store, ProgressBars() as bars:
+            before = laid_out.n_points - sum(map(len, store.pending()))
+            if before:
+                print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
+            running.run(laid_out, base, store, make, count, bars)
+        found = read_store(path)
         write_sweep(found, plan.stem, building, template)
         written = file_names(building)
     _print_summary(found)

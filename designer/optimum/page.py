@@ -158,7 +158,8 @@ def _starts_text(found: Optimum) -> str:
     agree = sum(found.agrees(one) for one in found.starts)
     n = len(found.starts)
     if all(one is None for one in found.starts):
-        return "No start came to a design that holds."
+        why, count = found.reasons[0]
+        return f"No start came to a design that holds; of {fmt.plural(count, 'design')}: {why}."
     if n == 1:
         return "One start only: whether another comes to the same place is not known."
     if agree == n:

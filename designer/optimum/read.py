@@ -23,6 +23,7 @@ from designer.model.region import Prism, Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.plan import Budget, Limit, Plan
 from designer.optimum.variables import variables_of
+from designer.selection.products import common_currency, is_allowed
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.sweep.point import Base, value_at
@@ -183,6 +184,9 @@ def _faults_of_measures(
                 problem = f"the study has no {part}" if missing else "the region has no volume"
                 expected = f"{part}: in the study, or another objective"
                 faults.append(document.fault(place, problem, expected))
+            elif measure.name == "rope_cost" and not _has_prices(study, base):
+                expected = "grades with price_per_m, or rope_mass"
+                faults.append(document.fault(place, "no grade of the study has prices", expected))
             continue
         try:
             result = base.result(base.study()) if result is None else result
@@ -197,3 +201,9 @@ def _faults_of_measures(
                 expected += f"; or {', '.join(MEASURES)}"
             faults.append(document.fault(place, f"results have no '{key}' there", expected))
     return faults
+
+
+def _has_prices(study: Study, base: Base) -> bool:
+    named = study.selection.grades if study.selection is not None else None
+    grades = [grade for grade in base.catalogue().grades if is_allowed(grade, named)]
+    return common_currency(grades) is not None

@@ -11,6 +11,7 @@ from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, optimum, written
 
 import designer
 from designer.cli.commands import main
+from designer.errors import DesignerError
 from designer.optimum.page import headline, optimum_report, trust_lines, write_optimum
 
 
@@ -70,8 +71,16 @@ def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
         STUDY.replace("pose: [10, 6, 4]", "pose: [10, 6, 14]"),
     )
     assert not found.holds
-    assert "No start came to a design that holds." in trust_lines(found)
+    line = next(one for one in trust_lines(found) if one.startswith("No start came to a design"))
+    assert line.endswith("designs: the configured pose: no cables hold it.")
     optimum_report(found, found.optimised.provenance.created)
+
+
+def test_no_design_that_is_a_study_is_told_with_its_reason(tmp_path: Path) -> None:
+    plan = OF_YARD.replace("width: {fields: {robot.anchors.0.0: -1, robot.anchors.1.0: 1}, ", "")
+    plan = plan.replace("offset: [-1 m, 2 m]}", "workspace.region.z.*: [2 m, 3 m]")
+    with pytest.raises(DesignerError, match=r"^masts: variables: no design .* is not below the"):
+        optimum(tmp_path, plan, YARD)
 
 
 def test_the_package_offers_it(tmp_path: Path) -> None:

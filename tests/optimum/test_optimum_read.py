@@ -95,6 +95,12 @@ def test_a_mistake_gets_one_line(tmp_path: Path, old: str, new: str, line: str) 
     assert any(line in one for one in found), found
 
 
+def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:
+    path = written(tmp_path, OF_YARD.replace("rope_mass", "rope_cost"), YARD)
+    expected = "(expected grades with price_per_m, or rope_mass)"
+    assert lines(path) == [f"2: objective: no grade of the study has prices {expected}"]
+
+
 def test_the_shipped_example_reads() -> None:
     plan = read_optimisation(example_file("optimise/yard"), with_plugins=False)
     assert plan.given == (0.0, 0.0, 26.0)

@@ -19,6 +19,7 @@ import pytest
 from sweep_cases import STUDY, SWEEP, written
 
 import designer
+from designer.cli.commands import main
 from designer.errors import InputError, OutputError
 from designer.sweep import run as running
 from designer.sweep import store as stores
@@ -215,6 +216,20 @@ def test_a_store_that_cannot_be_laid_out_leaves_nothing(
     with pytest.raises(OutputError, match="No space left"):
         swept(path, tmp_path / "out.zarr")
     assert sorted(one.name for one in tmp_path.iterdir()) == ["crane.yaml", "masses.yaml"]
+
+
+def test_what_is_in_the_way_of_the_report_shows_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path)
+    (tmp_path / "out-report").write_text("a file")
+    command = ["designer", "sweep", str(path), "-o", str(tmp_path / "out.zarr"), "--no-plugins"]
+    monkeypatch.setattr("sys.argv", command)
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 2
+    assert "out-report: is a file" in capsys.readouterr().err
+    assert not (tmp_path / "out.zarr").exists()
 
 
 def test_a_cluster_that_goes_away_is_told(tmp_path: Path) -> None:
