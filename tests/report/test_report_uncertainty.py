@@ -11,7 +11,7 @@ import pytest
 from designer.analysis.uncertainty.poses import Checked
 from designer.analysis.uncertainty.shares import Share
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
-from designer.model.uncertainty import Normal, Uniform
+from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.blocks import Picture, Section, Statement, Table
 from designer.report.design.uncertainty import probability, section, statement
 
@@ -43,8 +43,26 @@ def found_of(used: np.ndarray, *, is_asked: bool = True, **other: Any) -> Uncert
 
 
 def shown(found: UncertaintyAnalysis | None, *, draws: bool = True) -> Section | None:
-    source: Any = SimpleNamespace(analysis=SimpleNamespace(uncertainty=found), draws=draws)
+    analysis = SimpleNamespace(uncertainty=found, study=SimpleNamespace(uncertainty=None))
+    source: Any = SimpleNamespace(analysis=analysis, draws=draws)
     return section(source)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "why"),
+    [(None, "no rope was chosen"), ("5 mm", "the study has every input as certain")],
+)
+def test_what_was_asked_for_and_not_drawn_is_said(chosen: str | None, why: str) -> None:
+    def shown_of(asked: Uncertainty | None) -> Section | None:
+        study, selection = SimpleNamespace(uncertainty=asked), SimpleNamespace(chosen=chosen)
+        analysis = SimpleNamespace(uncertainty=None, study=study, selection=selection)
+        source: Any = SimpleNamespace(analysis=analysis, draws=True)
+        return section(source)
+
+    asked = shown_of(Uncertainty(payload=Uniform(0.0, 0.0)))
+    assert asked is not None
+    assert asked.blocks == (f"Nothing was drawn: {why}.",)
+    assert shown_of(None) is None
 
 
 @pytest.fixture(scope="module")
