@@ -157,7 +157,7 @@ def trust_lines(found: Optimum) -> list[str]:
 def _starts_text(found: Optimum) -> str:
     agree = sum(found.agrees(one) for one in found.starts)
     n = len(found.starts)
-    if all(one is None for one in found.starts):
+    if found.reasons and all(one is None for one in found.starts):
         why, count = found.reasons[0]
         return f"No start came to a design that holds; of {fmt.plural(count, 'design')}: {why}."
     if n == 1:
@@ -218,7 +218,7 @@ def _chosen(found: Optimum) -> tuple[Block | None, ...]:
     blocks: list[Block | None] = [Table.of(caption, heads, *rows, kind="long")]
     if found.plan.limits:
         blocks.append(_limits(found))
-    if found.profiles:
+    if np.isfinite([x for one in found.profiles for x in one.objective]).any():
         blocks += [
             Picture(
                 "What each variable does by itself, the others as optimised: how exactly it has to "
@@ -287,7 +287,9 @@ def _differences(found: Optimum) -> Section | None:
     return Section.of(
         "differences",
         "What changes with it",
-        Table.of("Both robots, analysed in full; comparison.html has all.", heads, *rows),
+        Table.of(
+            "Both robots, analysed in full; comparison.html has all.", heads, *rows, kind="long"
+        ),
     )
 
 
@@ -299,10 +301,11 @@ def _trust(found: Optimum) -> tuple[Block | None, ...]:
     starts = np.array([one.start for one in trials[1:]])
     holds = np.array([one.holds for one in trials[1:]], dtype=np.bool_)
     first = trials[0]
-    chart = figures.convergence(
-        values, starts, holds, sign * scale * first.value if first.holds else None,
-        title if sign > 0 else f"− {title}",
-    )  # fmt: skip
+    chart = ""
+    if holds.any():
+        before = sign * scale * first.value if first.holds else None
+        named = title if sign > 0 else f"− {title}"
+        chart = figures.convergence(values, starts, holds, before, named)
     heads = ("Start", Column("Seed"), Column("Best in the search"), "Same place", Column("Spread"))
     spreads = [*found.searched.spreads, *[np.array([np.nan])] * plan.starts]
     rows = [
@@ -317,7 +320,7 @@ def _trust(found: Optimum) -> tuple[Block | None, ...]:
     ]
     return (
         *trust_lines(found),
-        Picture("Every design that holds, and the best so far.", "", svg=chart),
+        Picture("Every design that holds, and the best so far.", "", svg=chart) if chart else None,
         Table.of(
             "Each start. Same place: within 2 % of each range from the answer. Spread: largest "
             "standard deviation of the last population, over the range.",

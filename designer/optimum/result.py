@@ -140,8 +140,8 @@ class Optimum:
 
     @property
     def reasons(self) -> list[tuple[str, int]]:
-        """Why designs do not hold, and how many for each, most first."""
-        return Counter(t.reason for t in self.searched.trials if not t.holds).most_common()
+        """Why designs that were tried do not hold, and how many for each, most first."""
+        return Counter(t.reason for t in self.searched.trials[1:] if not t.holds).most_common()
 
     def to_dict(self) -> Json:
         """Return what ``optimise.json`` holds."""
