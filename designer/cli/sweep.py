@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, Template, output_option, path_of
+from designer.cli.options import INTERRUPTED, NoPlugins, Template, output_option, path_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,9 +44,11 @@ def sweep(
     Example:  designer sweep masses.yaml --workers 4
 
     Exit status 0: all points are solved. 2: the input is wrong, or the store cannot be written.
+    130: it was ended by Ctrl-C.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import file_names, output_folder
+    from designer.io.process import ends_gently
 
     announce_compiling()
 
@@ -66,7 +68,14 @@ def sweep(
             before = laid_out.n_points - sum(map(len, store.pending()))
             if before:
                 print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
-            running.run(laid_out, base, store, make, count, bars)
+            with ends_gently() as stop:
+                running.run(laid_out, base, store, make, count, bars, stop)
+            left = sum(map(len, store.pending()))
+            if left:
+                done = f"{laid_out.n_points - left} of {laid_out.n_points} points"
+                why = f"ended with {done}, which stay; the same command goes on"
+                print_left_out([f"{path}: {why}"])
+                raise typer.Exit(INTERRUPTED)
         found = read_store(path)
         write_sweep(found, plan.stem, building, template)
         written = file_names(building)

@@ -274,6 +274,35 @@ def test_killed_and_gone_on_is_bit_for_bit_the_same(tmp_path: Path) -> None:
     assert same(tmp_path / "alone.zarr", target)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("number", ["SIGINT", "SIGKILL"])
+def test_no_worker_outlives_a_sweep(tmp_path: Path, number: str) -> None:
+    """A terminal sends Ctrl-C to all; a kill meets the sweep alone."""
+    path = written(tmp_path, SWEEP.replace("count: 3", "count: 3000"))
+    target = tmp_path / "out.zarr"
+    program = [sys.executable, "-m", "designer", "sweep", str(path), "--no-plugins"]
+    process = subprocess.Popen(
+        [*program, "-o", str(target), "--workers", "2"],
+        start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    deadline = time.monotonic() + 120.0
+    while time.monotonic() < deadline and not (target.exists() and read_store(target).done.any()):
+        time.sleep(0.05)
+    if number == "SIGINT":
+        os.killpg(process.pid, signal.SIGINT)
+        _, told = process.communicate(timeout=60.0)
+        assert process.returncode == 130
+        assert "points, which stay; the same command goes on" in told
+        assert "Traceback" not in told and "leaked" not in told
+    else:
+        process.kill()
+        process.communicate(timeout=60.0)  # until nobody holds its streams
+    with pytest.raises(ProcessLookupError):
+        while time.monotonic() < deadline:
+            os.killpg(process.pid, 0)
+            time.sleep(0.1)
+
+
 def test_plans_do_not_share_points(tmp_path: Path) -> None:
     plan: Plan = read_sweep(written(tmp_path), with_plugins=False)[0]
     assert len({str(plan.changes(point)) for point in range(plan.n_points)}) == plan.n_points
