@@ -40,8 +40,10 @@ def read_result(path: Path) -> Json:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        why = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
-        raise InputError([Fault(str(path), None, "", f"cannot be read: {why}", _RESULT)]) from None
+        found = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
+        raise InputError(
+            [Fault(str(path), None, "", f"cannot be read: {found}", _RESULT)]
+        ) from None
     if not isinstance(values, dict) or "provenance" not in values:
         raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])
     origin = values["provenance"]

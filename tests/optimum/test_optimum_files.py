@@ -87,6 +87,14 @@ def test_no_design_that_is_a_study_is_told_with_its_reason(tmp_path: Path) -> No
         optimum(tmp_path, plan, YARD)
 
 
+def test_a_study_with_aliases_is_changed_where_it_was_asked(tmp_path: Path) -> None:
+    study = STUDY.replace("[0, 0, 10]", "[0, 0, &z 10]").replace("[10, 17, 10]", "[10, 17, *z]")
+    plan = OF_POSE.replace("robot.anchors[*][2]", "robot.anchors[0][2]").replace("150", "10")
+    found = optimum(tmp_path, plan, study)
+    heights = found.optimised.study.robot.exit_points_m[:, 2].tolist()
+    assert heights == [found.best.values[1], 10.0, 10.0] != [10.0] * 3
+
+
 def test_the_package_offers_it(tmp_path: Path) -> None:
     found = designer.optimise(written(tmp_path, OF_POSE.replace("150", "10")), with_plugins=False)
     assert isinstance(found, designer.Optimum)
