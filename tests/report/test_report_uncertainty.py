@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -78,6 +79,19 @@ def test_the_first_page_has_one_line(used: np.ndarray) -> None:
     assert statement(found_of(used)).tone == "good"
     assert statement(found_of(1.05 * used)).tone == "doubt"
     assert statement(found_of(1.2 * used)).tone == "bad"
+
+
+def test_an_estimate_of_more_than_all_is_shown_as_all(used: np.ndarray) -> None:
+    over = (replace(SHARES[0], first_order=1.014), replace(SHARES[1], first_order=-0.003))
+    found = found_of(used, shares=over)
+    assert statement(found).text.replace("\u00a0", " ").endswith("carries 100 % of the spread.")
+    whole = shown(found, draws=False)
+    assert whole is not None
+    cells = [
+        row.cells[1] for one in whole.blocks if isinstance(one, Table)
+        if one.caption.startswith("Share of each") for group in one.groups for row in group.rows
+    ]  # fmt: skip
+    assert cells == ["100\u00a0%", "0.0\u00a0%"]
 
 
 def test_what_is_not_held_is_said(used: np.ndarray) -> None:

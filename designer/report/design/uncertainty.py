@@ -117,7 +117,9 @@ def _near_an_end(share: float, unit: str = "\u00a0%") -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{fmt.fixed(100.0 * max(share, 0.0) + 0.0, 0 if share >= 0.1 else 1)}\u00a0%"
+    """Return a share; what an estimate from draws puts below none or above all is none or all."""
+    shown = min(max(share, 0.0), 1.0)
+    return f"{fmt.fixed(100.0 * shown + 0.0, 0 if shown >= 0.1 else 1)}\u00a0%"
 
 
 def _of_modulus(found: UncertaintyAnalysis) -> Statement:
