@@ -152,6 +152,13 @@ def run_on(
         (
             "stadium",
             "  platform:",
+            "  gravity: [0, 0, -1e-160]\n  platform:",
+            "robot.gravity",
+            "the direction is smaller than any that is meant",
+        ),
+        (
+            "stadium",
+            "  platform:",
             "  tension_min: -1 N\n  platform:",
             "robot.tension_min",
             "is out of range",

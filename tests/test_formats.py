@@ -59,14 +59,16 @@ def test_other_formats_say_what_to_do(tmp_path, text, read, number, words) -> No
 
 def result(folder: Path, **changes: object) -> Path:
     path = folder / "result.json"
-    values = {"format": RESULT_FORMAT, "name": "x", "provenance": {"version": "0.1.0"}}
+    values = {
+        "format": RESULT_FORMAT, "name": "x", "workspace": None, "provenance": {"version": "0.1.0"}
+    }  # fmt: skip
     path.write_text(json.dumps({**values, **changes}), encoding="utf-8")
     return path
 
 
 def test_results_of_this_format_and_without_are_read(tmp_path) -> None:
     assert read_result(result(tmp_path))["name"] == "x"
-    old = {"name": "x", "provenance": {}}
+    old = {"name": "x", "workspace": None, "provenance": {}}
     path = tmp_path / "old.json"
     path.write_text(json.dumps(old), encoding="utf-8")
     assert read_result(path) == {"format": 1, **old}
@@ -78,10 +80,20 @@ def test_a_newer_result_names_the_version_that_it_needs(tmp_path) -> None:
         read_result(path)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", "{", '{"format": 1}', "\x00", "[" * 10_000])
+OF_ANOTHER_KIND = '{"format": 1, "objective": {}, "provenance": {"version": "0.1.0"}}'
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", "{", '{"format": 1}', "\x00", "[" * 10_000, OF_ANOTHER_KIND]
+)
 def test_what_is_no_result_is_one_line(tmp_path, text) -> None:
     path = tmp_path / "result.json"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=r"result.json: (is no result|cannot be read)") as caught:
         read_result(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_result_that_is_not_there(tmp_path) -> None:
+    with pytest.raises(InputError, match="cannot be read: no such file"):
+        read_result(tmp_path / "none.json")

@@ -11,6 +11,8 @@ from designer.errors import Fault, InputError
 
 NEGATIVE_ANSWER = 1
 WRONG_INPUT = 2
+INTERRUPTED = 130
+"""As the shell gives it after Ctrl-C."""
 
 
 def path_of(text: str) -> Path:

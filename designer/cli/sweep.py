@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NoPlugins, Template, output_option, path_of
+from designer.cli.options import INTERRUPTED, NoPlugins, Template, output_option, path_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,9 +44,11 @@ def sweep(
     Example:  designer sweep masses.yaml --workers 4
 
     Exit status 0: all points are solved. 2: the input is wrong, or the store cannot be written.
+    130: it was ended by Ctrl-C.
     """
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out, show
     from designer.io.output import file_names, output_folder
+    from designer.io.process import ends_gently
 
     announce_compiling()
 
@@ -60,14 +62,21 @@ def sweep(
     path = output or Path(f"{plan.stem}.zarr")
     count = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else "1")
     make = running.cluster(cluster) if cluster else running.processes(count)
-    with opened(path, laid_out) as store, ProgressBars() as bars:
-        before = laid_out.n_points - sum(map(len, store.pending()))
-        if before:
-            print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
-        running.run(laid_out, base, store, make, count, bars)
-    found = read_store(path)
     folder = path.with_name(f"{path.stem}-report")
-    with output_folder(folder) as building:
+    with output_folder(folder) as building:  # made first: what is in its way shows before the work
+        with opened(path, laid_out) as store, ProgressBars() as bars:
+            before = laid_out.n_points - sum(map(len, store.pending()))
+            if before:
+                print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
+            with ends_gently() as stop:
+                running.run(laid_out, base, store, make, count, bars, stop)
+            left = sum(map(len, store.pending()))
+            if left:
+                done = f"{laid_out.n_points - left} of {laid_out.n_points} points"
+                why = f"ended with {done}, which stay; the same command goes on"
+                print_left_out([f"{path}: {why}"])
+                raise typer.Exit(INTERRUPTED)
+        found = read_store(path)
         write_sweep(found, plan.stem, building, template)
         written = file_names(building)
     _print_summary(found)
@@ -81,9 +90,7 @@ def _print_summary(found: xr.Dataset) -> None:
 
     from designer.cli.terminal import bare_table, show
 
-    table = bare_table(
-        "", "least", "median", "most", "points", title=f"{found.sizes['point']} points"
-    )
+    table = bare_table("", "least", "median", "most", "points", title=_points(found.sizes["point"]))
     for name, kept in found.filter_by_attrs(role="kept").items():
         values = kept.values[~np.isnan(kept.values)] if kept.dtype.kind == "f" else np.array([])
         if len(values):
@@ -93,4 +100,8 @@ def _print_summary(found: xr.Dataset) -> None:
         show(table)
     reasons, counts = np.unique([why for why in found.reason.values if why], return_counts=True)
     for count, why in sorted(zip(counts, reasons, strict=True), reverse=True)[:10]:
-        show(f"{count} points: {why}", markup=False)
+        show(f"{_points(count)}: {why}", markup=False)
+
+
+def _points(count: int) -> str:
+    return f"{count} point{'' if count == 1 else 's'}"

@@ -5,8 +5,9 @@ A library that writes the whole document anew keeps comments, but not how its au
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from designer.documents.node import Key
@@ -31,6 +32,7 @@ def scalar(typed: str) -> str:
 
 def value_text(text: str, keys: Sequence[Key]) -> str | None:
     """Return a value as it is written; None where there is none."""
+    text = without_aliases(text)
     node, rest = _nearest(compose(text), keys)
     return None if rest else text[node.start_mark.index : _end(node)]
 
@@ -39,8 +41,9 @@ def with_value(text: str, keys: Sequence[Key], value: str) -> str:
     """Return the text with a value, written as it is to stand there, at a path.
 
     A field that is not there is put at the end of its mapping, with the mappings around it.
-
+    Aliases are written out before: a change at ``*a`` is not one of what ``&a`` stands at.
     """
+    text = without_aliases(text)
     node, rest = _nearest(compose(text), keys)
     if not rest:
         return _replaced(text, node, value)
@@ -51,6 +54,7 @@ def with_value(text: str, keys: Sequence[Key], value: str) -> str:
 
 def without(text: str, keys: Sequence[Key]) -> str:
     """Return the text without the field at a path, which is there; its comment goes with it."""
+    text = without_aliases(text)
     root = compose(text)
     parent, _ = _nearest(root, keys[:-1])
     names = [name.value for name, _ in parent.value]
@@ -64,6 +68,57 @@ def without(text: str, keys: Sequence[Key]) -> str:
     if parent.flow_style or (at == 0 and _is_inline(text, start)):
         return text[:start] + text[parent.value[at + 1][0].start_mark.index :]
     return text[: text.rfind("\n", 0, start) + 1] + text[_line_end(text, end) + 1 :]
+
+
+def without_aliases(text: str) -> str:
+    """Return a text in which each ``*a`` is written out as what ``&a`` stands at, without it."""
+    if "&" not in text:
+        return text
+    import yaml
+
+    tokens = list(yaml.scan(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)))
+    nodes = {node.start_mark.index: node for node in _walk(compose(text))}
+    named, parts, at = {}, [], 0
+    for token in tokens:
+        start, end = token.start_mark.index, token.end_mark.index
+        if isinstance(token, yaml.AnchorToken):
+            named[token.value] = nodes[start]
+            parts.append(text[at:start])
+            at = end + len(text[end:]) - len(text[end:].lstrip(" "))
+        elif isinstance(token, yaml.AliasToken):
+            parts += [text[at:start], _in_brackets(named[token.value])]
+            at = end
+    return "".join([*parts, text[at:]])
+
+
+def _walk(node: _Node) -> Iterator[_Node]:
+    """Yield a node and all below it, what an alias stands for once."""
+    import yaml
+
+    waiting, seen = [node], set()
+    while waiting:
+        one = waiting.pop()
+        if id(one) not in seen:
+            seen.add(id(one))
+            yield one
+            if isinstance(one, yaml.MappingNode):
+                waiting += [part for pair in one.value for part in pair]
+            elif isinstance(one, yaml.SequenceNode):
+                waiting += one.value
+
+
+def _in_brackets(node: _Node) -> str:
+    """Return a node as it may stand anywhere, on one line."""
+    import yaml
+
+    if isinstance(node, yaml.MappingNode):
+        each = (f"{_in_brackets(name)}: {_in_brackets(value)}" for name, value in node.value)
+        return "{" + ", ".join(each) + "}"
+    if isinstance(node, yaml.SequenceNode):
+        return "[" + ", ".join(map(_in_brackets, node.value)) + "]"
+    if not node.style:
+        return scalar(node.value)
+    return json.dumps(node.value, ensure_ascii=False)  # YAML reads it as JSON does
 
 
 def _nearest(root: _Node, keys: Sequence[Key]) -> tuple[_Node, Sequence[Key]]:

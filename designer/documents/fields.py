@@ -245,8 +245,10 @@ def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
 
 
 def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    if not any(direction):
-        raise refusal("the direction is zero", _DIRECTION)
+    # Squares of smaller parts come near the least that a float can be.
+    if max(map(abs, direction)) < _LEAST_OF_A_DIRECTION:
+        found = "smaller than any that is meant" if any(direction) else "zero"
+        raise refusal(f"the direction is {found}", _DIRECTION)
     return direction
 
 
@@ -286,6 +288,7 @@ def bounded(name: str) -> QuantityField:
 
 _INTERVAL = "[lower, upper]"
 _DIRECTION = "a direction such as [0, 0, -1]"
+_LEAST_OF_A_DIRECTION = 1e-6
 
 Text = Annotated[str, BeforeValidator(_text)]
 FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]

@@ -90,13 +90,15 @@ def _beside(path: Path, kind: str, wanted: str) -> Path:
 def _chosen_set(cables: Element, wanted: str | None) -> Element:
     sets = {one.attributes.get("id", ""): one for one in cables.all("cable_set")}
     name = wanted if wanted is not None else cables.attributes.get("default_cable_set")
+    if not sets:
+        cables.refuse("the file has no cable set", "<cable_set>")
     if name is None and len(sets) == 1:
         return next(iter(sets.values()))
     names = ", ".join(sets)
     if name is None:
         cables.refuse("the file names no default cable set", f"--cable-set, one of: {names}")
     if name not in sets:
-        cables.refuse(f"there is no cable set '{name}'", f"one of: {names}" if names else "")
+        cables.refuse(f"there is no cable set '{name}'", f"one of: {names}")
     return sets[name]
 
 
@@ -117,7 +119,7 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     ends = [_ends(cable, centre) for cable in _cables(cable_set)]
     exit_points, attachments = (tuple(points) for points in zip(*ends, strict=True))
     position, euler = _initial(joint_element, joint, base)
-    limits = _limits(joint_element, joint, base)
+    limits, no_region = _limits(joint_element, joint, base)
     if not joint.turns:
         held = held_at_one_point(cable_set, attachments)
         position = None if position is None else moved(position, held)
@@ -126,7 +128,8 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     tension_min, told = _forces(cable_set)
     return ForeignRobot(
         file=bodies.file,
-        name=link.attributes.get("name", Path(bodies.file).stem.removesuffix("_bodies")),
+        name=link.attributes.get("name", "").strip()
+        or Path(bodies.file).stem.removesuffix("_bodies"),
         source=f"CASPR model: {Path(bodies.file).name} and {Path(cable_set.file).name}, "
         f"cable set '{cable_set.attributes.get('id', '')}'",
         exit_points_m=exit_points,
@@ -139,7 +142,7 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
         limits_m=limits,
         tension_min_N=tension_min,
         pulley_radius_m=radius,
-        remarks={**remarks, **told},
+        remarks={**remarks, **told, **no_region},
     )
 
 
@@ -198,15 +201,23 @@ def _along(axes: tuple[int, ...], values: tuple[float, ...]) -> Point:
     return point[0], point[1], point[2]
 
 
-def _limits(element: Element, joint: _Joint, base: Point) -> tuple[tuple[float, float], ...] | None:
-    if "q_min" not in element.attributes or "q_max" not in element.attributes:
-        return None
+def _limits(
+    element: Element, joint: _Joint, base: Point
+) -> tuple[tuple[tuple[float, float], ...] | None, dict[str, tuple[str, ...]]]:
+    """Return the limits of the joint; else what to know of those that the file has."""
+    given = [element.attributes.get(name, "").split() for name in ("q_min", "q_max")]
+    if not all(given):
+        return None, {}
     ends = []
-    for name in ("q_min", "q_max"):
-        count = len(element.attributes[name].split())
-        ends.append(moved(base, _along(joint.axes, element.numbers(count, name))))
+    for name, words in zip(("q_min", "q_max"), given, strict=True):
+        values = element.numbers(len(words), name)
+        ends.append(moved(base, _along(joint.axes, values)))
     box = tuple(zip(*ends, strict=True))
-    return box if all(low <= high for low, high in box) else None
+    is_whole = min(map(len, given)) >= len(joint.axes)
+    if is_whole and all(box[axis][0] < box[axis][1] for axis in joint.axes):
+        return box, {}
+    shown = " to ".join(f"[{' '.join(words)}]" for words in given)
+    return None, {"workspace": (f"The limits of the joint in the file span no region: {shown}.",)}
 
 
 def _shifted(box: tuple[tuple[float, float], ...], by: Point) -> tuple[tuple[float, float], ...]:

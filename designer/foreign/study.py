@@ -66,7 +66,7 @@ def study_text(robot: ForeignRobot, answers: Answers) -> str:
         f"# Where it says '{FILL_IN}', the file does not tell; the study is refused until all is",
         "# filled in. The fields are explained in the example that `designer init` writes.",
         "",
-        f"name: {json.dumps(robot.name, ensure_ascii=False)}",
+        f"name: {_quoted(robot.name)}",
         "",
         *_robot(robot, answers),
         "",
@@ -203,7 +203,10 @@ def _workspace(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
     """Yield the box of the joint's limits, or its upright rectangle in a plane."""
     limits = robot.limits_m
     if limits is None or answers.gravity is not None:
-        yield "# All poses that the cables have to serve; the file does not tell."
+        remarks = list(_remarks(robot, "workspace"))
+        unknown = "" if remarks or limits is not None else "; the file does not tell"
+        yield f"# All poses that the cables have to serve{unknown}."
+        yield from remarks
         yield "# workspace:"
         yield "#   region: {box: [[xmin, xmax], [ymin, ymax], [zmin, zmax]]}"
         return
@@ -236,6 +239,14 @@ def _remarks(robot: ForeignRobot, field: str, indent: str = "") -> Iterator[str]
 def _in_one_line(text: str) -> str:
     # Else a name could go on beyond its comment.
     return "".join(one if one.isprintable() else "?" for one in " ".join(text.split()))
+
+
+def _quoted(text: str) -> str:
+    """Return a text in quotes; what YAML lets in no file is escaped, as JSON does not."""
+    return "".join(
+        one if one.isprintable() else f"\\U{ord(one):08x}"
+        for one in json.dumps(text, ensure_ascii=False)
+    )
 
 
 def _number(value: float) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from designer.documents.bounds import BOUNDS
 from designer.foreign.robot import ForeignRobot, ForeignRope, Point, held_at_one_point
 from designer.foreign.xml import Element
 
@@ -53,7 +54,7 @@ def read_wirex(path: Path, root: Element) -> ForeignRobot:
     _winch(root.find("winch"), remarks)
     return ForeignRobot(
         file=str(path),
-        name=robot.attributes.get("name") or path.stem,
+        name=robot.attributes.get("name", "").strip() or path.stem,
         source=f"WireX robot file: {path.name}",
         exit_points_m=tuple(map(_position, bases)),
         attachments_m=None if pattern in (_POINT, _PLANAR_POINT) else attachments,
@@ -109,6 +110,11 @@ def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> Foreign
         return None
     if min(given.values()) <= 0.0:
         cable.refuse("the rope has a figure that is zero or less", "figures above zero")
+    bound = BOUNDS["rope diameter"]
+    if not bound.least <= 2.0 * given["radius"] <= bound.most:
+        found = f"the rope has a radius of {given['radius']:g} m"
+        expected = f"{0.5 * bound.least:g} m to {0.5 * bound.most:g} m: {bound.reason}"
+        cable.refuse(found, expected)
     area = math.pi * given["radius"] ** 2
     remarks["cable"] = (
         f"A rope of {2e3 * given['radius']:g} mm, {given['weight']:g} kg/m, breaking at "

@@ -13,6 +13,8 @@ from designer.documents.formats import RESULT_FORMAT, why_unreadable
 from designer.errors import Fault, InputError
 from designer.io.output import write_whole
 
+_RESULT = "a result.json that `designer report` wrote"
+
 
 def write_results(analysis: Analysis, folder: Path) -> None:
     """Write ``result.json``, ``candidates.csv`` and ``workspace.nc`` into an existing folder.
@@ -38,13 +40,17 @@ def read_result(path: Path) -> Json:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError([Fault(str(path), None, "", f"cannot be read: {error}")]) from None
+        found = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
+        raise InputError(
+            [Fault(str(path), None, "", f"cannot be read: {found}", _RESULT)]
+        ) from None
     if not isinstance(values, dict) or "provenance" not in values:
-        expected = "a result.json that `designer report` wrote"
-        raise InputError([Fault(str(path), None, "", "is no result", expected)])
+        raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])
     origin = values["provenance"]
     written_by = str(origin.get("version", "")) if isinstance(origin, dict) else ""
     why = why_unreadable(values.get("format"), RESULT_FORMAT, written_by)
     if why is not None:
         raise InputError([Fault(str(path), None, "format", *why)])
+    if "workspace" not in values:  # an optimise.json would compare as a result of nothing
+        raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])
     return {"format": 1, **values}

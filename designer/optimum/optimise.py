@@ -12,7 +12,7 @@ from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.comparison import compare
 from designer.documents import edits
 from designer.documents.document import document_of
-from designer.errors import DesignerError
+from designer.errors import DesignerError, InputError
 from designer.grades.registry import Catalogue
 from designer.optimum.measures import promising
 from designer.optimum.plan import Plan, Values
@@ -21,6 +21,7 @@ from designer.optimum.result import Optimum, Profile, is_near
 from designer.optimum.search import LINE, Searched, Stop, search
 from designer.optimum.trial import Examiner, Trial
 from designer.progress import SILENT, Reporter
+from designer.sweep.point import why_not
 
 _MOST_VERIFIED = 3
 _APART = 0.05
@@ -111,7 +112,7 @@ def _beats(a: Optimum, b: Optimum, sign: int) -> bool:
 def _candidates(plan: Plan, searched: Searched) -> list[Trial]:
     """Return the best designs that are well apart, the best first."""
     sign = plan.objective.sign
-    tried = [one for one in searched.trials if one.values]
+    tried = [one for one in searched.trials if one.values and plan.is_within(one.values)]
     if not tried:
         raise DesignerError("the search was ended before it had tried a design")
     ranked = sorted(tried, key=lambda t: (t.violation, sign * t.value if t.holds else math.inf))
@@ -134,7 +135,12 @@ def _analysed(
 ) -> Optimum:
     text = optimised_text(plan, trial.values)
     document = document_of(text.encode(), plan.document.name)
-    analysis = analyse(replace(plan.base, document=document).study(), catalogue, reporter=reporter)
+    try:
+        study = replace(plan.base, document=document).study()
+    except InputError as error:  # its lines are those of no file of the user's
+        why = f"no design that was tried makes a valid study: {why_not(error)}"
+        raise DesignerError(f"{plan.name}: variables: {why}") from None
+    analysis = analyse(study, catalogue, reporter=reporter)
     before, after = given.to_dict(), analysis.to_dict()
     values = plan.objective.value(before), plan.objective.value(after)
     breaches = tuple(limit for limit in plan.limits if limit.is_broken_by(after))

@@ -139,6 +139,11 @@ def trust_lines(found: Optimum) -> list[str]:
         each = (f"{one.label} {change(one)}" for one in found.worsened)
         lines.append(f"Paid with what was not asked for: {fmt.listing(each)}.")
     lines.append(_starts_text(found))
+    outside = [
+        one.name for one in plan.variables if one.given is not None and not one.is_within(one.given)
+    ]
+    if outside:
+        lines.append(f"Outside the bounds in the robot as given: {fmt.listing(outside)}.")
     at_bounds = [
         f"{one.name} at its {bound} bound"
         for one, value in zip(plan.variables, found.best.values, strict=True)
@@ -152,6 +157,9 @@ def trust_lines(found: Optimum) -> list[str]:
 def _starts_text(found: Optimum) -> str:
     agree = sum(found.agrees(one) for one in found.starts)
     n = len(found.starts)
+    if found.reasons and all(one is None for one in found.starts):
+        why, count = found.reasons[0]
+        return f"No start came to a design that holds; of {fmt.plural(count, 'design')}: {why}."
     if n == 1:
         return "One start only: whether another comes to the same place is not known."
     if agree == n:
@@ -210,7 +218,7 @@ def _chosen(found: Optimum) -> tuple[Block | None, ...]:
     blocks: list[Block | None] = [Table.of(caption, heads, *rows, kind="long")]
     if found.plan.limits:
         blocks.append(_limits(found))
-    if found.profiles:
+    if np.isfinite([x for one in found.profiles for x in one.objective]).any():
         blocks += [
             Picture(
                 "What each variable does by itself, the others as optimised: how exactly it has to "
@@ -279,7 +287,9 @@ def _differences(found: Optimum) -> Section | None:
     return Section.of(
         "differences",
         "What changes with it",
-        Table.of("Both robots, analysed in full; comparison.html has all.", heads, *rows),
+        Table.of(
+            "Both robots, analysed in full; comparison.html has all.", heads, *rows, kind="long"
+        ),
     )
 
 
@@ -291,10 +301,11 @@ def _trust(found: Optimum) -> tuple[Block | None, ...]:
     starts = np.array([one.start for one in trials[1:]])
     holds = np.array([one.holds for one in trials[1:]], dtype=np.bool_)
     first = trials[0]
-    chart = figures.convergence(
-        values, starts, holds, sign * scale * first.value if first.holds else None,
-        title if sign > 0 else f"− {title}",
-    )  # fmt: skip
+    chart = ""
+    if holds.any():
+        before = sign * scale * first.value if first.holds else None
+        named = title if sign > 0 else f"− {title}"
+        chart = figures.convergence(values, starts, holds, before, named)
     heads = ("Start", Column("Seed"), Column("Best in the search"), "Same place", Column("Spread"))
     spreads = [*found.searched.spreads, *[np.array([np.nan])] * plan.starts]
     rows = [
@@ -309,7 +320,7 @@ def _trust(found: Optimum) -> tuple[Block | None, ...]:
     ]
     return (
         *trust_lines(found),
-        Picture("Every design that holds, and the best so far.", "", svg=chart),
+        Picture("Every design that holds, and the best so far.", "", svg=chart) if chart else None,
         Table.of(
             "Each start. Same place: within 2 % of each range from the answer. Spread: largest "
             "standard deviation of the last population, over the range.",

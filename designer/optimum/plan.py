@@ -76,7 +76,11 @@ class Variable:
     def bound_at(self, value: float) -> str:
         """Return which bound a value stands at: ``lower``, ``upper``, or empty for none."""
         share = self.share(value)
-        return "lower" if share < 1e-3 else "upper" if share > 1.0 - 1e-3 else ""
+        return "lower" if abs(share) < 1e-3 else "upper" if abs(share - 1.0) < 1e-3 else ""
+
+    def is_within(self, value: float) -> bool:
+        """Tell whether a value lies within the bounds, give or take rounding."""
+        return -_ROUNDING <= self.share(value) <= 1.0 + _ROUNDING
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -160,6 +164,10 @@ class Plan:
     def values(self, shares: FloatArray) -> Values:
         """Return the values at shares of the ranges (n_variables,)."""
         return tuple(v.at(float(x)) for v, x in zip(self.variables, shares, strict=True))
+
+    def is_within(self, values: Values) -> bool:
+        """Tell whether a design lies within all bounds, which the study as it is need not do."""
+        return all(v.is_within(x) for v, x in zip(self.variables, values, strict=True))
 
     def changes(self, values: Values) -> list[Change]:
         """Return what these values put into the study."""

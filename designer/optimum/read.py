@@ -23,9 +23,10 @@ from designer.model.region import Prism, Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.plan import Budget, Limit, Plan
 from designer.optimum.variables import variables_of
+from designer.selection.products import common_currency, is_allowed
 from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.sweep.point import Base
+from designer.sweep.point import Base, value_at
 from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
 
 OPTIMISATION = FileKind("an optimisation, with study, variables and objective", "study: crane.yaml")
@@ -183,10 +184,16 @@ def _faults_of_measures(
                 problem = f"the study has no {part}" if missing else "the region has no volume"
                 expected = f"{part}: in the study, or another objective"
                 faults.append(document.fault(place, problem, expected))
+            elif measure.name == "rope_cost" and not _has_prices(study, base):
+                expected = "grades with price_per_m, or rope_mass"
+                faults.append(document.fault(place, "no grade of the study has prices", expected))
             continue
         try:
             result = base.result(base.study()) if result is None else result
-            measure.value(result)
+            value = value_at(result, measure.path)
+            if isinstance(value, str | dict | list):
+                problem = f"{measure.path} is {'a text' if isinstance(value, str) else 'a list'}"
+                faults.append(document.fault(place, problem, "a number of result.json"))
         except KeyError as error:
             key, names = error.args
             expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
@@ -194,3 +201,9 @@ def _faults_of_measures(
                 expected += f"; or {', '.join(MEASURES)}"
             faults.append(document.fault(place, f"results have no '{key}' there", expected))
     return faults
+
+
+def _has_prices(study: Study, base: Base) -> bool:
+    named = study.selection.grades if study.selection is not None else None
+    grades = [grade for grade in base.catalogue().grades if is_allowed(grade, named)]
+    return common_currency(grades) is not None

@@ -113,7 +113,7 @@ class Optimum:
         """Relative change of the objective; None where the study as it is has none."""
         if self.before is None or self.after is None or not self.before:
             return None
-        return self.after / self.before - 1.0
+        return (self.after - self.before) / abs(self.before)
 
     @property
     def worsened(self) -> list[Line]:
@@ -126,7 +126,7 @@ class Optimum:
         """Verified value over that of the search, less one; None without either."""
         if self.after is None or not self.best.value or math.isnan(self.best.value):
             return None
-        return self.after / self.best.value - 1.0
+        return (self.after - self.best.value) / abs(self.best.value)
 
     @property
     def starts(self) -> tuple[Trial | None, ...]:
@@ -140,8 +140,8 @@ class Optimum:
 
     @property
     def reasons(self) -> list[tuple[str, int]]:
-        """Why designs do not hold, and how many for each, most first."""
-        return Counter(t.reason for t in self.searched.trials if not t.holds).most_common()
+        """Why designs that were tried do not hold, and how many for each, most first."""
+        return Counter(t.reason for t in self.searched.trials[1:] if not t.holds).most_common()
 
     def to_dict(self) -> Json:
         """Return what ``optimise.json`` holds."""

@@ -147,7 +147,10 @@ class _Run:
                 raise
 
     def _best(self) -> Trial:
-        return min((one for one in self.trials if one.values), key=self._rated)
+        within = self._plan.is_within
+        return min(
+            (one for one in self.trials if one.values and within(one.values)), key=self._rated
+        )
 
     def _scan(self) -> None:
         """Try each variable by itself over its range, about the best design."""

@@ -39,11 +39,12 @@ _MOST_FIELDS = 5
 
 @dataclass(frozen=True, slots=True)
 class SweptPoints:
-    """A store's points as the pages need them; ``goals`` are signed so that less is better."""
+    """A store's points as the pages need them; a goal times its sign is better the less it is."""
 
     varied: tuple[Axis, ...]
     kept: tuple[Axis, ...]
     goals: tuple[Axis, ...]
+    signs: tuple[float, ...]
     front: BoolArray
     holds: BoolArray
 
@@ -67,6 +68,7 @@ class SweptPoints:
             tuple(axes("varied").values()),
             tuple(numbers.values()),
             tuple(numbers[name] for name in goals),
+            tuple(goals.values()),
             front,
             holds,
         )
@@ -122,30 +124,29 @@ def write_sweep(found: xr.Dataset, name: str, folder: Path, templates: Path | No
 def _overview(found: xr.Dataset, points: SweptPoints) -> tuple[Block | None, ...]:
     n, holds = len(points.holds), int(points.holds.sum())
     fields = fmt.listing(axis.title for axis in points.varied)
-    text = f"{fmt.count(n)} studies over {fields}."
+    text = f"{fmt.count(n)} {'study' if n == 1 else 'studies'} over {fields}."
     if holds == n:
         head = Statement("Every study has an answer", text, "good")
     else:
         head = Statement(f"{fmt.share(holds, n)} of the studies have an answer", text, "doubt")
-    best = [_best(points, goal) for goal in points.goals]
-    if not points.front.any():
+    best = [_best(points, *each) for each in zip(points.goals, points.signs, strict=True)]
+    rows = [row for row in best if row is not None]
+    if not rows:
         return (head,)
     heads: Heads = ("Best by", Column("Value"), *(Column(axis.title) for axis in points.varied))
-    return (head, Table.of("The best point by each goal.", heads, *best))
+    return (head, Table.of("The best point by each goal.", heads, *rows))
 
 
-def _best(points: SweptPoints, goal: Axis) -> tuple[str, ...]:
-    front = np.flatnonzero(points.front)
-    less = np.nanargmin(goal.values[front]), np.nanargmax(goal.values[front])
-    # On the front the best by one goal is an end of it; which end shows among all points.
-    at = front[
-        less[0] if goal.values[front[less[0]]] <= np.nanmin(_held(points, goal)) else less[1]
-    ]
+def _best(points: SweptPoints, goal: Axis, sign: float) -> tuple[str, ...] | None:
+    """Return the row of the best by one goal, of equals one that no other beats in the rest.
+
+    None where no study that holds has this goal.
+    """
+    held = np.flatnonzero(points.holds & np.isfinite(goal.values))
+    if not len(held):
+        return None
+    at = held[np.lexsort((~points.front[held], sign * goal.values[held]))[0]]
     return (goal.title, _shown(goal, at), *(_shown(axis, at) for axis in points.varied))
-
-
-def _held(points: SweptPoints, goal: Axis) -> FloatArray:
-    return goal.values[points.holds]
 
 
 def _shown(axis: Axis, at: int) -> str:
@@ -182,6 +183,7 @@ def _influences(points: SweptPoints) -> Section | None:
         return None
     kept, varied = points.kept[:_MOST_FIELDS], points.varied[:_MOST_FIELDS]
     colour = (points.goals or points.kept)[0]
+    lines = figures.parallel((*points.varied, *points.kept), colour, points.front)
     return Section.of(
         "fields",
         "What each field does",
@@ -194,8 +196,10 @@ def _influences(points: SweptPoints) -> Section | None:
             f"A line for each study over all quantities, coloured by {colour.title}; "
             "Pareto-optimal ones thick.",
             "",
-            svg=figures.parallel((*points.varied, *points.kept), colour, points.front),
-        ),
+            svg=lines,
+        )
+        if lines
+        else "No study has all of the results that are kept.",
     )
 
 

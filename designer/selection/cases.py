@@ -315,7 +315,8 @@ def _leans(one: Loaded, workspace: Workspace) -> bool:
 def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
     """Return what a cable meets over the samples, which poses count told by the true vertical."""
     demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
-    parts = [workspace.space.landmarks(), *workspace.places()]
+    each = (workspace.space.landmarks(), *workspace.places())
+    parts = [some for some in each if len(some)]  # a list of points has no landmarks
     tension, lengths, _ = np.split(
         np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
     )

@@ -18,6 +18,7 @@ from designer.errors import DesignerError, InputError
 from designer.grades.kept import kept_catalogue
 from designer.grades.registry import Catalogue
 from designer.io.config.reader import checked, study_of
+from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins, find_plugins
 from designer.study import Study, require_enough_cables
 
@@ -131,10 +132,17 @@ def solve_points(base: Base, points: Sequence[Sequence[Change]]) -> list[tuple[l
 def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
     try:
         result = base.result(base.study(changes))
-        return [value_at(result, name) for name in base.keep], why_negative(result)
     except Exception as error:  # whatever a plugin or a library may raise
-        reason = why_not(error)
-    return [None] * len(base.keep), reason
+        return [None] * len(base.keep), why_not(error)
+    kept: list[Any] = []
+    reasons = [why_negative(result)]
+    for name in base.keep:
+        try:
+            kept.append(value_at(result, name))
+        except KeyError:  # such as the tension of a fourth cable where there are three
+            kept.append(None)
+            reasons.append(f"there is no {name} here")
+    return kept, "; ".join(filter(None, reasons))
 
 
 def why_not(error: Exception) -> str:
@@ -154,7 +162,7 @@ def why_negative(result: Json) -> str:
     """Return why a result is no answer, in a line; empty where it is one."""
     pose, workspace = result.get("pose"), result.get("workspace")
     if pose is not None and pose["sagging"]["status"] != "solved":
-        return f"the configured pose: {pose['sagging']['status']}"
+        return f"the configured pose: {Verdict[pose['sagging']['status'].upper()].reason}"
     if workspace is not None and workspace["sagging"] is None:
         return "no cable holds in all of the workspace"
     return "" if result.get("positive", True) else "no rope holds as asked"

@@ -104,6 +104,12 @@ def _faults_of_points(
         if path_text(one.keys) in taken:
             yield document.fault(("vary", name), "is named twice, or is the name of a result", "")
         taken.add(path_text(one.keys))
+    for name, one in varied.items():
+        for other, inner in varied.items():
+            if one is not inner and inner.keys[: len(one.keys)] == one.keys != inner.keys:
+                # One of the two would stand in the store as if the study had it.
+                problem = f"holds {path_text(inner.keys)}, which is varied too"
+                yield document.fault(("vary", name), problem, f"one of {name} and {other}")
     each = [one.count or 1 if isinstance(one, Range) else len(one.nodes) for one in varied.values()]
     if section.sampling == "grid" and math.prod(each) > MOST_POINTS:
         expected = f"{MOST_POINTS:,} at most, or latin_hypercube"
@@ -135,6 +141,8 @@ def _varied(
         problem = f"its ends are in '{low[1]}' and '{high[1]}'"
     elif sampling == "grid" and (count is None or count[1] or not 1 <= count[0] <= MOST_POINTS):
         problem = "has no whole number 'count'"
+    elif sampling == "grid" and count is not None and count[0] == 1 and low[0] != high[0]:
+        problem = "has a count of 1, which does not reach from one end to the other"
     elif sampling != "grid" and count is not None:
         problem = f"has a count, which {sampling} does not ask for"
     else:

@@ -6,10 +6,11 @@ from collections import Counter, deque
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from typing import Any
 
 from designer.errors import DesignerError, OutputError
+from designer.io.process import children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
 from designer.sweep.plan import Plan
 from designer.sweep.point import Base, solve_points
@@ -17,6 +18,8 @@ from designer.sweep.store import Store
 
 _AHEAD = 2
 """Tasks that wait at each worker, so that none is idle while a result is stored."""
+_ASKS_S = 0.2
+"""So long at most it takes to hear that the sweep is to end [s]."""
 _MOST_DEATHS = 2
 """A task that ends its process so often, alone in its pool, is to blame for it."""
 
@@ -26,7 +29,8 @@ MakeExecutor = Callable[[], Executor]
 
 def processes(workers: int) -> MakeExecutor:
     """Return what makes pools of processes here; spawned, so that none shares threads."""
-    return lambda: ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    context = get_context("spawn")
+    return lambda: ProcessPoolExecutor(workers, context, initializer=end_with_parent)
 
 
 def run(
@@ -36,10 +40,12 @@ def run(
     make_executor: MakeExecutor,
     workers: int,
     reporter: Reporter = SILENT,
+    stop: Callable[[], bool] = lambda: False,
 ) -> None:
     """Solve and store every point that is not done.
 
-    A worker that is killed takes nothing along: what it was at is solved again.
+    A worker that is killed takes nothing along: what it was at is solved again. ``stop`` is asked
+    often; once it says so, all workers are ended, and what is stored stays.
 
     Raises
     ------
@@ -49,8 +55,10 @@ def run(
     waiting = deque(store.pending())
     deaths: Counter[range] = Counter()
     with reporter.task("sweep", sum(map(len, waiting))) as advance:
-        while waiting:
-            _run_until_death(plan, base, store, make_executor, workers, waiting, deaths, advance)
+        while waiting and not stop():
+            _run_until_death(
+                plan, base, store, make_executor, workers, waiting, deaths, advance, stop
+            )
 
 
 def _run_until_death(
@@ -62,17 +70,23 @@ def _run_until_death(
     waiting: deque[range],
     deaths: Counter[range],
     advance: Callable[[int], None],
+    stop: Callable[[], bool],
 ) -> None:
     """Work through what waits; ends early, with the rest waiting, where a worker dies."""
     running: dict[Future[Solved], range] = {}
     executor = make_executor()
     try:
         while waiting or running:
+            if stop():
+                for process in active_children():
+                    process.terminate()
+                return
             while waiting and len(running) < _at_once(workers, waiting, running, deaths):
                 changes = [plan.changes(point) for point in waiting[0]]
-                running[executor.submit(solve_points, base, changes)] = waiting[0]
+                with children_are_deaf():
+                    running[executor.submit(solve_points, base, changes)] = waiting[0]
                 waiting.popleft()
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            for future in wait(running, _ASKS_S, FIRST_COMPLETED).done:
                 found = _result(future)
                 points = running.pop(future)
                 deaths.pop(points, None)

@@ -336,3 +336,20 @@ def test_the_case_that_governs_may_change_from_draw_to_draw() -> None:
 def test_what_cannot_be_is_refused(make, message) -> None:
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_a_draw_that_leaves_out_the_kept_poses_is_judged_by_others() -> None:
+    """A heavy cable hangs below the one pose that is kept, and not below the other."""
+    robot = Robot(ANCHORS, Platform(40.0))
+    places = np.array([[3.0, 2.0, 11.0], [15.0, 9.0, 4.0]])
+    workspace = Workspace(PointList(places), hangs_below="exclude")
+    cable = Cable(0.012, 0.8, 5e6, 2e4)
+    (loaded,) = LoadCase("static").on(robot, cable)
+    draws = draws_at({"payload": Normal(0.01)}, robot, np.linspace(0.2, 0.8, 3)[:, None])
+    asked = [Asked(loaded, workspace, places[:1])]
+    assert np.isneginf(asked[0].utilisation(draws)).all()
+    both = Asked(loaded, workspace, places).utilisation(draws)
+    assert np.isfinite(both[:, 1]).all()
+    assert largest(asked, draws) == pytest.approx(both[:, 1], rel=1e-12)
+    alone = replace(workspace, region=PointList(places[:1]))
+    assert np.isposinf(largest([Asked(loaded, alone, places[:1])], draws)).all()

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from designer.documents.document import document_of
-from designer.documents.edits import scalar, value_text, with_value, without
+from designer.documents.edits import scalar, value_text, with_value, without, without_aliases
 from designer.resources import example_file, example_names
 
 TEXT = """\
@@ -34,6 +34,38 @@ def test_every_value_put_in_as_it_stands_changes_nothing(name: str) -> None:
         written = value_text(text, keys)
         assert written is not None
         assert with_value(text, keys, written) == text
+
+
+ALIASES = """\
+a: &mast
+  height: &h 7.2 m   # of all
+  place: [1, *h, 'it''s']
+b: *mast
+c: {again: *mast, low: *h}
+d: &lines |
+  two
+  lines
+e: *lines
+f: [&name Crane, &q "A\\tB", *name, *q, 5*3, '&no']
+"""
+
+
+def test_aliases_are_written_out() -> None:
+    text = without_aliases(ALIASES)
+    assert "*mast" not in text and "   # of all\n" in text
+    assert (
+        document_of(text.encode(), "").root.data() == document_of(ALIASES.encode(), "").root.data()
+    )
+
+
+def test_a_change_at_an_alias_is_none_of_what_it_stands_for() -> None:
+    root = document_of(with_value(ALIASES, ("b", "height"), "9 m").encode(), "").root.data()
+    assert isinstance(root, dict)
+    assert [root[key]["height"] for key in "ab"] == ["7.2 m", "9 m"]  # type: ignore[index, call-overload]
+    root = document_of(with_value(ALIASES, ("a", "height"), "9 m").encode(), "").root.data()
+    assert isinstance(root, dict)
+    assert [root[key]["height"] for key in "ab"] == ["9 m", "7.2 m"]  # type: ignore[index, call-overload]
+    assert value_text(ALIASES, ("c", "low")) == value_text(ALIASES, ("a", "height")) == "7.2 m"
 
 
 @pytest.mark.parametrize(

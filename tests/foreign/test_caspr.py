@@ -117,6 +117,7 @@ def in_a_set(inner: str) -> str:
         (bodies(), in_a_set(LONG), "1 points of the base and 2 of the platform"),
         (bodies(), cables(default="second"), "no cable set 'second' (expected one of: first)"),
         (bodies(), in_a_set(""), "the cable set has no cables"),
+        (bodies(), "<cables/>", "the file has no cable set (expected <cable_set>"),
         (bodies(), bodies(), "the file holds <bodies_system> (expected CASPR's cables"),
         (bodies(link(mass="heavy")), cables(), "<mass> has 'heavy' (expected a finite number)"),
         (bodies(link(mass="nan")), cables(), "<mass> has 'nan'"),

@@ -125,6 +125,32 @@ def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "read"), [("A&#x7f;&#x85;&#xFEFF;", "A\x7f\x85\ufeff"), ("", "rig"), (" ", "rig")]
+)
+def test_names_that_yaml_does_not_take(run, tmp_path, name: str, read: str) -> None:
+    path = write_caspr(tmp_path, bodies(link().replace("Test rig", name)), cables())
+    assert run("import", str(path), *GRADE)[0] == 0
+    assert read_study(tmp_path / "rig.yaml").name == read
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        'q_min="0 0 1 0 0 0" q_max="0 0 3 0 0 0"',
+        'q_min="1 1 3 0 0 0" q_max="-1 -1 1 0 0 0"',
+        'q_min="-1 -1" q_max="1 1"',
+    ],
+)
+def test_limits_that_span_no_region_are_told_and_left_out(run, tmp_path, limits: str) -> None:
+    path = write_caspr(tmp_path, bodies(link(joint=f"{FREE} {limits}")), cables())
+    assert run("import", str(path), *GRADE)[0] == 0
+    assert read_study(tmp_path / "rig.yaml").workspace is None
+    text = (tmp_path / "rig.yaml").read_text()
+    assert "span no region: [" in text
+    assert "serve; the file does not tell" not in text
+
+
+@pytest.mark.parametrize(
     ("options", "said"),
     [
         (("--mass", "heavy"), "--mass: 'heavy' is not a number"),
@@ -133,6 +159,7 @@ def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
         (("--safety-factor", "0"), "--safety-factor: 0 is too small (expected 1 or more)"),
         (("--pose", "1,2"), "--pose: '1,2' is no point"),
         (("--pose", "1,2,3 kg"), "--pose: '3 kg'"),
+        (("--gravity", "0,0,-1e-300"), "robot.gravity: the direction is smaller than any"),
         (("--grade", "no-such-grade"), "no-such-grade"),
         (("--cable-set", "none"), "there is no cable set 'none'"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from models import ENTERED, EXITS, HELD, NOBODY, NOBODYS_ROPE, wirex
+from models import ENTERED, EXITS, HELD, NOBODY, NOBODYS_ROPE, ROPE, wirex
 
 from designer.errors import InputError
 from designer.foreign.read import read_foreign
@@ -68,6 +68,8 @@ def test_a_point_mass(tmp_path) -> None:
         (wirex().replace('y="-2.0"', 'y="east"', 1), "<base> has y='east'"),
         (wirex().replace("<robot", "<robots").replace("</robot", "</robots"), "no robots"),
         (wirex(rope=NOBODYS_ROPE.replace("40000", "0")), "zero or less"),
+        (wirex(rope=ROPE.replace("0.002", "1e-170")), "the rope has a radius of 1e-170 m"),
+        (wirex(rope=ROPE.replace("0.002", "1e200")), "the rope has a radius of 1e+200 m"),
         ("<models><robot><geometry/></robot></models>", "the robot has no cables"),
         ("<models><robot/></models>", "<robot> has no <geometry>"),
         ("<html/>", "the file holds <html>"),

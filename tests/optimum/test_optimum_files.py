@@ -7,11 +7,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from optimum_cases import OF_POSE, OF_YARD, YARD, optimum, written
+from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, optimum, written
 
 import designer
 from designer.cli.commands import main
+from designer.errors import DesignerError
 from designer.optimum.page import headline, optimum_report, trust_lines, write_optimum
+from designer.report.blocks import Picture
 
 
 @pytest.mark.slow
@@ -50,6 +52,47 @@ def test_nothing_better_is_no_gain(tmp_path: Path) -> None:
     found = optimum(tmp_path, plan.replace("150", "40"))
     assert not found.is_better and found.holds
     assert headline(found).startswith("Nothing better was found")
+
+
+def test_the_answer_keeps_the_bounds_even_where_the_robot_as_given_does_not(
+    tmp_path: Path,
+) -> None:
+    plan = OF_POSE.replace("[6 m, 12 m]", "[6 m, 9 m]").replace("[-4 m, 6 m]", "[1 m, 2 m]")
+    found = optimum(tmp_path, plan.replace("150", "30"))
+    assert found.best.values == (1.0, 9.0)  # the given ones of 0 and 10 m pull with less
+    assert not found.is_better and found.holds
+    assert "Outside the bounds in the robot as given: shift and" in " ".join(trust_lines(found))
+    assert [found._variable(k)["at_bound"] for k in range(2)] == ["lower", "upper"]
+
+
+def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
+    found = optimum(
+        tmp_path,
+        OF_POSE.replace("150", "10"),
+        STUDY.replace("pose: [10, 6, 4]", "pose: [10, 6, 14]"),
+    )
+    assert not found.holds
+    line = next(one for one in trust_lines(found) if one.startswith("No start came to a design"))
+    count = len(found.searched.trials) - 1  # without the robot as given
+    assert f"of {count}\N{NO-BREAK SPACE}designs: the configured pose: no cables hold it." in line
+    report = optimum_report(found, found.optimised.provenance.created)
+    pictures = [b for s in report.sections for b in s.blocks if isinstance(b, Picture)]
+    assert len(pictures) == 1  # the robot: there is nothing to show of an objective
+
+
+def test_no_design_that_is_a_study_is_told_with_its_reason(tmp_path: Path) -> None:
+    plan = OF_YARD.replace("width: {fields: {robot.anchors.0.0: -1, robot.anchors.1.0: 1}, ", "")
+    plan = plan.replace("offset: [-1 m, 2 m]}", "workspace.region.z.*: [2 m, 3 m]")
+    with pytest.raises(DesignerError, match=r"^masts: variables: no design .* is not below the"):
+        optimum(tmp_path, plan, YARD)
+
+
+def test_a_study_with_aliases_is_changed_where_it_was_asked(tmp_path: Path) -> None:
+    study = STUDY.replace("[0, 0, 10]", "[0, 0, &z 10]").replace("[10, 17, 10]", "[10, 17, *z]")
+    plan = OF_POSE.replace("robot.anchors[*][2]", "robot.anchors[0][2]").replace("150", "10")
+    found = optimum(tmp_path, plan, study)
+    heights = found.optimised.study.robot.exit_points_m[:, 2].tolist()
+    assert heights == [found.best.values[1], 10.0, 10.0] != [10.0] * 3
 
 
 def test_the_package_offers_it(tmp_path: Path) -> None:

@@ -82,6 +82,8 @@ def test_the_region_stays_when_anchors_move(tmp_path: Path, region: str) -> None
         ("evaluations: 150", "evaluations: 0", "6: budget.evaluations: 0 is out of range (expect"),
         ("evaluations: 150", "time: 0 s", "6: budget.time: '0 s' is out of range (expected more"),
         ("budget", "budgets", "6: budgets: unknown field 'budgets'"),
+        ("max_tension_N", "status", "pose.sagging.status is a text (expected a number of result"),
+        ("max_tension_N", "lengths_m", "pose.sagging.lengths_m is a list (expected a number of r"),
         ("budget", "constraints: {diameter: 2 kg}\nbudget", "constraints.diameter: '2 kg' has th"),
         ("budget", "constraints: {diameter: [2 mm]}\nbudget", "diameter: a list is no limit (exp"),
         ("crane.yaml", "none.yaml", "none.yaml: there is no such file"),
@@ -91,6 +93,12 @@ def test_a_mistake_gets_one_line(tmp_path: Path, old: str, new: str, line: str) 
     assert old in OF_POSE
     found = lines(written(tmp_path, OF_POSE.replace(old, new)))
     assert any(line in one for one in found), found
+
+
+def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:
+    path = written(tmp_path, OF_YARD.replace("rope_mass", "rope_cost"), YARD)
+    expected = "(expected grades with price_per_m, or rope_mass)"
+    assert lines(path) == [f"2: objective: no grade of the study has prices {expected}"]
 
 
 def test_the_shipped_example_reads() -> None:

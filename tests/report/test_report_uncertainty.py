@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from designer.analysis.uncertainty.poses import Checked
 from designer.analysis.uncertainty.shares import Share
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
-from designer.model.uncertainty import Normal, Uniform
+from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.report.blocks import Picture, Section, Statement, Table
 from designer.report.design.uncertainty import probability, section, statement
 
@@ -43,8 +44,26 @@ def found_of(used: np.ndarray, *, is_asked: bool = True, **other: Any) -> Uncert
 
 
 def shown(found: UncertaintyAnalysis | None, *, draws: bool = True) -> Section | None:
-    source: Any = SimpleNamespace(analysis=SimpleNamespace(uncertainty=found), draws=draws)
+    analysis = SimpleNamespace(uncertainty=found, study=SimpleNamespace(uncertainty=None))
+    source: Any = SimpleNamespace(analysis=analysis, draws=draws)
     return section(source)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "why"),
+    [(None, "no rope was chosen"), ("5 mm", "the study has every input as certain")],
+)
+def test_what_was_asked_for_and_not_drawn_is_said(chosen: str | None, why: str) -> None:
+    def shown_of(asked: Uncertainty | None) -> Section | None:
+        study, selection = SimpleNamespace(uncertainty=asked), SimpleNamespace(chosen=chosen)
+        analysis = SimpleNamespace(uncertainty=None, study=study, selection=selection)
+        source: Any = SimpleNamespace(analysis=analysis, draws=True)
+        return section(source)
+
+    asked = shown_of(Uncertainty(payload=Uniform(0.0, 0.0)))
+    assert asked is not None
+    assert asked.blocks == (f"Nothing was drawn: {why}.",)
+    assert shown_of(None) is None
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +79,19 @@ def test_the_first_page_has_one_line(used: np.ndarray) -> None:
     assert statement(found_of(used)).tone == "good"
     assert statement(found_of(1.05 * used)).tone == "doubt"
     assert statement(found_of(1.2 * used)).tone == "bad"
+
+
+def test_an_estimate_of_more_than_all_is_shown_as_all(used: np.ndarray) -> None:
+    over = (replace(SHARES[0], first_order=1.014), replace(SHARES[1], first_order=-0.003))
+    found = found_of(used, shares=over)
+    assert statement(found).text.replace("\u00a0", " ").endswith("carries 100 % of the spread.")
+    whole = shown(found, draws=False)
+    assert whole is not None
+    cells = [
+        row.cells[1] for one in whole.blocks if isinstance(one, Table)
+        if one.caption.startswith("Share of each") for group in one.groups for row in group.rows
+    ]  # fmt: skip
+    assert cells == ["100\u00a0%", "0.0\u00a0%"]
 
 
 def test_what_is_not_held_is_said(used: np.ndarray) -> None:

@@ -16,7 +16,7 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
-from designer.model.region import Prism
+from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.resources import example_file
 from designer.selection.cases import CaseFound, Cases, searched_all, together
@@ -223,6 +223,21 @@ def test_a_lost_cable_alone_needs_the_lengths_before_the_loss() -> None:
     assert (sampled.longest_m > 0.9 * whole.longest_m).all()
     assert searched.longest_m == pytest.approx(whole.longest_m, rel=1e-6)
     assert searched.shortest_m == pytest.approx(whole.shortest_m, rel=1e-4)
+
+
+def test_a_list_of_points_in_the_wind_with_poses_left_out() -> None:
+    study = study_of("yard", 60)
+    assert study.workspace is not None
+    points = np.array([[15.0, 9.0, 4.0], [14.0, 8.0, 3.0], [16.0, 7.0, 2.0]])
+    workspace = replace(study.workspace, region=PointList(points), hangs_below="exclude")
+    cable = Cable(0.006, 0.13, 1.5e6, 2e4)
+    gust = LoadCase("gust", wind=Wind(12.0, 1.2, count=3))
+    (found,) = Cases(study.robot, workspace, (gust,)).sampled([[cable]], lambda _: None)
+    for one in found:
+        load = one.loaded
+        used = solve_sagging(load.robot, Poses.at(points), load.cable).largest_tension_N.max()
+        assert one.sampled.counted == 3
+        assert one.utilisation == pytest.approx(used / cable.allowable_tension_N, rel=1e-9)
 
 
 def test_poses_are_left_out_in_each_direction_of_a_case_by_itself() -> None:

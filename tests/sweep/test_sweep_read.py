@@ -58,6 +58,12 @@ def test_the_digest_is_that_of_what_counts(tmp_path: Path) -> None:
         ("count: 3", "count: 9999999", "2: vary: the grid has 3e+07 points (expected 10,000,000"),
         ("pose[2]: [4, 12, 5]", "pose[2]: [4, 5]\n  pose.2: [4]", "5: vary.pose.2: is named twice"),
         ("pose.sagging.status]", "pose.optimum.diameter_m]", "is named twice"),
+        ("count: 3", "count: 1", "a count of 1, which does not reach from one end to the other"),
+        (
+            "pose[2]: [4",
+            "pose: [[1, 2, 3]]\n  pose[2]: [4",
+            "4: vary.pose: holds pose[2], which is varied too (expected one of pose and pose[2])",
+        ),
         ("keep:", "points: 7\nkeep:", "points: a grid has no number of points of its own"),
         ("keep:", "maximise: [x]\nkeep:", "is no number that is kept"),
     ],

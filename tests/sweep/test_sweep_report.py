@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
-from designer.report.blocks import Picture, Statement
+from designer.report.blocks import Picture, Report, Statement, Table
 from designer.report.sweep import pareto_front, sweep_report
 from designer.sweep.store import read_store
+
+
+def page_of(
+    a: Sequence[float], b: Sequence[float], goals: tuple[str, str], reason: str = ""
+) -> Report[None]:
+    """Return the page on points 0, 1, 2 … with two results."""
+    kept = {
+        name: ("point", np.array(values, float), {"role": "kept", "goal": goal})
+        for name, values, goal in zip("ab", (a, b), goals, strict=True)
+    }
+    varied = {"x": ("point", np.arange(float(len(a))), {"role": "varied"})}
+    reasons = {"reason": ("point", np.array([reason] * len(a), dtype=object))}
+    found = xr.Dataset({**varied, **kept, **reasons})
+    return sweep_report(found, "few", datetime.now().astimezone())
+
+
+def best_of(page: Report[None]) -> list[tuple[object, ...]]:
+    tables = [one for one in page.section("answer").blocks if isinstance(one, Table)]
+    return [row.cells for table in tables for group in table.groups for row in group.rows]
+
+
+def test_the_best_of_a_goal_that_is_maximised_is_its_largest() -> None:
+    page = page_of([1, 2, 3], [10, 20, 30], ("minimise", "maximise"))  # all are on the front
+    assert best_of(page) == [("a", "1", "0"), ("b", "30", "2")]
+
+
+def test_results_that_no_point_has_together_and_points_that_all_fail() -> None:
+    nan = np.nan
+    page = page_of([5, 4, nan, nan], [nan, nan, 7, 6], ("minimise", "minimise"))
+    assert best_of(page) == [("a", "4", "1"), ("b", "6", "3")]
+    page = page_of([5, 4], [1, 2], ("minimise", "minimise"), "no rope holds as asked")
+    assert best_of(page) == []
 
 
 def test_the_front_is_what_nothing_beats() -> None:

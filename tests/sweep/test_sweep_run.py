@@ -19,6 +19,7 @@ import pytest
 from sweep_cases import STUDY, SWEEP, written
 
 import designer
+from designer.cli.commands import main
 from designer.errors import InputError, OutputError
 from designer.sweep import run as running
 from designer.sweep import store as stores
@@ -57,7 +58,21 @@ def test_each_point_is_what_the_study_says(tmp_path: Path) -> None:
         assert float(found["pose.optimum.diameter_m"][point]) == float(alone.sizing.diameter_m)
     above = found.isel(point=1)  # above its anchors no cable holds it
     assert np.isnan(above["pose.optimum.diameter_m"])
-    assert above["reason"].item().startswith("the configured pose: ")
+    assert above["reason"].item() == "the configured pose: no cables hold it"
+
+
+def test_a_result_that_some_points_do_not_have_takes_nothing_else_along(tmp_path: Path) -> None:
+    study = STUDY.replace("[10, 17, 10]]", "[10, 17, 10], [10, 9, 12]]")
+    sweep = """study: crane.yaml
+vary: {robot.anchors: [[[0, 0, 10], [20, 0, 10], [10, 17, 10]],
+  [[0, 0, 10], [20, 0, 10], [10, 17, 10], [10, 9, 12]]]}
+keep: [pose.optimum.diameter_m, pose.sagging.lengths_m.3]
+"""
+    swept(written(tmp_path, sweep, study), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    assert found["pose.optimum.diameter_m"].notnull().all()
+    assert found["pose.sagging.lengths_m.3"].isnull().values.tolist() == [True, False]
+    assert found.reason.values.tolist() == ["there is no pose.sagging.lengths_m.3 here", ""]
 
 
 def test_a_point_that_is_no_study_is_kept_with_its_reason(tmp_path: Path) -> None:
@@ -203,6 +218,20 @@ def test_a_store_that_cannot_be_laid_out_leaves_nothing(
     assert sorted(one.name for one in tmp_path.iterdir()) == ["crane.yaml", "masses.yaml"]
 
 
+def test_what_is_in_the_way_of_the_report_shows_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path)
+    (tmp_path / "out-report").write_text("a file")
+    command = ["designer", "sweep", str(path), "-o", str(tmp_path / "out.zarr"), "--no-plugins"]
+    monkeypatch.setattr("sys.argv", command)
+    with pytest.raises(SystemExit) as stopped:
+        main()
+    assert stopped.value.code == 2
+    assert "out-report: is a file" in capsys.readouterr().err
+    assert not (tmp_path / "out.zarr").exists()
+
+
 def test_a_cluster_that_goes_away_is_told(tmp_path: Path) -> None:
     class Gone(ThreadPoolExecutor):
         def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -243,6 +272,35 @@ def test_killed_and_gone_on_is_bit_for_bit_the_same(tmp_path: Path) -> None:
     assert counts == sorted(counts)
     subprocess.run([*program, "-o", str(target)], check=True, capture_output=True)
     assert same(tmp_path / "alone.zarr", target)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", ["SIGINT", "SIGKILL"])
+def test_no_worker_outlives_a_sweep(tmp_path: Path, number: str) -> None:
+    """A terminal sends Ctrl-C to all; a kill meets the sweep alone."""
+    path = written(tmp_path, SWEEP.replace("count: 3", "count: 3000"))
+    target = tmp_path / "out.zarr"
+    program = [sys.executable, "-m", "designer", "sweep", str(path), "--no-plugins"]
+    process = subprocess.Popen(
+        [*program, "-o", str(target), "--workers", "2"],
+        start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    deadline = time.monotonic() + 120.0
+    while time.monotonic() < deadline and not (target.exists() and read_store(target).done.any()):
+        time.sleep(0.05)
+    if number == "SIGINT":
+        os.killpg(process.pid, signal.SIGINT)
+        _, told = process.communicate(timeout=60.0)
+        assert process.returncode == 130
+        assert "points, which stay; the same command goes on" in told
+        assert "Traceback" not in told and "leaked" not in told
+    else:
+        process.kill()
+        process.communicate(timeout=60.0)  # until nobody holds its streams
+    with pytest.raises(ProcessLookupError):
+        while time.monotonic() < deadline:
+            os.killpg(process.pid, 0)
+            time.sleep(0.1)
 
 
 def test_plans_do_not_share_points(tmp_path: Path) -> None:

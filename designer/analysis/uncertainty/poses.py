@@ -36,6 +36,8 @@ _NEAR = 0.99
 """Of the largest utilisation of a draw: from where on a pose may govern it."""
 _STARTS, _STARTS_SETTLING = 24, 2
 _MOST_ROUNDS = 3
+_ELSEWHERE = 256
+"""Samples that tell whether anything is served where all poses that were kept are left out."""
 _WORSE = 1e-6
 """Relative: below what a search tells apart."""
 _CHECKED, _CHECKED_SLOWLY = 6, 2
@@ -63,6 +65,12 @@ class Asked:
         one = self.loaded
         still = one.wind is None and not one.bare[0].platform.centre_force_N.any()
         return still and not one.keeps_lengths and is_quick(one.robot)
+
+    def elsewhere(self) -> Asked:
+        """Return the same at poses from all over the region."""
+        space = self.workspace.space
+        places = np.concatenate([space.landmarks(), self.workspace.thinned(_ELSEWHERE)])
+        return replace(self, places=places)
 
     def utilisation(self, draws: Draws) -> FloatArray:
         """Return largest over allowable tension (n_draws, n_places).
@@ -117,14 +125,20 @@ class Asked:
 def largest(asked: Sequence[Asked], draws: Draws, progress: Advance = lambda _: None) -> FloatArray:
     """Return the largest utilisation of each draw (n,); infinite where a pose is not held.
 
-    Also where all poses are left out: then nothing is served. ``progress`` is called with the
-    number of draws done.
+    Also where all poses are left out, those beside the given ones too: then nothing is served.
+    ``progress`` is called with the number of draws done.
     """
     most = np.empty(len(draws))
     for start in range(0, len(draws), _CHUNK):
         some = slice(start, start + _CHUNK)
         part = draws.part(some)
-        most[some] = np.maximum.reduce([one.utilisation(part).max(axis=1) for one in asked])
+        found = np.maximum.reduce([one.utilisation(part).max(axis=1) for one in asked])
+        # Where hanging cables leave a pose out, the worst is at the border of that, which moves.
+        gone = np.flatnonzero(np.isneginf(found)).tolist()
+        if gone:
+            others = [one.elsewhere().utilisation(part.part(gone)) for one in asked]
+            found[gone] = np.maximum.reduce([each.max(axis=1) for each in others])
+        most[some] = found
         progress(len(part))
     return np.where(np.isneginf(most), np.inf, most)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from designer.analysis.analyse import Analysis
 from designer.analysis.uncertainty.shares import SCRAMBLES
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Input, Normal, Spread
@@ -42,10 +43,10 @@ _LIKELY, _UNLIKELY = 0.99, 0.5
 
 
 def section(source: Source) -> Section | None:
-    """Return the probabilities and shares; None where no input is uncertain."""
+    """Return the probabilities and shares; None where nobody asked and no modulus is borrowed."""
     found = source.analysis.uncertainty
     if found is None:
-        return None
+        return _nothing_drawn(source.analysis)
     if not found.is_asked:
         return Section.of("uncertainty", "Uncertainty", _of_modulus(found), _how(found))
     return Section.of(
@@ -60,6 +61,14 @@ def section(source: Source) -> Section | None:
         found.why_no_shares and f"No shares: {found.why_no_shares}.",
         _how(found),
     )
+
+
+def _nothing_drawn(analysis: Analysis) -> Section | None:
+    if analysis.study.uncertainty is None:
+        return None
+    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    why = "no rope was chosen" if chosen is None else "the study has every input as certain"
+    return Section.of("uncertainty", "Uncertainty", f"Nothing was drawn: {why}.")
 
 
 def statement(found: UncertaintyAnalysis) -> Statement:
@@ -108,7 +117,9 @@ def _near_an_end(share: float, unit: str = "\u00a0%") -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{fmt.fixed(100.0 * max(share, 0.0) + 0.0, 0 if share >= 0.1 else 1)}\u00a0%"
+    """Return a share; what an estimate from draws puts below none or above all is none or all."""
+    shown = min(max(share, 0.0), 1.0)
+    return f"{fmt.fixed(100.0 * shown + 0.0, 0 if shown >= 0.1 else 1)}\u00a0%"
 
 
 def _of_modulus(found: UncertaintyAnalysis) -> Statement:

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOST_LINES = 1500
+_MOST_LABELS = 12
+_LONGEST_LABEL = 18
+_TILTED = 24
+"""Letters of labels at one axis beyond which they are tilted, so that neighbours stand apart."""
 _FRONT: canvas.Style = {
     **canvas.DOTS, "markersize": 3.6, "markeredgewidth": 0.6, "color": palette.SAG,
     "markeredgecolor": palette.INK,
@@ -41,15 +45,18 @@ class Axis:
         """Return an axis of numbers, or of the texts in the order of the alphabet."""
         title = f"{name} [{unit}]" if unit else name
         if values.dtype.kind == "f":
-            return cls(title, values)
+            return cls(title, np.where(np.isfinite(values), values, np.nan))
         labels, places = np.unique([str(one) for one in values.tolist()], return_inverse=True)
         return cls(title, places.astype(float), tuple(map(str, labels)))
 
-    def tick(self, axes: Axes, which: str) -> None:
-        """Write the labels of texts at an axis, ``x`` or ``y``."""
-        if self.labels:
-            short = [label if len(label) < 18 else f"{label[:16]}…" for label in self.labels]
-            axes.set(**{f"{which}ticks": range(len(short)), f"{which}ticklabels": short})
+    def tick(self, axes: Axes) -> None:
+        """Write the labels of texts below a diagram; of many, some."""
+        if not self.labels:
+            return
+        places = range(0, len(self.labels), -(-len(self.labels) // _MOST_LABELS))
+        short = [_shortened(self.labels[k]) for k in places]
+        tilted = sum(map(len, short)) > _TILTED
+        axes.set_xticks(places, short, rotation=25 * tilted, ha="right" if tilted else "center")
 
 
 def influences(varied: Sequence[Axis], kept: Sequence[Axis], front: BoolArray) -> str:
@@ -61,7 +68,7 @@ def influences(varied: Sequence[Axis], kept: Sequence[Axis], front: BoolArray) -
             for axes, field in zip(row, varied, strict=True):
                 axes.plot(field.values, result.values, **_pale(len(front)))
                 axes.plot(field.values[front], result.values[front], **_FRONT)
-                field.tick(axes, "x")
+                field.tick(axes)
                 canvas.grid_lines(axes, "both")
             row[0].set_ylabel(_wrapped(result.title))
         for axes, field in zip(grid[-1], varied, strict=True):
@@ -87,7 +94,10 @@ def trade_offs(goals: Sequence[tuple[Axis, Axis]], front: BoolArray) -> str:
 
 
 def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
-    """Return a line a point over parallel axes, coloured by one of them, as SVG."""
+    """Return a line a point over parallel axes, coloured by one of them, as SVG.
+
+    Empty where no point has all quantities.
+    """
     import matplotlib as mpl
     from matplotlib.collections import LineCollection
 
@@ -99,6 +109,8 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
         ]
     )
     whole = np.flatnonzero(np.isfinite(shares).all(axis=1))
+    if not len(whole):
+        return ""
     shown = whole[:: -(-max(len(whole), 1) // _MOST_LINES)]
     shown = np.concatenate([shown, np.flatnonzero(front)])
     places = np.broadcast_to(np.arange(len(axes_of), dtype=float), (len(shown), len(axes_of)))
@@ -122,9 +134,13 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
             ends = (one.labels[0], one.labels[-1]) if one.labels else (f"{low:.4g}", f"{high:.4g}")
             for text, at in zip(ends, (-0.05, 1.04), strict=True):
                 ground = canvas.paper(0.5, 0.8)
-                axes.text(place, at, text[:18], ha="center", va="center", bbox=ground)
+                axes.text(place, at, _shortened(text), ha="center", va="center", bbox=ground)
         figure.colorbar(lines, ax=axes, label=_wrapped(colour.title), pad=0.02)
         return canvas.svg(figure, "parallel", "Every point as a line over all quantities")
+
+
+def _shortened(label: str) -> str:
+    return label if len(label) <= _LONGEST_LABEL else f"{label[: _LONGEST_LABEL - 2]}…"
 
 
 def _wrapped(title: str) -> str:
