@@ -122,9 +122,8 @@ def standing_of(
     found, best = entry.verification, front[0] if front else None
     worst = f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m{entry.in_case}"
     if entry.sampled.not_held or np.isinf(found.utilisation):
-        is_met = entry.sampled.not_held > 0
-        why = f"no equilibrium was found at {worst}" if is_met else "it serves no pose"
-        return "not_held", why
+        why = "in every sample a cable hangs below the platform"
+        return "not_held", f"no equilibrium was found at {worst}" if entry.sampled.not_held else why
     if not found.holds:
         least = "" if entry.sampled.is_complete else "at least "
         percent = f"{least}{100.0 * found.utilisation:.4g} %"

@@ -131,6 +131,11 @@ class GradeOutcome:
         if self.best is None and self.fails_in:
             return f"has no size that holds in the load case '{self.fails_in}'"
         if self.best is None:
+            sold = [c.size for c in self.candidates] or [self.grade.thickest]
+            if self.continuous_diameter_m < sold[0].diameter_m:
+                return f"is too heavy even in its smallest size sold, {sold[0].id}, {need}"
+            if self.continuous_diameter_m <= sold[-1].diameter_m:
+                return f"has no size that holds, {need} by the law fitted to its sizes"
             return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
         return f"{self.best.size.id} holds everywhere, {need}"
 

@@ -313,9 +313,10 @@ def _reason(
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]
     nearest = min(thin, key=lambda o: o.continuous_diameter_m / o.grade.thickest.diameter_m)
-    what = (
-        "no size holds in every load case"
-        if nearest.fails_in
-        else "the largest size sold of every grade is insufficient"
-    )
+    if nearest.fails_in:
+        what = "no size holds in every load case"
+    elif all(o.continuous_diameter_m > o.grade.thickest.diameter_m for o in thin):
+        what = "the largest size sold of every grade is insufficient"
+    else:
+        what = "no size sold of any grade holds"
     return f"{what}; the nearest is {nearest.grade.id}, which {nearest.sentence}"

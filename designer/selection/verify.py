@@ -68,7 +68,7 @@ class Sampled:
         Places where it is used most, one for each part of the space, the worst first; where it is
         not held if there is such a pose [m, rad].
     utilisation : float
-        Largest over allowable tension; inf if a pose cannot be held, or none counts.
+        Largest over allowable tension; inf if a pose cannot be held, or no sample counts.
     longest_m : array (n_cables,)
         Longest unstrained length that each cable needs [m].
     samples, counted, overloaded : int
@@ -264,9 +264,10 @@ class _Totals:
         asked = self.utilisation[row]
         order = np.argsort(-asked, kind="stable")
         worst = self.worst_m[row][order[~np.isneginf(asked[order])]]
+        serves_none = self.tried[row] > 0 and self.counted[row] == 0  # a landmark at most
         return Sampled(
             worst_m=self.not_held_m[row][None] if not_held else worst,
-            utilisation=np.inf if not_held or not len(worst) else float(asked.max()),
+            utilisation=np.inf if not_held or serves_none or not len(worst) else float(asked.max()),
             longest_m=self.longest_m[row],
             samples=int(self.tried[row]),
             counted=int(self.counted[row]),

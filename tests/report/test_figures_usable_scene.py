@@ -94,6 +94,13 @@ def test_picture_has_its_size(case: str) -> None:
     assert len(np.unique(image.reshape(-1, 3), axis=0)) > 20
 
 
+def test_a_size_that_leaves_nothing_to_those_after_it_is_drawn() -> None:
+    found = usable_of("served")
+    thickest = replace(found.sizes[-1], fraction=0.9)  # of samples; in the picture it serves all
+    odd = replace(found, sizes=(thickest, replace(found.sizes[-2], fraction=0.5), found.sizes[-3]))
+    assert usable_scene(maps_of("served"), odd) is not None
+
+
 def test_points_have_no_layers() -> None:
     assert usable_scene(maps_of("points"), usable_of("points")) is None
 

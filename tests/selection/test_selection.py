@@ -108,6 +108,17 @@ def test_grade_that_ends_too_thin_names_what_goes_on(fast_robot, workspace) -> N
     assert [outcome.grade.id for outcome in found.alternatives] == ["thick"]
 
 
+def test_ropes_that_are_all_too_heavy_are_called_so(fast_robot) -> None:
+    light = replace(fast_robot, platform=replace(fast_robot.platform, mass_kg=20.0))
+    region = Prism.over(TRIANGLE, 100.0, (-200.0, -150.0))
+    low = Workspace(region, samples=200, hangs_below="exclude")
+    found = select(light, low, Selection(None, 2.0), [rope("hawser", [40.0, 60.0])])
+    assert found.chosen is None
+    assert found.outcomes[0].continuous_diameter_m < 0.04
+    assert "no size sold of any grade holds" in (found.reason or "")
+    assert "too heavy even in its smallest size sold, 40 mm" in (found.reason or "")
+
+
 def test_no_section_is_enough_for_a_weak_rope(fast_robot) -> None:
     prism = Prism.over(TRIANGLE, 5.0, (-200.0, -40.0))
     outcome = try_grade(fast_robot, Workspace(prism, samples=1000), rope("a", [20.0]), 16.0)

@@ -28,6 +28,7 @@ from designer.study import CableGroup
 
 _MOST_SIZES = 2
 _TIGHT = 0.97
+_MOSTLY = 0.5  # share that is left out from where on the answer is one in part
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,12 +104,16 @@ def _picture(source: Source) -> Picture | None:
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     chosen = analysis.selection.chosen if analysis.selection else None
     found = analysis.groups if analysis.has_groups else None
+    against: list[str] = []
     if analysis.has_cable:
         text = _positive(analysis, chosen)
         workspace = analysis.study.workspace
         if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
-            share = fmt.percent(findings.hanging)
-            text += f" {share} of the volume is left out, as configured."
+            left_out = f"{fmt.percent(findings.hanging)} of the volume is left out, as configured"
+            if findings.hanging > _MOSTLY:
+                against.append(f"{left_out}: there a cable hangs below the platform")
+            else:
+                text += f" {left_out}."
     elif found is not None:
         text = groups_hold(found)
     elif chosen is not None and analysis.has_products:
@@ -116,7 +121,7 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     else:
         return Statement("No", _negative(analysis), "bad")
     text += "" if found is not None else _of_metal(analysis.selection, chosen)
-    against = [*_open_points(analysis), *objections(analysis)]
+    against += [*_open_points(analysis), *objections(analysis)]
     if against:
         return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
     return Statement("Yes", text, "good")

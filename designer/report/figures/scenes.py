@@ -224,6 +224,8 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
         # In the logarithm the boundary lies between two points where it does in the utilisation.
         rest[f"size {number}"] = np.log(used).ravel(order="F")
     for number, colour in enumerate(colours(layers)):  # what it serves beyond the size before it
+        if rest.n_points == 0:  # the sizes before it serve all that is drawn
+            break
         where: Style = {"scalars": f"size {number}", "value": 0.0}
         stage.add(rest.clip_scalar(**where, invert=True), colour)
         rest = rest.clip_scalar(**where, invert=False)
