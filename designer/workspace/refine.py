@@ -1,9 +1,10 @@
 """Search for the worst poses of a space, so that the answer does not depend on the samples.
 
-Extremes are sought in four steps. The border is explored, vertices, edges and faces each on their
+Extremes are sought in five steps. The border is explored, vertices, edges and faces each on their
 own. Places that nothing near them exceeds are starts, as many as there are. From each the search
-climbs by clouds of trials that shrink. Then a fresh sample, near the best and far from it, tries to
-exceed it; as long as one does, the search goes on from there.
+climbs by clouds of trials that shrink. About the highest ends it climbs again, from starts closer
+together, since another maximum may lie beside one. Then a fresh sample, near the best and far from
+it, tries to exceed it; as long as one does, the search goes on from there.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.space import Space
 from designer.study import Workspace
 
@@ -24,6 +25,9 @@ the place does not count. For several extremes at once (n, n_extremes)."""
 
 _CHUNK = 2**13
 _CELLS_A_SIDE = 12
+_APART = 0.025
+"""Between starts about the end of a climb, as a share of the space."""
+_CLOSE = 0.01
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 _MOST_ROUNDS = 8
@@ -52,6 +56,9 @@ class Effort:
     inside: int = 2048
     starts: int = 40  # Climbs of each extreme at most, beside those from the landmarks
     finalists: int = 12  # How many of them go on to the end
+    revisited: int = 3  # The highest ends, about which starts closer together are tried
+    beside: int = 4  # Such starts about each of them at most
+    tried_beside: int = 128  # Places of which they are the largest
     trials: int = 26  # Random places tried about each in a turn, beside those along the coordinates
     # Whether each landmark is a start, rather than only those that nothing near them exceeds
     from_landmarks: bool = True
@@ -64,6 +71,9 @@ LIGHT = Effort(
     inside=192,
     starts=6,
     finalists=2,
+    revisited=1,
+    beside=2,
+    tried_beside=32,
     trials=12,
     from_landmarks=False,
     tolerance=1e-7,
@@ -259,7 +269,47 @@ class _Search:
         climbs.at, climbs.extreme, climbs.value = places[row], extreme, values[row, extreme]
         climbs.radius = 0.5 / _CELLS_A_SIDE
         self._climb(climbs, 1e-3)
-        self._climb(self._finalists(climbs), effort.tolerance, slides=True)
+        climbs = self._finalists(climbs)
+        self._climb(climbs, effort.tolerance, slides=True)
+        if self._is_over:
+            return
+        beside = self._beside(climbs)
+        self._climb(beside, 1e-3)
+        both = self._finalists(np.concatenate([climbs, beside]).view(np.recarray))
+        self._climb(both, effort.tolerance, slides=True)  # those at their end stay there
+
+    def _beside(self, climbs: _Climbs) -> _Climbs:
+        """Return starts about the ends of climbs, closer together than the parts of the space.
+
+        Two maxima lie that near each other where different cables are the most loaded.
+        """
+        n, effort = len(self._size), self._effort
+        tops = climbs[self._are_close_to_best(climbs)]
+        if not len(tops):
+            return tops
+        reach = 1.5 / _CELLS_A_SIDE
+        offsets = self._rng.uniform(-reach, reach, (len(tops), effort.tried_beside, n))
+        trials = self._space.nearest(tops.at[:, None] + offsets * self._size)
+        asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], len(self._best))
+        out = []
+        for top, places, values in zip(tops, trials, asked, strict=True):
+            own = values[:, top.extreme]
+            taken = [top.at]
+            for k in np.argsort(-own, kind="stable"):
+                if np.isneginf(own[k]) or len(taken) > effort.beside:
+                    break
+                if (np.abs(np.array(taken) - places[k]) > _APART * self._size).any(axis=1).all():
+                    taken.append(places[k])
+                    out.append((places[k], top.extreme, own[k], _APART, 0.0))
+        return np.array(out, dtype=climbs.dtype).view(np.recarray)
+
+    def _are_close_to_best(self, climbs: _Climbs) -> BoolArray:
+        """Tell which are among the highest of their extreme, and hardly below the best."""
+        rivals = climbs.extreme[:, None] == climbs.extreme
+        rank = (rivals & (climbs.value[:, None] < climbs.value)).sum(axis=1)
+        best = np.array([worst.demand for worst in self._best])[climbs.extreme]
+        is_close = climbs.value > best - _CLOSE * np.abs(best)
+        return np.asarray(is_close & (rank < self._effort.revisited))
 
     def _finalists(self, climbs: _Climbs) -> _Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""

@@ -280,7 +280,12 @@ def test_no_worker_outlives_a_sweep(tmp_path: Path, number: str) -> None:
     """A terminal sends Ctrl-C to all; a kill meets the sweep alone."""
     path = written(tmp_path, SWEEP.replace("count: 3", "count: 3000"))
     target = tmp_path / "out.zarr"
-    program = [sys.executable, "-m", "designer", "sweep", str(path), "--no-plugins"]
+    # Where the tests run in the background, SIGINT is ignored from the start, also in a child.
+    start = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from designer.cli.commands import main; main()"
+    )
+    program = [sys.executable, "-c", start, "sweep", str(path), "--no-plugins"]
     process = subprocess.Popen(
         [*program, "-o", str(target), "--workers", "2"],
         start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

@@ -156,6 +156,26 @@ def test_several_extremes_are_found_in_one_search() -> None:
     assert np.array([one.place for one in found]) == pytest.approx(peaks, abs=1e-6)
 
 
+@pytest.mark.parametrize("curved", [0, 1, 2], ids=["edge", "face", "inside"])
+def test_two_maxima_that_are_almost_as_large_and_near_each_other(curved: int) -> None:
+    """As where different cables are the most loaded: the sample nearest to its top may be of the
+    lower one, and little of the higher one exceeds that."""
+    box = Space(Prism.box((0, 10), (0, 8), (0, 3)), Orientations())
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        left = rng.uniform(2.0, 8.0)
+        right = left + rng.uniform(0.3, 0.6)
+
+        def demand(x, left=left, right=right):
+            y_z = x[:, 1:]
+            below = 0.1 * np.where(np.arange(2) < curved, (y_z - [4.0, 2.0]) ** 2, y_z).sum(axis=1)
+            peaks = 0.1 * (x[:, :1] - [left, right]) ** 2 - [0.0, 2e-5]
+            return np.column_stack([5.0 - peaks.min(axis=1) - below, x[:, 1]])
+
+        starts = rng.uniform(0.0, [10.0, 8.0, 3.0], (50, 3))
+        assert refine(box, demand, starts)[0].demand == pytest.approx(5.00002, abs=1e-8)
+
+
 def test_orientations_that_are_almost_the_same_are_each_searched() -> None:
     turns = frozen_array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.01], [0.0, 0.0, 0.02]])
     space = Space(Prism.box((0, 1), (0, 1), (0, 1)), Orientations(turns))

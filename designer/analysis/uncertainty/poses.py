@@ -42,8 +42,8 @@ _WORSE = 1e-6
 """Relative: below what a search tells apart."""
 _CHECKED, _CHECKED_SLOWLY = 6, 2
 _GLANCE = Effort(
-    per_edge=8, per_face=16, inside=64, starts=2, finalists=1, trials=6, from_landmarks=False,
-    tolerance=1e-3,
+    per_edge=8, per_face=16, inside=64, starts=2, finalists=1, revisited=0, trials=6,
+    from_landmarks=False, tolerance=1e-3,
 )  # fmt: skip
 """How hard a robot is searched that is slow to solve."""
 
