@@ -135,7 +135,7 @@ def _shares(
     wrench = load_wrench_N(robot, poses, force_N)
     reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
     rows = np.where(robot.balance_rows < 3, 1.0, reach)
-    scale = float(np.abs(wrench / rows).max()) or 1.0
+    scale = float(np.abs(wrench / rows).max(initial=0.0)) or 1.0
     dof, n = robot.degrees_of_freedom, robot.n_cables
     return _Shares(
         matrix=(matrix / rows[:, None]).reshape(-1, dof, n),
@@ -160,11 +160,12 @@ def _shaped(
     solved = verdict == Verdict.SOLVED
     apart = (verdict == Verdict.OUTSIDE_HULL) & (separation > 0.0)
     wrench = separating / shares.rows / shares.scale_N
+    tension = np.where(solved[:, None], scaled * shares.scale_N, np.nan)
     return Distribution(
         verdict=verdict.reshape(shape),
-        tension_N=np.where(solved[:, None], scaled * shares.scale_N, np.nan).reshape(*shape, -1),
+        tension_N=tension.reshape(*shape, tension.shape[1]),
         optimality_residual=np.where(solved, residual, np.nan).reshape(shape),
-        separating_wrench=np.where(apart[:, None], wrench, np.nan).reshape(*shape, -1),
+        separating_wrench=np.where(apart[:, None], wrench, np.nan).reshape(*shape, wrench.shape[1]),
         separation=np.where(apart, separation, np.nan).reshape(shape),
     )
 

@@ -277,10 +277,11 @@ def statics_of(
     """
     shape = poses.shape
     weight = solution.weight_N_per_m.reshape(*shape, 1) * relative_weights
-    stiffness = axial_stiffness_N.reshape(*shape, -1)
-    free = solution.length_m.reshape(*shape, -1)
-    force_x = solution.force_x_N.reshape(*shape, -1)
-    force_z = solution.force_z_N.reshape(*shape, -1)
+    each = *shape, robot.n_cables  # no -1, which says nothing of no poses
+    stiffness = axial_stiffness_N.reshape(*shape, *(axial_stiffness_N.shape[1:] or (1,)))
+    free = solution.length_m.reshape(each)
+    force_x = solution.force_x_N.reshape(each)
+    force_z = solution.force_z_N.reshape(each)
     if run.has_wrap:
         exit_N, _ = catenary.end_tensions_N(free, force_x, force_z, weight)
         run = run.unstrained(exit_N / stiffness)
