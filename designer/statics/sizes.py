@@ -13,6 +13,7 @@ from designer.model.robot import Poses, Robot
 from designer.progress import checkpoint
 from designer.statics.geometry import upright_exit_points_m, upright_situation
 from designer.statics.inverse import solve_sagging
+from designer.statics.task import part_of
 
 _SHARE = 64
 """Sizes that one thread takes at a time; the first of them starts without a neighbour."""
@@ -99,6 +100,9 @@ def add_slowly(
 ) -> None:
     """Solve poses one cable at a time, the hard ones with more patience, and add what they meet.
 
+    Other branches, which take a hundred times as long, are tried of a robot that `meet` solves
+    quickly only where the first is overloaded: `meet` tries none either.
+
     Parameters
     ----------
     found, row
@@ -107,8 +111,10 @@ def add_slowly(
         The poses to solve; all if left out.
     """
     at = np.arange(len(poses.position_m)) if indices is None else indices
-    rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[at]
-    statics = solve_sagging(robot, Poses(poses.position_m[at], rotation), cable)
+    some = part_of(poses, at)
+    statics = solve_sagging(robot, some, cable, seeks_better=not is_quick(robot))
+    if is_quick(robot) and (statics.largest_tension_N > cable.allowable_tension_N).any():
+        statics = solve_sagging(robot, some, cable)
     found.failed[row, at] = ~statics.is_solved
     left_out = statics.hangs_below & statics.is_solved & leaves_out_hanging
     counts = statics.is_solved & ~left_out
