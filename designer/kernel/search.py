@@ -3,9 +3,11 @@
 Cables that sag are no convex matter: a cable may hang as a counterweight or be pulled tight, and
 each way can be a branch of its own. What is tried: straight cables' pulls; those with one cable
 after the other hanging; all cables with half of their pull or hanging; pulls drawn at random
-between hanging and the strength, the same in every run; and the best of these with one cable after
-the other hanging or pulled tight. An answer replaces what was there if it is better and its
-residuals say that it holds; the search proves nothing of what it does not find.
+between hanging and the strength, the same in every run; the best of these with one cable after the
+other hanging or pulled tight, and with all its pulls changed at random. An answer replaces what was
+there if it is better and its residuals say that it holds; the search proves nothing of what it does
+not find. Of 2265 random poses of random robots 13 ended more than 0.1 % thicker than the best of
+300 random starts, the worst by a half.
 
 What it does prove is that **no finite cable** holds a pose. For any wrench y whose product with
 the load is not negative, and cables as strong as they are,
@@ -51,6 +53,9 @@ from designer.kernel.table import CHORD, LEVEL, LIFT, STRAIGHT, X2, D, P
 from designer.kernel.unit_cable import PULL_FLOOR, unit_cable
 
 _RANDOM_STARTS = 6
+_RANDOM_BESIDE = 12
+_WIDTH = 20.0
+"""A pull is changed by up to this factor, or divided by it."""
 _RANDOM_SEED = 88172645463325252  # Marsaglia's own
 _HANGS = 0.5
 """Pull of a cable that is to hang, a sixth longer than its horizontal distance."""
@@ -98,7 +103,7 @@ def search_range(
         state = np.uint64(_RANDOM_SEED)
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
         first = n + 3 + _RANDOM_STARTS
-        for attempt in range(first + 2 * n):
+        for attempt in range(first + 2 * n + _RANDOM_BESIDE):
             if best == -np.inf and (is_proved or attempt >= first):
                 # Nor does the section that is asked for hold then, within its strength.
                 out.verdict[at] = NO_FINITE_CABLE if is_proved and sizing else out.verdict[at]
@@ -106,7 +111,7 @@ def search_range(
             if attempt < first:
                 s, state = _begin(pose, ask, straight_c, attempt, state)
             else:
-                s = _begin_beside(pose, ask, best, out, at, attempt - first)
+                s, state = _begin_beside(pose, ask, best, out, at, attempt - first, state)
             s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)
             is_optimal = gap <= OPTIMAL_WITHIN
             if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
@@ -156,19 +161,27 @@ def _begin(
 
 
 @kernel
-def _begin_beside(pose: Pose, ask: Ask, best: float, out: Answers, at: int, attempt: int) -> float:
-    """Set the pulls of the answer, but one cable hangs, or is pulled tight; return the guess of s.
+def _begin_beside(
+    pose: Pose, ask: Ask, best: float, out: Answers, at: int, attempt: int, state: np.uint64
+) -> tuple[float, np.uint64]:
+    """Set the pulls of the answer, but changed; return the guess of s and the next random state.
 
-    Where many cables hang, each way in which they share the load has a small neighbourhood only,
-    which starts from straight cables miss.
+    First one cable after the other hangs, or is pulled tight; then all are changed at random. Where
+    many cables hang, each way in which they share the load has a small neighbourhood only, which
+    starts from straight cables miss.
     """
     c = pose.cables
     s = (START_OF_STRAIGHT if best > 0.0 else 1.0 / START_OF_STRAIGHT) * best
     for i in range(c.shape[1]):
         c[P, i] = out.cables[at, i, FORCE_X] / (out.poses[at, WEIGHT] * np.sqrt(c[X2, i]))
-    i = attempt // 2
-    _slacken(pose, ask, s, i, _HANGS_DEEP if attempt % 2 == 0 else 0.5 * c[UNIT, i])
-    return s
+    if attempt < 2 * c.shape[1]:
+        i = attempt // 2
+        _slacken(pose, ask, s, i, _HANGS_DEEP if attempt % 2 == 0 else 0.5 * c[UNIT, i])
+        return s, state
+    for i in range(c.shape[1]):
+        state, share = _random(state)
+        _slacken(pose, ask, s, i, c[P, i] * _WIDTH ** (2.0 * share - 1.0))
+    return s, state
 
 
 @kernel
