@@ -105,5 +105,5 @@ def _parabola(column: FloatArray, covariate: FloatArray) -> FloatArray:
     """Return the parabola in a covariate that comes nearest to a column (n_rows,)."""
     known = np.isfinite(column) & np.isfinite(covariate)
     x = covariate[known]
-    powers = np.vander((covariate - x.mean()) / (x.std() + 1e-300), 3)
+    powers = np.vander((covariate - x.mean()) / (x.std() or 1.0), 3)
     return np.asarray(powers @ np.linalg.lstsq(powers[known], column[known], rcond=None)[0])

@@ -18,16 +18,17 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.space import Space
 from designer.study import Workspace
+from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
 
 Demand = Callable[[FloatArray], FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
 the place does not count. For several extremes at once (n, n_extremes)."""
 
 _CHUNK = 2**13
-_CELLS_A_SIDE = 12
 _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
+"""Relative: how far an end may stay below the best to be one of the highest."""
 _MOST_TURNS = 200
 """A demand that grows in ever smaller steps, as at the edge of what can be held, has no end."""
 _MOST_ROUNDS = 8
@@ -137,54 +138,6 @@ def worst_over_samples(
     return refine_over_branches(workspace.space, demand_with, pool.places, effort)
 
 
-class Pool:
-    """The places of largest demand of a sweep, one for each small part of the space.
-
-    Memory does not grow with the number of places.
-    """
-
-    def __init__(self, space: Space) -> None:
-        self._space = space
-        self._places, self._values = np.empty((0, space.n_coordinates)), np.empty(0)
-
-    def add(self, places: FloatArray, values: FloatArray) -> None:
-        """Take in places (n, n_coordinates) and what they ask for (n,)."""
-        places = np.concatenate([self._places, places])
-        values = np.concatenate([self._values, values])
-        kept = _best_of_cells(self._space, places, values)
-        self._places, self._values = places[kept], values[kept]
-
-    @property
-    def places(self) -> FloatArray:
-        """Return the largest of each part, those left out that do not count (n, n_coordinates)."""
-        return self._places[~np.isneginf(self._values)]
-
-
-def _best_of_cells(space: Space, places: FloatArray, values: FloatArray) -> IntArray:
-    """Return the index of the largest value in each part of the space, the largest first."""
-    x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
-    cell = ((turn * _CELLS_A_SIDE + x) * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z
-    best = np.full(cell.max(initial=0) + 1, -np.inf)
-    np.fmax.at(best, cell, values)
-    tops = np.flatnonzero(values >= best[cell])  # a few, and those of one cell that are as large
-    order = tops[np.argsort(-values[tops], kind="stable")]
-    _, first = np.unique(cell[order], return_index=True)
-    return np.asarray(order[np.sort(first)])
-
-
-def _local_maxima(space: Space, places: FloatArray, values: FloatArray, most: int) -> IntArray:
-    """Return the indices of places that none in the parts around theirs exceed, largest first."""
-    from scipy.ndimage import maximum_filter
-
-    kept = _best_of_cells(space, places, values)
-    kept = kept[~np.isneginf(values[kept])]
-    x, y, z, turn = cell = space.cells(places[kept], _CELLS_A_SIDE).T
-    highest = np.full((*[_CELLS_A_SIDE] * 3, int(turn.max(initial=0)) + 1), -np.inf)
-    highest[*cell] = values[kept]
-    is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[kept]
-    return np.asarray(kept[is_top][:most])
-
-
 _Climbs = Any
 """Records of climbs: where each is, its extreme, value, cloud's size and last step."""
 
@@ -256,7 +209,7 @@ class _Search:
             return
         effort, rows, extremes = self._effort, [], []
         for k in range(values.shape[1]):
-            some = _local_maxima(self._space, places, values[:, k], effort.starts)
+            some = local_maxima(self._space, places, values[:, k], effort.starts)
             if effort.from_landmarks and values.shape[1] == 1:
                 also = marks[np.argsort(-values[marks, k])][: effort.starts]
                 some = np.union1d(some, also[~np.isneginf(values[also, k])])
@@ -267,7 +220,7 @@ class _Search:
         kinds = [("at", "f8", n), ("extreme", "i8"), ("value", "f8"), ("radius", "f8")]
         climbs = np.zeros(len(row), dtype=[*kinds, ("step", "f8", n)]).view(np.recarray)
         climbs.at, climbs.extreme, climbs.value = places[row], extreme, values[row, extreme]
-        climbs.radius = 0.5 / _CELLS_A_SIDE
+        climbs.radius = 0.5 / CELLS_A_SIDE
         self._climb(climbs, 1e-3)
         climbs = self._finalists(climbs)
         self._climb(climbs, effort.tolerance, slides=True)
@@ -287,7 +240,7 @@ class _Search:
         tops = climbs[self._are_close_to_best(climbs)]
         if not len(tops):
             return tops
-        reach = 1.5 / _CELLS_A_SIDE
+        reach = 1.5 / CELLS_A_SIDE
         offsets = self._rng.uniform(-reach, reach, (len(tops), effort.tried_beside, n))
         trials = self._space.nearest(tops.at[:, None] + offsets * self._size)
         asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], len(self._best))

@@ -23,7 +23,8 @@ from designer.sizing.newton import Sizing, size_poses
 from designer.study import Workspace
 from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
 from designer.workspace.hanging import HangingCables, look_at
-from designer.workspace.refine import Pool, refine, refine_over_branches
+from designer.workspace.pool import Pool
+from designer.workspace.refine import refine, refine_over_branches
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.store import sweep_file
 

@@ -196,7 +196,7 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
         told = -np.inf
     compare("diameter", told, diameter_demand(robot, material, policy), count)
     if mapped.massless is not None:  # else straight cables hold no sample, and none is told of
-        compare("massless", mapped.massless.max_tension_N, massless_demand(robot), count // 10)
+        compare("massless", mapped.massless.max_tension_N, massless_demand(robot), count)
     if mapped.sagging is None:
         return faults
     cable = material.cable(1.02 * told)

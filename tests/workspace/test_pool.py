@@ -6,7 +6,7 @@ import numpy as np
 
 from designer.model.region import Prism
 from designer.model.space import Orientations, Space
-from designer.workspace.refine import _CELLS_A_SIDE, Pool
+from designer.workspace.pool import CELLS_A_SIDE, Pool
 
 
 def test_the_pool_keeps_the_first_of_the_largest_of_each_part() -> None:
@@ -16,7 +16,7 @@ def test_the_pool_keeps_the_first_of_the_largest_of_each_part() -> None:
     values = np.round(rng.random(len(places)), 1)  # with ties
     values[rng.random(len(places)) < 0.3] = -np.inf  # do not count
     largest: dict[tuple[int, ...], int] = {}
-    for at, cell in enumerate(map(tuple, space.cells(places, _CELLS_A_SIDE).tolist())):
+    for at, cell in enumerate(map(tuple, space.cells(places, CELLS_A_SIDE).tolist())):
         if values[at] > values[largest.setdefault(cell, at)]:
             largest[cell] = at
     expected = sorted(at for at in largest.values() if values[at] > -np.inf)

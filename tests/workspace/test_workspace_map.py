@@ -13,7 +13,8 @@ from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
 from designer.sizing.newton import size_poses
 from designer.study import Workspace
-from designer.workspace.refine import Pool, Worst, refine
+from designer.workspace.pool import Pool
+from designer.workspace.refine import Worst, refine
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 

@@ -23,7 +23,8 @@ from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
-from designer.workspace.refine import Demand, Pool, refine_over_branches
+from designer.workspace.pool import Pool
+from designer.workspace.refine import Demand, refine_over_branches
 
 _NUDGE = 1e-3
 
