@@ -82,7 +82,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
 
 def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
     census = workspace.census
-    if not workspace.is_feasible and census.excluded == census.samples:
+    if census.is_all_left_out:
         yield "worst pose", bad("none: every pose is left out")
     elif not workspace.is_feasible:
         part = "all" if census.statuses["solved"] else "any"
@@ -95,6 +95,8 @@ def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
             if turn_deg.any():
                 text += f", turned by ({', '.join(f'{x:.3g}' for x in turn_deg)})°"
             yield label, text
+    if workspace.massless is None and not census.is_all_left_out:
+        yield "  massless", "none: straight cables do not hold every pose"
     for name, count in census.statuses.items():
         if count > 0:
             text = f"{count} of {census.samples} ({census.fraction(name):.1%})"

@@ -100,14 +100,31 @@ def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:
     return np.where(counts[:, None], both, -np.inf)
 
 
-def massless_demand(robot: Robot) -> Demand:
-    """Largest tension of straight weightless cables [N]; does not count where they would push."""
+def massless_demand(
+    robot: Robot, material: Material, hangs_below: HangsBelow, *, seeks_better: bool = True
+) -> Demand:
+    """Largest tension of straight weightless cables [N]; inf where they do not hold the platform.
+
+    Of the poses that count with sagging cables, so that the two can be compared. Toward a pose that
+    straight cables do not hold the tension can grow without bound, so that among those that they
+    do hold there need be no largest.
+    """
 
     def demand(places: FloatArray) -> FloatArray:
-        tension = solve_massless(robot, Poses.at(places)).largest_tension_N
-        return np.where(np.isnan(tension), -np.inf, tension)
+        if hangs_below == "include":
+            tension = solve_massless(robot, Poses.at(places)).largest_tension_N
+            return np.where(np.isnan(tension), np.inf, tension)
+        sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+        return massless_demand_of(sizing, hangs_below)
 
     return demand
+
+
+def massless_demand_of(sizing: Sizing, hangs_below: HangsBelow) -> FloatArray:
+    """Return the largest tension of straight cables (...) as demands; see `massless_demand`."""
+    tension = sizing.massless_tension_N
+    asked = np.where(np.isnan(tension), np.inf, tension)
+    return np.where(is_left_out(sizing.statics, hangs_below), -np.inf, asked)
 
 
 def demand_of(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> FloatArray:

@@ -80,6 +80,11 @@ class Census:
     excluded: int
     hanging: HangingCables = field(default_factory=HangingCables)
 
+    @property
+    def is_all_left_out(self) -> bool:
+        """Whether no sample counts."""
+        return self.excluded == self.samples
+
     def fraction(self, status: str) -> float:
         """Return the share of the samples, hence of the volume, with this verdict."""
         return self.statuses[status] / self.samples
@@ -102,8 +107,8 @@ class WorkspaceMap:
     sampled : Extreme or None
         The worst solved sample; None if no sample is solved.
     massless : Extreme or None
-        The worst pose of the region with straight weightless cables; None where they hold no
-        sample.
+        The worst pose of the region with straight weightless cables; None where they do not hold
+        every pose that counts, because their tension can then grow without bound.
     infeasible_example_m : array (3,) or None
         A position without a finite cable, where there is one [m].
     limit_ratio : float

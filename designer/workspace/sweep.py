@@ -21,10 +21,16 @@ from designer.progress import Advance
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import Sizing, size_poses
 from designer.study import Workspace
-from designer.workspace.demand import diameter_demand, is_left_out, massless_demand, size_worst
+from designer.workspace.demand import (
+    diameter_demand,
+    is_left_out,
+    massless_demand,
+    massless_demand_of,
+    size_worst,
+)
 from designer.workspace.hanging import HangingCables, look_at
 from designer.workspace.pool import Pool
-from designer.workspace.refine import refine, refine_over_branches
+from designer.workspace.refine import refine_over_branches
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 from designer.workspace.store import sweep_file
 
@@ -72,6 +78,7 @@ class _Gathered:
         self.hanging = HangingCables()
         self.starts = Pool(workspace.space)
         self.massless_starts = Pool(workspace.space)
+        self.straight_hold = True
         self.sampled: Extreme | None = None
         self.infeasible_example: FloatArray | None = None
 
@@ -84,7 +91,8 @@ class _Gathered:
         counts = statics.is_solved & ~left_out
         self.hanging = look_at(self.hanging, some, statics, counts, self._workspace.floor_m)
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
-        massless = np.where(np.isnan(sizing.massless_tension_N), -np.inf, sizing.massless_tension_N)
+        massless = massless_demand_of(sizing, self._workspace.hangs_below)
+        self.straight_hold &= not np.isposinf(massless).any()
         self.starts.add(some, diameter)
         self.massless_starts.add(some, massless)
         at = int(np.argmax(diameter))
@@ -119,10 +127,12 @@ def _summarise(
         else:
             example = worst.place
     starts = gathered.massless_starts.places
-    if len(starts):
-        (worst,) = refine(workspace.space, massless_demand(robot), starts)
-        diameter = material.diameter_for_tension_m(worst.demand)
-        massless = Extreme.at(worst.place, diameter, worst.demand)
+    if gathered.straight_hold and len(starts):
+        demand_with = partial(massless_demand, robot, material, workspace.hangs_below)
+        (worst,) = refine_over_branches(workspace.space, demand_with, starts)
+        if np.isfinite(worst.demand):
+            diameter = material.diameter_for_tension_m(worst.demand)
+            massless = Extreme.at(worst.place, diameter, worst.demand)
     return WorkspaceMap(
         census=gathered.census(),
         is_feasible=sagging is not None,

@@ -195,8 +195,10 @@ def check(study: Study, workspace: Workspace, count: int, rng: np.random.Generat
     if mapped.sagging is None and mapped.infeasible_example_m is None:
         told = -np.inf
     compare("diameter", told, diameter_demand(robot, material, policy), count)
-    if mapped.massless is not None:  # else straight cables hold no sample, and none is told of
-        compare("massless", mapped.massless.max_tension_N, massless_demand(robot), count)
+    straight = mapped.massless.max_tension_N if mapped.massless else np.inf
+    if mapped.census.excluded == mapped.census.samples:
+        straight = -np.inf
+    compare("massless", straight, massless_demand(robot, material, policy), count)
     if mapped.sagging is None:
         return faults
     cable = material.cable(1.02 * told)

@@ -168,6 +168,14 @@ class TestServed:
         assert f"no cable serves {share} %" in found
         assert not any(text.startswith("serves all") for text in found)
 
+    def test_where_neither_serves_all(self) -> None:
+        served = replace(maps_of("partly").served, massless_needed_m=np.nan)
+        nothing = np.empty(0)
+        for one in (served, replace(served, diameter_m=nothing, share=nothing)):
+            svg = served_chart(one)
+            check(svg)
+            assert "massless" in texts(svg)
+
     def test_all_left_out(self) -> None:
         assert "every pose is left out" in texts(served_chart(maps_of("all_left_out").served))
 

@@ -187,6 +187,11 @@ def _extremes(region: Region, found: WorkspaceMap) -> Table:
 
 
 def _weight_effect(found: WorkspaceMap) -> str:
+    if found.massless is None and not found.census.is_all_left_out:
+        return (
+            "Straight weightless cables do not hold every pose; toward such a pose their tension "
+            "can grow without bound, so that they have no worst pose to compare with."
+        )
     if found.sagging is None or found.massless is None:
         return ""
     diameter = fmt.factor(found.sagging.diameter_m / found.massless.diameter_m)

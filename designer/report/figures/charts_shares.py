@@ -47,13 +47,15 @@ def served_chart(served: Served) -> str:
 
 def _served_range(served: Served) -> tuple[float, float]:
     """Horizontal limits [mm]; the last few poses near the boundary may need any diameter."""
-    both = np.concatenate([served.diameter_m, served.massless_diameter_m])
+    sag = served.needed_m, served.diameter_m, served.share
+    straight = served.massless_needed_m, served.massless_diameter_m, served.massless_share
+    both = np.concatenate([sag[1], straight[1]])
     if len(both) == 0:
         return 0.0, 1.0
     most = [served.needed_m, served.massless_needed_m]
-    if not np.isfinite(served.needed_m) and len(served.diameter_m) > 0:
-        at = np.searchsorted(served.share, 0.97 * served.share[-1])
-        most.append(1.4 * float(served.diameter_m[at]))
+    for k, (needed_m, diameter_m, share) in enumerate((sag, straight)):
+        if not np.isfinite(needed_m) and len(diameter_m) > 0:
+            most[k] = 1.4 * float(diameter_m[np.searchsorted(share, 0.97 * share[-1])])
     low, high = 1e3 * float(both.min()), 1e3 * float(np.nanmax(most))
     room = max(0.06 * (high - low), 0.01 * high)
     return max(low - 3.0 * room, 0.0), high + room
