@@ -105,7 +105,8 @@ def prove(
     enough : float
         Utilisation up to which the cable holds; just above one where it is sized for that.
     progress : callable
-        Called with how far it is: the share of the volume that is proved, or that of the time.
+        Called with how much of the budget is spent; the rest is the most that is still to come. The
+        share of the volume says nothing of that, since the last of it may take the most.
     """
     reason = why_not(robot, space.region)
     if reason:
@@ -118,7 +119,8 @@ def prove(
             break
         search.step(int(min(budget.boxes - search.boxes, search.batch)))
         before, now = now, time.monotonic()
-        progress(min(max(search.fraction, (now - began) / budget.seconds), 1.0))
+        spent = max((now - began) / budget.seconds, search.boxes / budget.boxes)
+        progress(min(spent, 1.0))
         if now - before > _LONG * budget.seconds:
             search.batch = max(search.batch // 2, _FEWEST)
     return search.result(now - began)

@@ -148,11 +148,12 @@ def test_a_list_of_points_is_proved_point_by_point(fast_robot: Robot, steel: Mat
 
 
 def test_what_the_budget_leaves_is_said(fast_robot: Robot, steel: Material) -> None:
-    cable = steel.cable(PAPER_M)
-    proof = prove(
-        fast_robot, cable, _paper_space(fast_robot), 1.0, Budget(boxes=2000), enough=1.001
-    )
+    cable, space, budget = steel.cable(PAPER_M), _paper_space(fast_robot), Budget(boxes=2000)
+    told: list[float] = []
+    proof = prove(fast_robot, cable, space, 1.0, budget, enough=1.001, progress=told.append)
     assert proof.status == "partial"
+    assert told == sorted(told)
+    assert told[-1] == 1.0 > told[0]  # of the budget, of which the last of the volume takes most
     assert 0.0 < proof.fraction < 1.0
     assert proof.boxes == 2000
 
