@@ -75,6 +75,13 @@ class Node:
             return self.content[key]
         return None
 
+    def at(self, keys: Sequence[Key]) -> Node | None:
+        """Return the value at a path, None where there is none."""
+        node: Node | None = self
+        for key in keys:
+            node = None if node is None else node.child(key)
+        return node
+
     def with_value(self, keys: Sequence[Key], value: Node) -> Node:
         """Return the same with another value at a path, in the line of what it replaces.
 

@@ -265,6 +265,18 @@ def test_relative_paths_go_along(file: Path, no_plugins: Plugins, tmp_path: Path
     assert session.study.catalogues[0].exists()
 
 
+@pytest.mark.parametrize("empty", ["document:", "measurements:", "document: {logo: }"])
+def test_a_field_that_is_empty_stays_so_elsewhere(
+    file: Path, no_plugins: Plugins, tmp_path: Path, empty: str
+) -> None:
+    file.write_text(f"{file.read_text(encoding='utf-8')}{empty}\n", encoding="utf-8")
+    session = Session.open(file, no_plugins)
+    text = session.text
+    (tmp_path / "later").mkdir()
+    session.save_as(tmp_path / "later" / "crane.yaml")
+    assert (session.faults, session.text) == ((), text)
+
+
 def test_a_file_that_changes_or_vanishes(file: Path, no_plugins: Plugins) -> None:
     session = Session.open(file, no_plugins)
     session.edit(MASS, "250 kg")

@@ -19,11 +19,10 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
     count = len(files.content) if files is not None and isinstance(files.content, tuple) else 0
     places: list[tuple[Key, ...]] = [("catalogues", k) for k in range(count)]
     for keys in [*places, ("measurements", "file"), ("document", "logo")]:
-        node = document.root
-        for key in keys:
-            node = node.child(key) or node
-        if isinstance(node.content, str) and not Path(node.content).is_absolute():
-            to = _relative(start / node.content, folder)
+        node = document.root.at(keys)
+        name = None if node is None else node.data()
+        if isinstance(name, str) and not Path(name).is_absolute():
+            to = _relative(start / name, folder)
             text = edits.with_value(text, keys, edits.scalar(to))
     return with_schema_moved(text, start, lambda path: _relative(path, folder))
 
