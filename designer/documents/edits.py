@@ -65,9 +65,10 @@ def without(text: str, keys: Sequence[Key]) -> str:
     if parent.flow_style and at > 0:
         return text[: _end(parent.value[at - 1][1])] + text[end:]
     start = name.start_mark.index
-    if parent.flow_style or (at == 0 and _is_inline(text, start)):
+    line = text.rfind("\n", 0, start) + 1
+    if parent.flow_style or (at == 0 and text[line:start].strip()):  # as after "- "
         return text[:start] + text[parent.value[at + 1][0].start_mark.index :]
-    return text[: text.rfind("\n", 0, start) + 1] + text[_line_end(text, end) + 1 :]
+    return text[:line] + text[_line_end(text, end) + 1 :]
 
 
 def without_aliases(text: str) -> str:
@@ -179,11 +180,6 @@ def _with_field(text: str, node: _Node, name: str, value: str) -> str:
 def _line_end(text: str, at: int) -> int:
     found = text.find("\n", at)
     return len(text) if found < 0 else found
-
-
-def _is_inline(text: str, start: int) -> bool:
-    """Tell whether something beside blanks stands before this place in its line."""
-    return bool(text[text.rfind("\n", 0, start) + 1 : start].strip())
 
 
 def field_count(text: str, keys: Sequence[Key]) -> int:

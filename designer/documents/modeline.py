@@ -22,9 +22,10 @@ def with_schema_moved(text: str, start: Path, moved: Callable[[Path], str]) -> s
 
     ``start`` is the folder that the study was in; ``moved`` gives a path as it is from the other.
     """
-    return _MODELINE.sub(lambda found: found[1] + _moved(found[2], start, moved), text)
 
+    def renamed(found: re.Match[str]) -> str:
+        head, name = found.groups()
+        is_relative = "://" not in name and not Path(name).is_absolute()
+        return head + (moved(start / name) if is_relative else name)
 
-def _moved(name: str, start: Path, moved: Callable[[Path], str]) -> str:
-    is_relative = "://" not in name and not Path(name).is_absolute()
-    return moved(start / name) if is_relative else name
+    return _MODELINE.sub(renamed, text)
