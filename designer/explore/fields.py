@@ -12,12 +12,12 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 
-from designer.documents.bounds import parameter_bound
 from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Key, Node, path_text
 from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
-from designer.io.config.effects import read_effects
+from designer.io.config.effects import field_of, read_effects
+from designer.io.config.entries import field_node
 from designer.io.config.meanings import GROUPS, MEANINGS
 from designer.io.config.orientation import FORMS
 from designer.io.config.schema import StudySection
@@ -197,7 +197,7 @@ def _walk(section: BaseModel, node: Node | None, place: tuple[Key, ...]) -> Iter
     for name, kind in _kinds(type(section)).items():
         if name == "quaternion" or (name == FORMS[0] and turned):
             continue  # its parts do not vary one by one; another form is given
-        below = _below(node, name, section)
+        below = field_node(node, name, section)
         yield from _slots(getattr(section, name), below, (*place, name), kind)
 
 
@@ -212,17 +212,6 @@ def _kinds(section: type[BaseModel]) -> Mapping[str, _Kind]:
         reader, alone = (_reader_in(kind, into_lists=into) for into in (True, False))
         found[name] = _Kind(reader, alone, words, NoneType in get_args(plain))
     return found
-
-
-def _below(node: Node | None, name: str, section: BaseModel) -> Node | None:
-    """Return a field's node; a list in place of a section is the section's first field."""
-    if node is None:
-        return None
-    is_shorthand = isinstance(node.content, tuple)
-    is_first = name == next(iter(type(section).model_fields))
-    found = node if is_shorthand and is_first else node.child(name)
-    is_empty = found is None or (isinstance(found.content, str) and found.data() is None)
-    return None if is_empty else found
 
 
 def _slots(value: Any, node: Node | None, place: tuple[Key, ...], kind: _Kind) -> Iterator[_Slot]:
@@ -259,17 +248,12 @@ def _effect_slots(
     section: StudySection, root: Node, effects: Mapping[str, Effect]
 ) -> Iterator[_Slot]:
     n_cables = len(section.robot.anchors)
-    node = root.child("effects")
     for place, declared in read_effects(section.effects, n_cables, effects).effects:
         for one in effects[declared.id].parameters_for(n_cables):
-            bound = parameter_bound(one.dimension)
-            least = bound.least if one.at_least is None else one.at_least
-            reader = QuantityField(one.dimension, one.above, least, bound.most, bound.reason)
-            found = node
-            for key in (*place[1:], one.name):
-                found = None if found is None else found.child(key)
-            given = None if found is None else found.as_written()
-            yield _Slot((*place, one.name), declared.parameters[one.name], given, reader)
+            at = (*place, one.name)
+            node = root.at(at)
+            given = None if node is None else node.as_written()
+            yield _Slot(at, declared.parameters[one.name], given, field_of(one))
 
 
 @lru_cache(maxsize=4096)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import chain
 
 from pydantic import ValidationError
@@ -124,16 +123,17 @@ def _tied(
     ties, values = [], []
     for field, factor in factors.items():
         for keys in _spread(path_keys(field), study, field):
-            written = _written(study, keys)
+            written = _quantity(study.at(keys))
             if written is None and is_offset:
                 problem = f"{field}: the study has no number there"
                 raise _WrongError(problem, "bounds, or a field that the study gives")
-            tie = _tie(keys, factor, unit, written, is_offset=is_offset)
-            ties.append(tie)
+            ties.append(_tie(keys, factor, unit, written, is_offset=is_offset))
             if is_offset:
                 values.append(0.0)
             elif written is not None:
-                values.append(_in_unit(written, unit) / factor)
+                value, own = written
+                in_unit = value if own == unit else _SI(value, own) / _SI(1.0, unit)
+                values.append(in_unit / factor)
     same = len(values) == len(ties) and max(values) - min(values) <= 1e-9 * (high - low)
     given = float(f"{values[0]:.10g}") if same else None
     return Variable(name, tuple(ties), low, high, unit, given, is_offset)
@@ -144,21 +144,11 @@ def _spread(keys: tuple[Key, ...], study: Node, field: str) -> list[tuple[Key, .
     if _EVERY not in keys:
         return [keys]
     at = keys.index(_EVERY)
-    node: Node | None = study
-    for key in keys[:at]:
-        node = node.child(key) if node else None
+    node = study.at(keys[:at])
     if node is None or not isinstance(node.content, tuple):
         raise _WrongError(f"{field}: the study has no list there", "the path of a list before '*'")
     each = ((*keys[:at], k, *keys[at + 1 :]) for k in range(len(node.content)))
     return list(chain.from_iterable(_spread(one, study, field) for one in each))
-
-
-def _written(study: Node, keys: Sequence[Key]) -> tuple[float, str] | None:
-    """Return number and unit of a field as the study has it; None where it has none."""
-    node: Node | None = study
-    for key in keys:
-        node = node.child(key) if node else None
-    return _quantity(node)
 
 
 def _tie(
@@ -176,10 +166,6 @@ def _tie(
     if own not in (unit, ""):
         return Tie(keys, _SI(origin, own), factor * scale, "")
     return Tie(keys, origin, factor * scale, own)
-
-
-def _in_unit(written: tuple[float, str], unit: str) -> float:
-    return written[0] if written[1] == unit else _SI(*written) / _SI(1.0, unit)
 
 
 def _SI(value: float, unit: str) -> float:

@@ -11,6 +11,7 @@ from designer.documents.bounds import parameter_bound
 from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Data, Key, Node, path_text, printable
 from designer.effects.effect import Effect, Parameter
+from designer.io.config.entries import as_given
 from designer.spelling import did_you_mean, nearest_name
 from designer.study import DeclaredEffect, Entry
 from designer.units import describe, format_SI
@@ -76,14 +77,7 @@ def effect_entries(
         for parameter in known[declared.id].parameters_for(n_cables):
             at = (*place, parameter.name)
             shown = format_SI(declared.parameters[parameter.name], parameter.dimension)
-            yield Entry(path_text(at), _written(node, at), shown)
-
-
-def _written(node: Node, place: Place) -> str:
-    found: Node | None = node
-    for key in place[1:]:
-        found = None if found is None else found.child(key)
-    return "default" if found is None else found.as_written()
+            yield Entry(path_text(at), as_given(node.at(at[1:])), shown)
 
 
 def _read_all(found: Found, effect: Effect, given: Data) -> None:
@@ -139,10 +133,14 @@ def _value(found: Found, place: Place, given: Mapping[str, Data], parameter: Par
         if not parameter.is_optional:
             found.refuse(place, "is missing", parameter.dimension.expected)
         return parameter.neutral
+    return found.read(place, field_of(parameter), given[parameter.name]) or 0.0
+
+
+def field_of(parameter: Parameter) -> QuantityField:
+    """Return how a parameter is read: within its own limits, and those of its unit."""
     bound = parameter_bound(parameter.dimension)
     least = bound.least if parameter.at_least is None else parameter.at_least
-    quantity = QuantityField(parameter.dimension, parameter.above, least, bound.most, bound.reason)
-    return found.read(place, quantity, given[parameter.name]) or 0.0
+    return QuantityField(parameter.dimension, parameter.above, least, bound.most, bound.reason)
 
 
 def _listed(keys: list[str]) -> str:

@@ -26,7 +26,7 @@ def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = 
     entries: list[Entry] = []
     for name, info in type(section).model_fields.items():
         value = getattr(section, name)
-        below = None if node is None else _field(node, name, section)
+        below = field_node(node, name, section)
         if isinstance(value, BaseModel):
             entries += all_entries(value, below, (*place, name))
         else:
@@ -36,16 +36,23 @@ def all_entries(section: BaseModel, node: Node | None, place: tuple[Key, ...] = 
     return entries
 
 
-def _given(node: Node | None) -> str:
+def as_given(node: Node | None) -> str:
+    """Return a value as the file has it, ``default`` where it has none."""
     return DEFAULT if node is None else node.as_written()
 
 
-def _field(node: Node, name: str, section: BaseModel) -> Node | None:
-    """Return the field's node; a list in place of a section gives the section's first field."""
-    is_shorthand = not isinstance(node.content, dict)
+def field_node(node: Node | None, name: str, section: BaseModel) -> Node | None:
+    """Return the node of a section's field, None where the file gives none.
+
+    A list in place of a section gives the section's first field.
+    """
+    if node is None:
+        return None
+    is_shorthand = isinstance(node.content, tuple)
     is_first = name == next(iter(type(section).model_fields))
     found = node if is_shorthand and is_first else node.child(name)
-    return None if found is None or found.data() is None else found
+    is_empty = found is None or (isinstance(found.content, str) and found.data() is None)
+    return None if is_empty else found
 
 
 def _entries(
@@ -57,7 +64,7 @@ def _entries(
         for index, item in enumerate(value):
             yield Entry(
                 path_text((*place, index)),
-                _given(node.child(index)),
+                as_given(node.child(index)),
                 _in_words(item, node.child(index)),
             )
     elif isinstance(value, dict) and value:
@@ -65,7 +72,7 @@ def _entries(
             if isinstance(item, tuple):
                 yield from _entries(item, node.child(name), (*place, name), NUMBER)
             elif isinstance(item, ColumnSection):
-                yield Entry(path_text((*place, name)), _given(node.child(name)), item.meaning)
+                yield Entry(path_text((*place, name)), as_given(node.child(name)), item.meaning)
     elif not (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
         yield Entry(path_text(place), node.as_written(), _in_SI(value, dimension))
     elif len(value) > _MOST_ROWS:

@@ -10,10 +10,10 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from designer.documents.bounds import parameter_bound
-from designer.documents.fields import JsonSchema, QuantityField, WholeNumber
-from designer.effects.effect import Effect, Parameter
+from designer.documents.fields import JsonSchema, WholeNumber
+from designer.effects.effect import Effect
 from designer.io.config.columns import ColumnSection
+from designer.io.config.effects import field_of
 from designer.io.config.loads import MOST_CABLES
 from designer.io.config.meanings import GROUPS, MEANINGS, WORDS
 from designer.io.config.orientation import OrientationSection
@@ -98,9 +98,9 @@ def _effect(effect: Effect) -> JsonSchema:
     one: JsonSchema = {
         "type": "object",
         "minProperties": 1,
-        "properties": {parameter.name: _parameter(parameter) for parameter in single},
+        "properties": {parameter.name: field_of(parameter).json_schema() for parameter in single},
         "patternProperties": {
-            f"^{parameter.name.format(cable='[1-9][0-9]?')}$": _parameter(parameter)
+            f"^{parameter.name.format(cable='[1-9][0-9]?')}$": field_of(parameter).json_schema()
             for parameter in each_cable
         },
         "required": [parameter.name for parameter in single if not parameter.is_optional],
@@ -113,13 +113,6 @@ def _effect(effect: Effect) -> JsonSchema:
     one["properties"]["cable"] = WholeNumber(1, MOST_CABLES).json_schema()
     one["required"].append("cable")
     return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], **words}
-
-
-def _parameter(parameter: Parameter) -> JsonSchema:
-    bound = parameter_bound(parameter.dimension)
-    least = bound.least if parameter.at_least is None else parameter.at_least
-    reader = QuantityField(parameter.dimension, parameter.above, least, bound.most)
-    return reader.json_schema()
 
 
 def _explain(node: JsonSchema, path: str) -> None:
