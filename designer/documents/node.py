@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from designer.units import split_quantity
+
 Data = dict[str, "Data"] | list["Data"] | str | int | float | bool | None
 """What a document holds, in plain Python."""
 
@@ -57,6 +59,10 @@ class Node:
         if _WHOLE.fullmatch(self.content):
             return int(self.content)
         return float(self.content) if _DECIMAL.fullmatch(self.content) else self.content
+
+    def quantity(self) -> tuple[float, str] | None:
+        """Return number and unit of a text; None for what is none."""
+        return split_quantity(self.content) if isinstance(self.content, str) else None
 
     def as_written(self) -> str:
         """Return the value on one line, numbers and units as the file has them."""

@@ -87,7 +87,8 @@ def _verified(
     best: Optimum | None = None
     rejected: list[Trial] = []
     for trial in _candidates(plan, searched):
-        if best is not None and best.holds and _is_no_better(trial, best, sign):
+        verified = best.after if best is not None and best.holds else None
+        if verified is not None and sign * trial.value >= sign * verified:
             break
         found = _analysed(plan, catalogue, searched, given, trial, reporter)
         if best is None or _beats(found, best, sign):
@@ -97,10 +98,6 @@ def _verified(
             rejected.append(trial)
     assert best is not None
     return replace(best, rejected=tuple(rejected), profiles=_profiles(examiner, best.best))
-
-
-def _is_no_better(trial: Trial, best: Optimum, sign: int) -> bool:
-    return best.after is not None and sign * trial.value >= sign * best.after
 
 
 def _beats(a: Optimum, b: Optimum, sign: int) -> bool:

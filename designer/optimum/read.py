@@ -57,7 +57,7 @@ class OptimiseSection(Section):
     region: Literal["stays", "follows"] = "stays"
 
 
-def read_optimisation(path: Path, with_plugins: bool = True) -> Plan:
+def read_optimisation(path: Path, with_plugins: bool) -> Plan:
     """Return the plan of an optimisation.
 
     Raises
@@ -85,7 +85,7 @@ def read_optimisation(path: Path, with_plugins: bool = True) -> Plan:
     if section.region == "follows":
         fixed = text
     objective = _objective(document, section.objective, faults)
-    limits = _limits(document, section.constraints, study, faults)
+    limits = _limits(document, section.constraints, faults)
     measures = [one for one in (objective, *(limit.measure for limit in limits)) if one]
     kept = tuple(one.path for one in measures)
     base = Base(document_of(fixed.encode(), str(study_path)), kept, with_plugins)
@@ -142,9 +142,7 @@ def _objective(document: Document, given: Any, faults: list[Fault]) -> Measure |
     return None
 
 
-def _limits(
-    document: Document, given: Mapping[str, Any], study: Study, faults: list[Fault]
-) -> tuple[Limit, ...]:
+def _limits(document: Document, given: Mapping[str, Any], faults: list[Fault]) -> tuple[Limit, ...]:
     found = []
     for name, one in given.items():
         place: tuple[Key, ...] = ("constraints", name)

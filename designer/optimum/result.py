@@ -7,16 +7,12 @@ import io
 import math
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, Line
 from designer.analysis.result_json import Json
-from designer.arrays import FloatArray
-from designer.documents.plain import json_text
+from designer.documents.plain import finite, json_text
 from designer.optimum.plan import Limit, Plan, Values
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial
@@ -181,7 +177,7 @@ class Optimum:
                     "best": None if trial is None else finite(trial.value),
                     "values": None if trial is None else list(trial.values),
                     "same_place": self.agrees(trial),
-                    "spread": None if k >= len(found.spreads) else _numbers(found.spreads[k]),
+                    "spread": None if k >= len(found.spreads) else finite(found.spreads[k]),
                 }
                 for k, trial in enumerate(self.starts)
             ],
@@ -248,12 +244,3 @@ def is_near(plan: Plan, a: Values, b: Values, share: float) -> bool:
     """Tell whether two designs are no further apart than a share of each variable's range."""
     each = zip(plan.variables, a, b, strict=True)
     return all(abs(one.share(x) - one.share(y)) <= share for one, x, y in each)
-
-
-def finite(value: float) -> float | None:
-    """Return a number; None for what is none."""
-    return float(value) if math.isfinite(value) else None
-
-
-def _numbers(values: FloatArray) -> list[Any]:
-    return [finite(float(x)) for x in np.asarray(values)]

@@ -117,10 +117,12 @@ class _Run:
 
     def _evolve(self, seed: int) -> None:
         from scipy.optimize import differential_evolution
+        from scipy.stats import qmc
 
         n = len(self._plan.variables)
         size = min(max(_EACH * n, _LEAST), _MOST, max(self._left // 3, 5))
         rng, spread = np.random.default_rng(seed), np.full(n, np.nan)
+        first = qmc.LatinHypercube(n, rng=rng).random(size)  # one design in each part of a range
 
         def generation(intermediate_result: object) -> None:
             spread[:] = np.std(getattr(intermediate_result, "population"), axis=0)  # noqa: B009
@@ -131,7 +133,7 @@ class _Run:
             differential_evolution(
                 self._rate_all,
                 [(0.0, 1.0)] * n,
-                init=_latin(rng, size, n),
+                init=first,
                 x0=None if given is None else self._shares(given),
                 maxiter=max(self._left, 1),
                 tol=_SETTLED,
@@ -212,11 +214,3 @@ class _Run:
         if trial.holds:
             return self._plan.objective.sign * trial.value / self._unit
         return _FAR * (1.0 + trial.violation)
-
-
-def _latin(rng: np.random.Generator, size: int, n: int) -> FloatArray:
-    """Return a first population (size, n): each variable has one design in each of its parts."""
-    from scipy.stats import qmc
-
-    found: FloatArray = qmc.LatinHypercube(n, rng=rng).random(size)
-    return found

@@ -95,17 +95,11 @@ class _Figures:
         self._result: Json | None = None
 
     def of(self, measure: Measure) -> float:
-        if measure.quick is not None:
-            value = measure.quick(self._quick)
-        else:
-            value = self._from_result(measure)
-        if math.isnan(value):
+        quick = measure.quick
+        value = measure.value(self._whole()) if quick is None else quick(self._quick)
+        if value is None or math.isnan(value):
             raise NotHeldError(1.0, f"there is no {measure.title}")
         return value
-
-    def _from_result(self, measure: Measure) -> float:
-        found = measure.value(self._whole())
-        return math.nan if found is None else found
 
     def _whole(self) -> Json:
         """Return the result over few samples.

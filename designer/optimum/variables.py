@@ -12,7 +12,7 @@ from designer.documents.node import Key, Node, path_keys, path_text
 from designer.errors import Fault
 from designer.io.config.schema import StudySection
 from designer.optimum.plan import Tie, Variable
-from designer.units import QuantityError, describe, in_SI, split_quantity
+from designer.units import QuantityError, describe, in_SI
 
 _SPEC = (
     "[low, high], or {fields: [robot.anchors.*.2], bounds: [9 m, 13 m]}, or offset: [-1 m, 1 m] "
@@ -70,7 +70,7 @@ def _variable(name: str, node: Node, study: Node) -> Variable:
 def _ends(node: Node) -> tuple[float, float, str]:
     """Return both ends of a range, and their unit."""
     each = node.content if isinstance(node.content, tuple) else ()
-    ends = [part for part in map(_quantity, each) if part is not None]
+    ends = [part for part in (one.quantity() for one in each) if part is not None]
     if len(each) != 2 or len(ends) != 2:
         raise _WrongError(f"{describe(node.data())} is no range")
     (low, unit), (high, other) = ends
@@ -80,12 +80,6 @@ def _ends(node: Node) -> tuple[float, float, str]:
         shown = f"{low:g} {unit}".rstrip(), f"{high:g} {unit}".rstrip()
         raise _WrongError(f"the lower bound {shown[0]} is not below {shown[1]}", "[lower, upper]")
     return low, high, unit
-
-
-def _quantity(node: Node | None) -> tuple[float, str] | None:
-    """Return number and unit of a value; None where it is none."""
-    is_text = node is not None and isinstance(node.content, str)
-    return split_quantity(node.content) if node is not None and is_text else None
 
 
 def _factors(name: str, node: Node | None) -> dict[str, float]:
@@ -103,7 +97,7 @@ def _factors(name: str, node: Node | None) -> dict[str, float]:
         return dict.fromkeys(fields, 1.0)
     factors = {}
     for field, child in node.content.items():
-        part = _quantity(child)
+        part = child.quantity()
         if part is None or part[1] or not part[0]:
             raise _WrongError(f"{describe(child.data())} is no factor", "such as 1 or -1", "fields")
         factors[field] = part[0]
@@ -123,7 +117,8 @@ def _tied(
     ties, values = [], []
     for field, factor in factors.items():
         for keys in _spread(path_keys(field), study, field):
-            written = _quantity(study.at(keys))
+            node = study.at(keys)
+            written = None if node is None else node.quantity()
             if written is None and is_offset:
                 problem = f"{field}: the study has no number there"
                 raise _WrongError(problem, "bounds, or a field that the study gives")

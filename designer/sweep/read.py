@@ -22,7 +22,7 @@ from designer.errors import Fault, InputError
 from designer.spelling import did_you_mean
 from designer.sweep.plan import MOST_POINTS, Choice, Plan, Range, columns_of
 from designer.sweep.point import Base, value_at
-from designer.units import describe, split_quantity
+from designer.units import describe
 
 SWEEP = FileKind("a sweep, with study, vary and keep", "study: crane.yaml")
 _LISTED = "a list of values, or {from: 100 kg, to: 300 kg, count: 21}"
@@ -45,7 +45,7 @@ class SweepSection(Section):
     maximise: Goals = ()
 
 
-def read_sweep(path: Path, with_plugins: bool = True) -> tuple[Plan, Base]:
+def read_sweep(path: Path, with_plugins: bool) -> tuple[Plan, Base]:
     """Return the plan of a sweep, and the study that it starts from.
 
     That study is solved once, to know what results there are to keep.
@@ -120,18 +120,17 @@ def _varied(
     document: Document, name: str, sampling: str, faults: list[Fault]
 ) -> Range | Choice | None:
     """Return what one entry of ``vary`` asks for; None, with a fault more, where it is wrong."""
-    node = document.root.child("vary")
-    assert node is not None
-    node = node.child(name)
-    assert node is not None
     place: tuple[Key, ...] = ("vary", name)
+    node = document.root.at(place)
+    assert node is not None
     if isinstance(node.content, tuple) and node.content:
         return _choice(path_keys(name), node.content)
     if not isinstance(node.content, dict):
         found = "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
         faults.append(document.fault(place, found, _LISTED))
         return None
-    low, high, count = (split_quantity(_text(node.child(key))) for key in ("from", "to", "count"))
+    given = (node.child(key) for key in ("from", "to", "count"))
+    low, high, count = (None if one is None else one.quantity() for one in given)
     unknown = [key for key in node.content if key not in ("from", "to", "count")]
     if unknown:
         problem = f"unknown field '{unknown[0]}'"
@@ -152,13 +151,9 @@ def _varied(
     return None
 
 
-def _text(node: Node | None) -> str:
-    return "" if node is None or not isinstance(node.content, str) else node.content
-
-
 def _choice(keys: tuple[Key, ...], nodes: tuple[Node, ...]) -> Choice:
     """Return values that are numbers if all are, in one unit."""
-    parts = [split_quantity(_text(node)) for node in nodes]
+    parts = [node.quantity() for node in nodes]
     units = {None if part is None else part[1] for part in parts}
     if None in units or len(units) > 1:
         return Choice(keys, nodes)
