@@ -103,20 +103,16 @@ def _options(
     ] = False,
 ) -> None:
     if version:
-        _print_version(verbose)
+        if verbose:
+            from designer.cli.versions import versions
+
+            for name, found in versions():
+                typer.echo(f"{name:20} {found}")
+        else:
+            typer.echo(f"cdpr-designer {__version__}")
         raise typer.Exit
     if context.invoked_subcommand is None:
         context.fail("-v goes with --version, or a command is missing")
-
-
-def _print_version(verbose: bool) -> None:
-    if not verbose:
-        typer.echo(f"cdpr-designer {__version__}")
-        return
-    from designer.cli.versions import versions
-
-    for name, found in versions():
-        typer.echo(f"{name:20} {found}")
 
 
 @app.command()

@@ -34,8 +34,8 @@ bad = "[bold red]{}[/]".format
 Row = tuple[str, ...]
 
 
-def _print_rows(title: str, rows: Iterable[Row]) -> None:
-    table = bare_table(title=title)
+def _print_rows(title: str, rows: Iterable[Row], *headings: str) -> None:
+    table = bare_table(*headings, title=title)
     for row in rows:
         table.add_row(*row)
     show(table)
@@ -171,14 +171,10 @@ def print_pose(study: Study, pose: PoseAnalysis) -> None:
 
     statics = pose.sizing.statics
     show(f"{study.name}: {Verdict(int(statics.verdict)).sentence}", markup=False)
-    table = bare_table("", "diameter [mm]", "largest tension [N]", title="Sizing")
-    for row in _sizing_rows(pose):
-        table.add_row(*row)
-    show(table)
+    _print_rows("Sizing", _sizing_rows(pose), "", "diameter [mm]", "largest tension [N]")
     if pose.loop.iterates and not pose.loop.has_converged:
         show(f"loop: {pose.loop.outcome}")
     if statics.is_solved:
-        statics = pose.sizing.statics
         table = bare_table(
             "cable", "length [m]", "F_x [N]", "F_z [N]", "tension at exit [N]", "at platform [N]",
             title="Cables at the optimum",
@@ -286,10 +282,7 @@ def _bettered(diagnosis: Diagnosis) -> Iterator[Row]:
 
 def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
     """Print what is left without and with the declared effects, and what to make of it."""
-    table = bare_table("error", "model", "rms", "95 %", "median", title=check.study.name)
-    for row in _left(check):
-        table.add_row(*row)
-    show(table)
+    _print_rows(check.study.name, _left(check), "error", "model", "rms", "95 %", "median")
     for line in check.remarks():
         show(line, markup=False)
     _print_written(folder, written)

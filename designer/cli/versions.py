@@ -28,7 +28,11 @@ def versions() -> Iterator[tuple[str, str]]:
     yield "Python", f"{platform.python_version()} ({sys.executable})"
     yield "system", f"{platform.platform()}, {platform.machine()}"
     for name in (*_required(), *_ALSO):
-        yield name, _version(name)
+        try:
+            found = version(name)
+        except PackageNotFoundError:
+            found = "not installed"
+        yield name, found
     yield "linear algebra", _linear_algebra()
     yield "OpenGL", _opengl()
     yield from _plugins()
@@ -42,13 +46,6 @@ def _required() -> list[str]:
         return []
     names = (_NAME.match(one) for one in asked if "extra ==" not in one)
     return [found[0] for found in names if found]
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"
 
 
 def _linear_algebra() -> str:

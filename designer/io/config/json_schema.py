@@ -41,7 +41,11 @@ def study_schema(effects: Mapping[str, Effect]) -> JsonSchema:
         first = next(iter(whole["properties"].values()))
         sections[section.__name__] = {"anyOf": [first, whole]}
     schema: JsonSchema = _plain(generated, sections)
-    schema["properties"]["effects"] = _effects(effects)
+    schema["properties"]["effects"] = {
+        "type": ["object", "null"],
+        "properties": {name: _effect(effect) for name, effect in effects.items()},
+        "additionalProperties": False,
+    }
     _explain(schema, "")
     head = {
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -85,11 +89,6 @@ def _or_nothing(schema: JsonSchema) -> JsonSchema:
         return outside
     kinds = inside["anyOf"] if set(inside) <= {"anyOf", "x-unit"} else [inside]
     return {"anyOf": [*(one for one in kinds if one != nothing), nothing], **outside}
-
-
-def _effects(effects: Mapping[str, Effect]) -> JsonSchema:
-    each = {name: _effect(effect) for name, effect in effects.items()}
-    return {"type": ["object", "null"], "properties": each, "additionalProperties": False}
 
 
 def _effect(effect: Effect) -> JsonSchema:

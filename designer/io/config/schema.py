@@ -62,14 +62,11 @@ _ENDS = "'anchors' or two corners [[x, y], [x, y]]"
 _CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
 
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
-_names = list_of(0, 1000, "a list")
-
-_ends = list_of(2, 2, _ENDS)
 
 Anchors = Annotated[tuple[fields.Point, ...], _points]
 Attachments = Annotated[tuple[fields.Point, ...], _points]
 Corners = Annotated[tuple[fields.Corner, ...], list_of(3, 1000, _CORNERS)]
-Ends = Annotated[tuple[fields.Corner, fields.Corner], _ends]
+Ends = Annotated[tuple[fields.Corner, fields.Corner], list_of(2, 2, _ENDS)]
 Positions = Annotated[
     tuple[fields.Point, ...], list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
 ]
@@ -87,7 +84,7 @@ Readings = Annotated[
     list_of(0, 2, "a list of readings: length, tension or both"),
     AfterValidator(different),
 ]
-Names = Annotated[tuple[Text, ...], _names]
+Names = Annotated[tuple[Text, ...], list_of(0, 1000, "a list")]
 CableNumbers = Annotated[
     tuple[Annotated[int, WholeNumber(1, MOST_CABLES)], ...],
     list_of(1, MOST_CABLES, "a list of one or more cable numbers, such as [1, 2]"),
@@ -250,16 +247,12 @@ def _of_one_kind(given: object) -> object:
     return given
 
 
-def _region_tag(given: dict[str, object]) -> str:
-    return f"{_kinds_named(given)[0]} region"
-
-
 Region = Annotated[
     Annotated[PrismSection, Tag("prism region")]
     | Annotated[BoxSection, Tag("box region")]
     | Annotated[PointsSection, Tag("points region")]
     | Annotated[RectangleSection, Tag("rectangle region")],
-    Discriminator(_region_tag),
+    Discriminator(lambda given: f"{_kinds_named(given)[0]} region"),
     BeforeValidator(_of_one_kind),
 ]
 
