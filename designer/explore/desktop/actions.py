@@ -20,9 +20,6 @@ class Entry:
     does: Callable[[], object]
 
 
-SEPARATOR = None
-
-
 def fill(window: QMainWindow, menu: QMenu, entries: Iterable[Entry | None]) -> dict[str, QAction]:
     """Put entries into a menu and return their actions by name; None is a line between them."""
     found = {}
@@ -62,16 +59,3 @@ def choices(
         menu.addAction(action)
         found[name] = action
     return found
-
-
-def toggle(
-    window: QMainWindow, text: str, keys: str, tip: str, does: Callable[[bool], object]
-) -> QAction:
-    """Return an action that is on or off."""
-    action = QAction(text, window, checkable=True)
-    if keys:
-        action.setShortcut(QKeySequence(keys))
-    action.setToolTip(tip)
-    action.setStatusTip(tip)
-    action.toggled.connect(does)
-    return action

@@ -10,6 +10,12 @@ from PySide6.QtWidgets import QLineEdit
 class Entry(QLineEdit):
     """Undo and redo are of the letters while something is being typed, else of the study."""
 
+    def mark(self, is_faulty: bool) -> None:
+        """Show what is in it as faulty, or not."""
+        if bool(self.property("faulty")) != is_faulty:
+            self.setProperty("faulty", is_faulty)
+            self.style().polish(self)
+
     def event(self, event: QEvent) -> bool:
         """Let the window have the keys for undo and redo."""
         is_claim = event.type() == QEvent.Type.ShortcutOverride

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QUrl
-from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from designer.errors import DesignerError
@@ -89,8 +88,7 @@ class Files:
         self._window.settings.remember(path)
         return True
 
-    def _written(self, write: object) -> bool:
-        assert callable(write)
+    def _written(self, write: Callable[[], None]) -> bool:
         self._window.text.flush()
         try:
             write()
@@ -163,8 +161,3 @@ class Files:
             self.reload()
         elif name == "Save":
             self.save()
-
-
-def open_outside(path: Path) -> None:
-    """Open a file in the program that the system has for it."""
-    QDesktopServices.openUrl(QUrl.fromLocalFile(str(path)))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from designer.explore.desktop.theme import LIGHT, Theme
@@ -82,7 +82,7 @@ class Legend(QWidget):
 
     def _draw_bar(self, painter: QPainter, steps: Steps, top: float) -> float:
         """From the largest value at the top downward; returns where it ends."""
-        edges, height = steps.edges, self._bar_height()
+        height = self._bar_height()
         colours, count = steps.colormap, steps.colormap.N
 
         def at(number: float) -> float:
@@ -95,7 +95,7 @@ class Legend(QWidget):
             painter.drawRect(QRectF(_MARGIN, at(number + 1), _BAR, height / count + 0.5))
         painter.setPen(QColor(self._theme.ink))
         ticks = set(steps.ticks.tolist())
-        for number, edge in enumerate(edges):
+        for number, edge in enumerate(steps.edges):
             if edge in ticks:
                 y = at(number)
                 painter.drawLine(QPointF(_MARGIN + _BAR, y), QPointF(_MARGIN + _BAR + 4, y))
@@ -134,8 +134,6 @@ class Legend(QWidget):
         )
 
     def _title_box(self) -> QRectF:
-        from PySide6.QtGui import QFontMetricsF
-
         room = QRectF(_MARGIN, _MARGIN, _WIDTH - 2 * _MARGIN, 1000)
         return QFontMetricsF(self._bold()).boundingRect(room, Qt.TextFlag.TextWordWrap, self.title)
 

@@ -67,7 +67,8 @@ class Live(QObject):
             self._newest["select"] = self._pending.pop("select")
             self.failed.emit("select", "given up, since the study has changed")
         self._ask("here", question)
-        if before is None or _differ(before, question):
+        # Where the platform is makes no other map.
+        if before is None or (before.text, before.rope) != (question.text, question.rope):
             if moving:
                 self._ask("coarse", question)
             self._rest.start(_REST_MS if moving else 0)
@@ -147,8 +148,3 @@ class Live(QObject):
         elif isinstance(delivery, Failed):
             self.failed.emit(kind, delivery.text)
         self.busy_changed.emit()
-
-
-def _differ(one: Question, other: Question) -> bool:
-    """Whether maps of two questions may differ: anything but where the platform is."""
-    return one.text != other.text or one.rope != other.rope

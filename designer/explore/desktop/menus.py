@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction
@@ -24,7 +23,6 @@ class Menus:
     def __init__(self, window: Window) -> None:
         self._window = window
         self.actions: dict[str, QAction] = {}
-        self._wanted: dict[str, bool] = {}
         self._file_menu()
         self._edit_menu()
         self._view_menu()
@@ -160,12 +158,9 @@ class Menus:
         self._recent.clear()
         for path in self._window.settings.recent:
             action = self._recent.addAction(f"{path.stem}  —  {path.parent}")
-            action.triggered.connect(lambda _=False, path=path: self._open(path))
+            action.triggered.connect(lambda _=False, path=path: self._window.files.open(path))
         if self._recent.isEmpty():
             self._recent.addAction("none yet").setEnabled(False)
-
-    def _open(self, path: Path) -> None:
-        self._window.files.open(path)
 
     def wants_dock(self, dock: QDockWidget) -> bool:
         """Whether a panel is to be seen where the scene is."""

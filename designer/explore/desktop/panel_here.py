@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHeaderView,
     QLabel,
-    QLineEdit,
     QPushButton,
     QVBoxLayout,
     QWidget,
@@ -104,7 +103,7 @@ class PanelHere(QWidget):
         self.setObjectName("here")
         self.setMinimumWidth(384)
         self._place = np.zeros(6)
-        self._entries: list[QLineEdit] = []
+        self._entries: list[Entry] = []
         self._turn_labels: list[QLabel] = []
         rows = QVBoxLayout(self)
         rows.setContentsMargins(8, 6, 8, 6)
@@ -185,7 +184,7 @@ class PanelHere(QWidget):
         for number, (entry, value) in enumerate(zip(self._entries, shown, strict=True)):
             if not (entry.hasFocus() and entry.isModified()):
                 entry.setText(f"{round(float(value), 4) + 0.0:g}")
-                _mark(entry, "")
+                entry.mark(False)
             entry.setVisible(can_turn or number < 3)
         for label in self._turn_labels:
             label.setVisible(can_turn)
@@ -217,10 +216,10 @@ class PanelHere(QWidget):
                 value = float(entry.text().replace(",", ".").replace("−", "-"))
             except ValueError:
                 value = math.nan
+            entry.mark(not math.isfinite(value))
             if not math.isfinite(value):
-                _mark(entry, "a number is expected")
+                entry.setToolTip("a number is expected")
                 return
-            _mark(entry, "")
             if entry.isModified():  # what was not touched keeps all its digits
                 place[number] = value if number < 3 else math.radians(value)
         for entry in self._entries:
@@ -243,15 +242,6 @@ def _text(name: str, role: str = "") -> QLabel:
     if role:
         label.setProperty("role", role)
     return label
-
-
-def _mark(entry: QLineEdit, fault: str) -> None:
-    """Show an entry as faulty, and why; or not."""
-    if bool(entry.property("faulty")) != bool(fault):
-        entry.setProperty("faulty", bool(fault))
-        entry.style().polish(entry)
-    if fault:
-        entry.setToolTip(fault)
 
 
 def _restyle(label: QLabel, role: str) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
+from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
@@ -184,8 +185,6 @@ class PanelRopes(QWidget):
 
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        from PySide6.QtGui import QColor
-
         self._bar.theme = theme
         self.model.muted_colour = QColor(theme.muted)
         self.table.viewport().update()

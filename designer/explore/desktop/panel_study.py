@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 
 from designer.explore.desktop.entry import Entry
 from designer.explore.desktop.layouts import emptied
+from designer.report import format as fmt
 
 if TYPE_CHECKING:
     from designer.errors import Fault
@@ -108,16 +109,13 @@ class PanelStudy(QWidget):
             self._headings[group] = heading
             self._list.addWidget(heading)
             for field in members:
-                self._add_row(field)
-
-    def _add_row(self, field: Field) -> None:
-        row = FieldRow(field)
-        row.edited.connect(self.edited)
-        row.settled.connect(self.settled)
-        row.asks_to_put_back.connect(self.asks_to_put_back)
-        row.gave_up.connect(self.gave_up)
-        self.rows[field.path] = row
-        self._list.addWidget(row)
+                row = FieldRow(field)
+                row.edited.connect(self.edited)
+                row.settled.connect(self.settled)
+                row.asks_to_put_back.connect(self.asks_to_put_back)
+                row.gave_up.connect(self.gave_up)
+                self.rows[field.path] = row
+                self._list.addWidget(row)
 
     def _filter(self) -> None:
         sought = self._find.text().strip().lower()
@@ -249,9 +247,7 @@ class FieldRow(QWidget):
         told = "" if refused is None else " ".join(map(_words, refused.faults))
         self._fault.setText(told)
         self._fault.setVisible(bool(told))
-        if bool(self.entry.property("faulty")) != bool(told):
-            self.entry.setProperty("faulty", bool(told))
-            self.entry.style().polish(self.entry)
+        self.entry.mark(bool(told))
         if refused is not None and not self.entry.hasFocus():
             self.entry.setText(refused.text)
 
@@ -299,7 +295,7 @@ def _group(field: Field) -> str:
 
 def _words(fault: Fault) -> str:
     expected = f" (expected {fault.expected})" if fault.expected else ""
-    return f"{fault.problem[:1].upper()}{fault.problem[1:]}{expected}."
+    return f"{fmt.capital(fault.problem)}{expected}."
 
 
 class _Slider(QSlider):

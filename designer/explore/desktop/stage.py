@@ -34,7 +34,6 @@ class Stage:
     """Robot, floor, map, cables and marks of one plotter."""
 
     def __init__(self, plotter: Any) -> None:
-        self._plotter = plotter
         self.shell = MapSurface(plotter, "surface", inside=True)
         self.slice = MapSurface(plotter, "slice")
         self.dots = Dots(plotter, "points", 9.0)
@@ -124,11 +123,12 @@ class Stage:
         grids = {} if answer is None else answer.grids
         self.names = tuple(grids)
         shell = [name for name in grids if name not in ("slice", "points")]
-        for surface, names in ((self.shell, shell), (self.slice, _those(grids, "slice"))):
+        level = [name for name in grids if name == "slice"]
+        for surface, names in ((self.shell, shell), (self.slice, level)):
             surface.put_grids({name: grids[name] for name in names})
             if answer is not None and painting is not None:
                 surface.paint(painting, painting.of(answer, names))
-        self.rim.put([grids["slice"][-1]] if "slice" in grids else [])
+        self.rim.put([grids[name][-1] for name in level])
         self._points_m = grids["points"].reshape(-1, 3) if "points" in grids else np.empty((0, 3))
         self.dots.put(self._points_m)
         if len(self._points_m) and answer is not None and painting is not None:
@@ -166,10 +166,6 @@ class Stage:
         """Return the corners of the box that the camera shall see (8, 3) [m]."""
         low, high = self.bounds_m
         return np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
-
-
-def _those(grids: Mapping[str, FloatArray], name: str) -> list[str]:
-    return [name] if name in grids else []
 
 
 def _floor_m(bounds_m: FloatArray, floor_m: float) -> list[FloatArray]:

@@ -75,7 +75,10 @@ class Window(QMainWindow):
         self.files, self.keeping = Files(self), Keeping(self)
         self.editing, self.moving, self.comparing = Editing(self), Moving(self), Comparing(self)
         self._make_docks()
-        self._make_status()
+        self.busy, self.long = QLabel(), LongWork()
+        self.busy.setObjectName("busy")
+        self.statusBar().addPermanentWidget(self.busy)
+        self.statusBar().addPermanentWidget(self.long)
         self.menus = Menus(self)
         self._connect()
         self._restore()
@@ -102,12 +105,6 @@ class Window(QMainWindow):
             "Messages": self.messages,
         }
         self.docks = put_docks(self, panels)
-
-    def _make_status(self) -> None:
-        self.busy, self.long = QLabel(), LongWork()
-        self.busy.setObjectName("busy")
-        self.statusBar().addPermanentWidget(self.busy)
-        self.statusBar().addPermanentWidget(self.long)
 
     def _connect(self) -> None:
         self.start.chosen.connect(self.files.open)
@@ -164,8 +161,10 @@ class Window(QMainWindow):
 
     def _show_page(self, page: QWidget) -> None:
         self.pages.setCurrentWidget(page)
+        study = None if self.session is None else self.session.study
+        has_data = study is not None and study.measurements is not None
         for name, dock in self.docks.items():
-            has_any = name != "Measured data" or self._has_data
+            has_any = name != "Measured data" or has_data
             dock.setVisible(page is self.work and has_any and self.menus.wants_dock(dock))
         if page is self.work and self.settings.bytes_of("layout").isEmpty():
             size_docks(self, self.docks)
@@ -178,11 +177,6 @@ class Window(QMainWindow):
         page = self.pages.currentWidget()
         assert page is not None
         self._show_page(page)
-
-    @property
-    def _has_data(self) -> bool:
-        study = None if self.session is None else self.session.study
-        return study is not None and study.measurements is not None
 
     # A session
 

@@ -15,7 +15,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QSlider,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -301,7 +300,8 @@ class WorkPage(QWidget):
         if values["left_out"]:
             text = "left out: a cable hangs below"
         elif quantity.is_category:
-            labels = category_labels(quantity.key, len(self._cables()))
+            assert self._study is not None
+            labels = category_labels(quantity.key, self._study.robot.n_cables)
             text = labels.get(int(value), fmt.MISSING) if math.isfinite(value) else fmt.MISSING
         else:
             text = f"{fmt.number(value * quantity.scale, 4)} {quantity.unit}".strip()
@@ -316,10 +316,6 @@ class WorkPage(QWidget):
         elif values.get("unserved"):
             lines.append("no rope serves")
         return "\n".join(lines)
-
-    def _cables(self) -> FloatArray:
-        assert self._study is not None
-        return self._study.robot.exit_points_m
 
     def show_notice(self, text: str, *buttons: str) -> None:
         """Show a notice above the scene, with buttons; nothing for no text."""
@@ -345,7 +341,7 @@ class _Notice(QFrame):
         label.setWordWrap(True)
         self._row.addWidget(label, 1)
         for name in buttons:
-            button: QPushButton | QToolButton = QPushButton(name)
+            button = QPushButton(name)
             button.setObjectName(f"notice {name}")
             button.clicked.connect(lambda _=False, name=name: self.answered.emit(name))
             self._row.addWidget(button)
