@@ -156,7 +156,8 @@ def here(question: Question, *, settled: bool = False) -> Here:
         cable = question.material.cable(float(sizing.diameter_m))
     verdict = Verdict(int(statics.verdict))
     is_stiff, stability, stiffness = _stability(question, statics, cable, settled)
-    utilisation = _utilisation(statics, cable)
+    allowable = np.nan if cable is None else cable.allowable_tension_N
+    utilisation = np.asarray(statics.cable_tension_N / allowable)
     return Here(
         verdict=verdict,
         with_rope=rope is not None,
@@ -174,11 +175,6 @@ def here(question: Question, *, settled: bool = False) -> Here:
         closure_residual_m=float(statics.closure_residual_m().max()),
         equilibrium_residual_N=float(np.abs(statics.equilibrium_residual_N()).max()),
     )
-
-
-def _utilisation(statics: Statics, cable: Cable | Cables | None) -> FloatArray:
-    allowable = np.nan if cable is None else cable.allowable_tension_N
-    return np.asarray(statics.cable_tension_N / allowable)
 
 
 def _cables(statics: Statics, utilisation: FloatArray) -> tuple[CableHere, ...]:

@@ -27,7 +27,7 @@ class History(Generic[State]):
     done: list[Step[State]] = field(default_factory=list)
     undone: list[Step[State]] = field(default_factory=list)
 
-    def take(self, label: str, state: State, key: object = None) -> None:
+    def take(self, label: str, state: State, key: object) -> None:
         """Go on to another state; with the key of the last step as part of that step."""
         before, self.state = self.state, state
         last = self.done[-1] if self.done else None

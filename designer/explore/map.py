@@ -62,11 +62,6 @@ class MapAnswer:
     with_rope: bool
     before: Mapping[str, Values] | None = None
 
-    @property
-    def geometry_key(self) -> tuple[object, ...]:
-        """Equal where the grids have the same names and shapes."""
-        return tuple((name, grid.shape) for name, grid in self.grids.items())
-
     def difference(self, grid: str, key: str) -> FloatArray | None:
         """Return what a quantity has become less what it was, SI; None without a comparison.
 

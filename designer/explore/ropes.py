@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +17,7 @@ from designer.selection.compare import Entry, burdens, is_undominated
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.proven import CaseProof
-from designer.selection.result import Candidate, NotTried, SelectionResult
+from designer.selection.result import Candidate, SelectionResult
 from designer.selection.select import at_samples, select
 from designer.selection.verify import Verification
 from designer.study import Objective
@@ -181,7 +180,8 @@ def quick_ropes(question: Question) -> Ropes | None:
     if known and selection.objectives[0] != "stiffness":
         comparable = [e for e in holding if np.isfinite(e.figures.burden(known[0]))]
         best = min(comparable, key=lambda e: e.key(known), default=None)
-        front = {id(e) for e, is_in in zip(holding, _front(holding, known), strict=True) if is_in}
+        is_in = is_undominated(burdens(holding, known))
+        front = {id(e) for e, wins in zip(holding, is_in, strict=True) if wins}
     else:
         front = {id(e) for e in holding}
     rows = tuple(_quick_row(entry, entry is best, id(entry) in front) for entry in entries)
@@ -196,10 +196,6 @@ def quick_ropes(question: Question) -> Ropes | None:
         is_final=False,
         problems=question.catalogue.problems,
     )
-
-
-def _front(entries: Sequence[Entry], objectives: Sequence[Objective]) -> Sequence[bool]:
-    return [bool(one) for one in is_undominated(burdens(entries, objectives))]
 
 
 def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
@@ -221,7 +217,6 @@ def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
         standing=standing,
         reason=reason,
         place=_place(met),
-        is_searched=False,
     )
 
 
@@ -287,7 +282,11 @@ def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes
     """Return the rows of a selection that was made in full."""
     chosen = found.chosen
     rows = [_full_row(candidate) for candidate in found.candidates]
-    rows += [row for one in found.not_tried for row in _not_tried(one)]
+    rows += [
+        replace(_sold(one.grade, size), reason=one.reason)
+        for one in found.not_tried
+        for size in (one.grade.sizes if one.size is None else (one.size,))
+    ]
     return Ropes(
         rows=tuple(rows),
         best=None if chosen is None else Rope(chosen.grade.id, chosen.size.id),
@@ -311,11 +310,6 @@ def _full_row(candidate: Candidate) -> RopeRow:
         place=_place(candidate.verification),
         is_searched=candidate.verification.is_refined,
     )
-
-
-def _not_tried(one: NotTried) -> list[RopeRow]:
-    sizes = one.grade.sizes if one.size is None else (one.size,)
-    return [replace(_sold(one.grade, size), reason=one.reason) for size in sizes]
 
 
 def _groups(choice: GroupChoice) -> Groups:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from designer.arrays import frozen_array
 from designer.documents import edits
-from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
 from designer.explore.entries import pose_text, put_back, with_entry
@@ -54,7 +53,7 @@ class Session:
         self._history = History(State(self._saved, self._saved, place))
 
     @classmethod
-    def open(cls, path: Path, plugins: Plugins, known: KnownEffects | None = None) -> Self:
+    def open(cls, path: Path, plugins: Plugins) -> Self:
         """Open a study file, faulty or not.
 
         Raises
@@ -63,13 +62,13 @@ class Session:
             If it cannot be read, or is no text.
         """
         text = text_of(path)
-        return cls(text, Context(path, known or load_effects(plugins), plugins), path)
+        return cls(text, Context(path, load_effects(plugins), plugins), path)
 
     @classmethod
-    def example(cls, name: str, plugins: Plugins, known: KnownEffects | None = None) -> Self:
+    def example(cls, name: str, plugins: Plugins) -> Self:
         """Open a shipped study, which is saved elsewhere."""
         path = example_file(name)
-        return cls(text_of(path), Context(path, known or load_effects(plugins), plugins), None)
+        return cls(text_of(path), Context(path, load_effects(plugins), plugins), None)
 
     # What there is
 
