@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from designer.cli.options import NEGATIVE_ANSWER, WRONG_INPUT, NoPlugins, path_of
+from designer.cli.options import NEGATIVE_ANSWER, WRONG_INPUT, NoPlugins, path_of, quantity_of
 from designer.errors import Fault, InputError
+from designer.units import LENGTH
 
 if TYPE_CHECKING:
     from designer.grades.registry import Catalogue
@@ -76,14 +77,10 @@ def _material(name: str | None, catalogue: Catalogue) -> str | None:
 
 def _diameter_m(text: str | None) -> float | None:
     from designer.documents.bounds import BOUNDS
-    from designer.units import LENGTH, QuantityError, read_quantity
 
     if text is None:
         return None
-    try:
-        diameter_m = read_quantity(text, LENGTH)
-    except QuantityError as error:
-        raise InputError([Fault("--diameter", None, "", error.problem, error.expected)]) from None
+    diameter_m = quantity_of("--diameter", text, LENGTH)
     bound = BOUNDS["rope diameter"]
     if not bound.least <= diameter_m <= bound.most:
         problem = f"{text!r} is {diameter_m:g} m, which no rope has"

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from designer.cli.options import NEGATIVE_ANSWER, NoPlugins, output_option, path_of
+from designer.cli.options import NEGATIVE_ANSWER, NoPlugins, output_option, path_of, quantity_of
 from designer.errors import Fault, InputError
-from designer.units import LENGTH, MASS, NUMBER, Dimension, QuantityError, read_quantity
+from designer.units import LENGTH, MASS, NUMBER, Dimension
 
 if TYPE_CHECKING:
     from designer.foreign.robot import ForeignRobot, Point
@@ -30,10 +30,7 @@ def _option(name: str, metavar: str, help_: str, parser: Callable[[str], Any]) -
 
 def _number(option: str, dimension: Dimension, least: float = -math.inf) -> Callable[[str], float]:
     def read(text: str) -> float:
-        try:
-            value = read_quantity(text, dimension)
-        except QuantityError as error:
-            raise InputError([Fault(option, None, "", error.problem, error.expected)]) from None
+        value = quantity_of(option, text, dimension)
         if value < least:
             raise InputError(
                 [Fault(option, None, "", f"{text} is too small", f"{least:g} or more")]
@@ -45,7 +42,7 @@ def _number(option: str, dimension: Dimension, least: float = -math.inf) -> Call
 
 def _vector(option: str, dimension: Dimension) -> Callable[[str], Point]:
     def read(text: str) -> Point:
-        parts = [_number(option, dimension)(part) for part in text.strip("[] ").split(",")]
+        parts = [quantity_of(option, part, dimension) for part in text.strip("[] ").split(",")]
         if len(parts) != 3:
             raise InputError([Fault(option, None, "", f"{text!r} is no point", "three: X,Y,Z")])
         x, y, z = parts

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from designer.errors import Fault, InputError
+from designer.units import Dimension, QuantityError, read_quantity
 
 NEGATIVE_ANSWER = 1
 WRONG_INPUT = 2
@@ -20,6 +21,14 @@ def path_of(text: str) -> Path:
     if not text.strip():  # such as "$OUT" where nothing is in it; pathlib takes it as '.'
         raise InputError([Fault("command line", None, "", "a path is empty", "a file or folder")])
     return Path(text)
+
+
+def quantity_of(option: str, text: str, dimension: Dimension) -> float:
+    """Return the value [SI] that an option names."""
+    try:
+        return read_quantity(text, dimension)
+    except QuantityError as error:
+        raise InputError([Fault(option, None, "", error.problem, error.expected)]) from None
 
 
 def _template_of(text: str) -> Path:

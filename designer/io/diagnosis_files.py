@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-import os
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
 from designer.documents.modeline import with_schema_moved
+from designer.io.config.moved import path_from
 
 
 def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None) -> str:
@@ -33,10 +34,7 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
     if estimated := _estimated_noise(diagnosis):
         noise = document["measurements"].setdefault("noise", {})
         noise.update({**estimated, "estimated": list(estimated)})
-
-    def moved(path: Path) -> str:
-        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-
+    moved = partial(path_from, folder)
     if document.get("catalogues"):
         document["catalogues"] = [moved(source.parent / path) for path in document["catalogues"]]
     if (control := document.get("document")) and control.get("logo"):

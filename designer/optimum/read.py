@@ -26,7 +26,7 @@ from designer.optimum.variables import variables_of
 from designer.selection.products import common_currency, is_allowed
 from designer.spelling import did_you_mean
 from designer.study import Study
-from designer.sweep.point import Base, value_at
+from designer.sweep.point import Base, value_at, why_no_value
 from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
 
 OPTIMISATION = FileKind("an optimisation, with study, variables and objective", "study: crane.yaml")
@@ -193,11 +193,10 @@ def _faults_of_measures(
                 problem = f"{measure.path} is {'a text' if isinstance(value, str) else 'a list'}"
                 faults.append(document.fault(place, problem, "a number of result.json"))
         except KeyError as error:
-            key, names = error.args
-            expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
+            problem, expected = why_no_value(error)
             if is_objective:
                 expected += f"; or {', '.join(MEASURES)}"
-            faults.append(document.fault(place, f"results have no '{key}' there", expected))
+            faults.append(document.fault(place, problem, expected))
     return faults
 
 

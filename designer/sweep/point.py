@@ -20,6 +20,7 @@ from designer.grades.registry import Catalogue
 from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins, find_plugins
+from designer.spelling import did_you_mean
 from designer.study import Study, require_enough_cables
 
 Change = tuple[tuple[Key, ...], Node]
@@ -113,6 +114,13 @@ def value_at(result: Json, path: str) -> Any:
             raise KeyError(key, list(names) if isinstance(names, dict | list) else [])
         value = value[int(key)] if isinstance(value, list) else value[key]
     return value
+
+
+def why_no_value(error: KeyError) -> tuple[str, str]:
+    """Return the problem with a path that `value_at` refuses, and what was expected."""
+    key, names = error.args
+    expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
+    return f"results have no '{key}' there", expected
 
 
 def solve_points(base: Base, points: Sequence[Sequence[Change]]) -> list[tuple[list[Any], str]]:

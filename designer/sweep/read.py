@@ -19,9 +19,8 @@ from designer.documents.fields import FreeMapping, Text, WholeNumber, different,
 from designer.documents.node import Key, Node, path_keys, path_text
 from designer.documents.section import Section
 from designer.errors import Fault, InputError
-from designer.spelling import did_you_mean
 from designer.sweep.plan import MOST_POINTS, Choice, Plan, Range, columns_of
-from designer.sweep.point import Base, value_at
+from designer.sweep.point import Base, value_at, why_no_value
 from designer.units import describe
 
 SWEEP = FileKind("a sweep, with study, vary and keep", "study: crane.yaml")
@@ -191,9 +190,8 @@ def _kinds(document: Document, base: Base, keep: Sequence[str]) -> dict[str, typ
         try:
             value: Any = value_at(result, name)
         except KeyError as error:
-            value, (key, names) = None, error.args
-            problem = f"results have no '{key}' there"
-            expected = f"one of {', '.join(names[:20])}{did_you_mean(key, names)}"
+            value = None
+            problem, expected = why_no_value(error)
         if isinstance(value, dict | list):
             problem = f"{name} holds several values"
             inner = list(value) if isinstance(value, dict) else range(len(value))

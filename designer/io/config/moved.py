@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 
 from designer.documents import edits
@@ -22,12 +23,13 @@ def moved_to(folder: Path, text: str, document: Document, start: Path) -> str:
         node = document.root.at(keys)
         name = None if node is None else node.data()
         if isinstance(name, str) and not Path(name).is_absolute():
-            to = _relative(start / name, folder)
+            to = path_from(folder, start / name)
             text = edits.with_value(text, keys, edits.scalar(to))
-    return with_schema_moved(text, start, lambda path: _relative(path, folder))
+    return with_schema_moved(text, start, partial(path_from, folder))
 
 
-def _relative(path: Path, folder: Path) -> str:
+def path_from(folder: Path, path: Path) -> str:
+    """Return a path as it is from a folder."""
     try:
         return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
     except ValueError:  # on another drive
