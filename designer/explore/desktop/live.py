@@ -67,7 +67,7 @@ class Live(QObject):
             self._newest["select"] = self._pending.pop("select")
             self.failed.emit("select", "given up, since the study has changed")
         self._ask("here", question)
-        # Where the platform is makes no other map.
+        # A map is the same wherever the platform is.
         if before is None or (before.text, before.rope) != (question.text, question.rope):
             if moving:
                 self._ask("coarse", question)
