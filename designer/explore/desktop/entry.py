@@ -10,10 +10,14 @@ from PySide6.QtWidgets import QLineEdit
 class Entry(QLineEdit):
     """Undo and redo are of the letters while something is being typed, else of the study."""
 
-    def mark(self, is_faulty: bool) -> None:
-        """Show what is in it as faulty, or not."""
-        if bool(self.property("faulty")) != is_faulty:
-            self.setProperty("faulty", is_faulty)
+    meaning = ""
+    """What its tip says where nothing is wrong with what is in it."""
+
+    def mark(self, fault: str) -> None:
+        """Show what is wrong with what is in it; nothing where nothing is."""
+        self.setToolTip(fault or self.meaning)
+        if bool(self.property("faulty")) != bool(fault):
+            self.setProperty("faulty", bool(fault))
             self.style().polish(self)
 
     def event(self, event: QEvent) -> bool:

@@ -141,7 +141,8 @@ class PanelHere(QWidget):
         for number, (name, unit, definition) in enumerate(_COORDINATES):
             entry = Entry()
             entry.setObjectName(f"place {name}")
-            entry.setToolTip(f"<p>{definition} [{unit}]. Return takes the platform there.</p>")
+            entry.meaning = f"<p>{definition} [{unit}]. Return takes the platform there.</p>"
+            entry.mark("")
             entry.setAccessibleName(f"{name} [{unit}]")
             entry.returnPressed.connect(self._entered)
             label = QLabel(f"{name} [{unit}]")
@@ -184,7 +185,7 @@ class PanelHere(QWidget):
         for number, (entry, value) in enumerate(zip(self._entries, shown, strict=True)):
             if not (entry.hasFocus() and entry.isModified()):
                 entry.setText(f"{round(float(value), 4) + 0.0:g}")
-                entry.mark(False)
+                entry.mark("")
             entry.setVisible(can_turn or number < 3)
         for label in self._turn_labels:
             label.setVisible(can_turn)
@@ -216,9 +217,8 @@ class PanelHere(QWidget):
                 value = float(entry.text().replace(",", ".").replace("−", "-"))
             except ValueError:
                 value = math.nan
-            entry.mark(not math.isfinite(value))
+            entry.mark("" if math.isfinite(value) else "a number is expected")
             if not math.isfinite(value):
-                entry.setToolTip("a number is expected")
                 return
             if entry.isModified():  # what was not touched keeps all its digits
                 place[number] = value if number < 3 else math.radians(value)

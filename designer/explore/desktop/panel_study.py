@@ -247,7 +247,7 @@ class FieldRow(QWidget):
         told = "" if refused is None else " ".join(map(_words, refused.faults))
         self._fault.setText(told)
         self._fault.setVisible(bool(told))
-        self.entry.mark(bool(told))
+        self.entry.mark(told)
         if refused is not None and not self.entry.hasFocus():
             self.entry.setText(refused.text)
 

@@ -116,11 +116,17 @@ def test_undo_takes_back_moves_and_ropes_as_well(yard: Driver) -> None:
 def test_a_place_is_typed_and_kept_as_the_pose(yard: Driver) -> None:
     yard.type_into("place z", "5.5")
     assert yard.place[2] == 5.5
+    entry = yard.find(QLineEdit, "place x")
+    meaning = entry.toolTip()
     yard.type_into("place x", "nowhere")
-    assert yard.find(QLineEdit, "place x").property("faulty")
+    assert entry.property("faulty")
+    assert entry.toolTip() == "a number is expected"
     assert yard.place[0] == 15.0
     yard.press("keep pose")
     assert yard.session.study.pose.position_m.tolist() == [15.0, 9.0, 5.5]
+    yard.type_into("place x", "14")
+    assert not entry.property("faulty")
+    assert entry.toolTip() == meaning != ""
     yard.rest()
 
 
