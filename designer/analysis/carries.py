@@ -91,11 +91,8 @@ def carries_of(study: Study, found: SelectionResult | None) -> Carries | None:
 
 def _sizes(found: SelectionResult, chosen: Candidate, safety_factor: float) -> Iterator[SizeBeside]:
     """Yield the size and those beside it, by diameter."""
-    of_grade = next(o.candidates for o in found.outcomes if o.grade is chosen.grade)
-    each = sorted(of_grade, key=lambda one: one.size.diameter_m)
-    at = each.index(chosen)
     worst = chosen.governing
-    for one in each[max(at - 1, 0) : at + 2]:
+    for one in found.beside(chosen):
         most = one.governing
         used, tension_N, case = most.utilisation, most.verification.max_tension_N, most.case
         for same in (o for o in one.cases if o.case is worst.case):

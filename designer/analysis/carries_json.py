@@ -17,21 +17,23 @@ from designer.documents.plain import finite
 Json = dict[str, Any]
 
 
-def carries_dict(found: Carries | None, groups: Sequence[GroupSlopes] = ()) -> Json:
+def carries_dict(found: Carries | None, groups: Sequence[GroupSlopes]) -> Json:
     """Return sensitivities, reserves, sizes and first failures; empty where none is chosen.
 
     Of ``groups`` there are sensitivities alone, each with the name of its group.
     """
+    plain: Json
     if found is None:
-        return {
-            "sensitivities": [row for one in groups for row in _of_group(one)],
-            "reserve": None,
-            "sizes_beside": [],
-            "first_failures": [],
-        }
-    plain: Json = finite(
+        of_groups = (
+            _sensitivities(one.each, one.exit_points_per_m, "adjoint", one.group.name)
+            for one in groups
+        )
+        plain = finite({"sensitivities": [row for rows in of_groups for row in rows]})
+        return {**plain, "reserve": None, "sizes_beside": [], "first_failures": []}
+    slopes = found.sensitivities
+    plain = finite(
         {
-            "sensitivities": _sensitivities(found),
+            "sensitivities": _sensitivities(slopes.each, slopes.exit_points_per_m, slopes.method),
             "reserve": {
                 "payload_factor": math.nan if found.payload is None else found.payload.value,
                 "region_margin_m": math.nan if found.region is None else found.region.value,
@@ -66,21 +68,12 @@ def carries_dict(found: Carries | None, groups: Sequence[GroupSlopes] = ()) -> J
     return plain
 
 
-def _sensitivities(found: Carries) -> list[Json]:
-    slopes = found.sensitivities
-    rows = _rows(slopes.each, slopes.exit_points_per_m)
-    return [row | {"method": slopes.method, "group": None} for row in rows]
-
-
-def _of_group(found: GroupSlopes) -> list[Json]:
-    rows = _rows(found.each, found.exit_points_per_m)
-    plain: list[Json] = finite(
-        [row | {"method": "adjoint", "group": found.group.name} for row in rows]
-    )
-    return plain
-
-
-def _rows(each: Sequence[Sensitivity], exit_points_per_m: FloatArray) -> list[Json]:
+def _sensitivities(
+    each: Sequence[Sensitivity],
+    exit_points_per_m: FloatArray,
+    method: str,
+    group: str | None = None,
+) -> list[Json]:
     rows: list[Json] = [asdict(one) for one in each]
     for cable, slopes in enumerate(exit_points_per_m, start=1):
         rows += [
@@ -93,7 +86,7 @@ def _rows(each: Sequence[Sensitivity], exit_points_per_m: FloatArray) -> list[Js
             }
             for axis, slope in zip("xyz", slopes.tolist(), strict=True)
         ]
-    return rows
+    return [row | {"method": method, "group": group} for row in rows]
 
 
 def _reserve(one: Reserve | None) -> Json | None:

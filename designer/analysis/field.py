@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from designer.analysis.grids import every_second
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model.region import CHUNK
 from designer.model.robot import Poses
@@ -82,8 +83,7 @@ class Field:
 
     def every_second(self) -> Field:
         """Return every second point along both axes of a grid, its rim kept."""
-        rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in self.position_m.shape[:2])
-        chosen = np.ix_(rows, columns)
+        chosen = every_second(self.position_m)
         kept: dict[str, Any] = {
             item.name: None if value is None else value[chosen]
             for item in fields(self)

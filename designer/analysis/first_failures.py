@@ -9,7 +9,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.load_case import Loaded
 from designer.model.region import PointList, Region
-from designer.model.robot import Poses, Robot
+from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.selection.cases import CaseFound
 from designer.statics.inverse import solve_sagging
@@ -80,15 +80,14 @@ def _along(
     region: Region, one: Loaded, turn_rad: FloatArray, name: str, way: FloatArray
 ) -> FirstFailure:
     """March out from the border until the first pose fails, and halve the last step."""
-    robot = one.bare[0]
-    reach = float(np.ptp(robot.exit_points_m, axis=0).max())
+    reach = float(np.ptp(one.bare[0].exit_points_m, axis=0).max())
     border = region.border()
     starts = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
     starts = np.concatenate([border.landmarks_m(), starts])
     starts = starts[~region.contains(starts + _OUT * reach * way)]
 
     def fails(start_m: FloatArray, distance_m: FloatArray) -> BoolArray:
-        return _failure(robot, one, start_m + distance_m[:, None] * way, turn_rad)[0]
+        return _failure(one, start_m + distance_m[:, None] * way, turn_rad)[0]
 
     before = 0.0
     for far in reach * (np.arange(1, _TURNS + 1) / _TURNS) ** 2:
@@ -108,12 +107,12 @@ def _along(
         starts, low, high = starts[near], low[near], high[near]
     first = int(high.argmin())
     place = starts[first] + high[first] * way
-    why = _failure(robot, one, place[None], turn_rad)[1][0]
+    why = _failure(one, place[None], turn_rad)[1][0]
     return FirstFailure(name, way, float(high[first]), place, why, reach)
 
 
 def _failure(
-    robot: Robot, one: Loaded, position_m: FloatArray, turn_rad: FloatArray
+    one: Loaded, position_m: FloatArray, turn_rad: FloatArray
 ) -> tuple[BoolArray, list[str]]:
     """Tell which positions fail (n,), and why the first of them does, or the last does not."""
     turned = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))

@@ -84,7 +84,17 @@ class GoverningPose:
     @property
     def alone(self) -> Statics:
         """The equilibrium without its leading axis."""
-        return _only(self.statics)
+        statics, run, poses = self.statics, self.statics.run, self.statics.poses
+        names = (
+            *("verdict", "weight_N_per_m", "axial_stiffness_N"),
+            *("length_m", "force_x_N", "force_z_N"),
+        )
+        return replace(
+            statics,
+            poses=Poses(poses.position_m[0], poses.rotation.reshape(-1, 3, 3)[0]),
+            run=PulleyRun(run.exit_points_m.reshape(-1, 3), run.wrap_m.reshape(-1)),
+            **{name: getattr(statics, name)[0] for name in names},
+        )
 
     @property
     def closure_residual_m(self) -> float:
@@ -149,18 +159,6 @@ def _pulls_N(statics: Statics) -> FloatArray:
     plan = statics.force_x_N[0, :, None] * statics.geometry().outward[0]
     on_cable = np.column_stack([plan, statics.force_z_N[0]])
     return np.asarray(-on_cable @ statics.robot.upright)
-
-
-def _only(statics: Statics) -> Statics:
-    """Return the one pose (1,) without its leading axis."""
-    run, poses = statics.run, statics.poses
-    names = ("verdict", "weight_N_per_m", "axial_stiffness_N", "length_m", "force_x_N", "force_z_N")
-    return replace(
-        statics,
-        poses=Poses(poses.position_m[0], poses.rotation.reshape(-1, 3, 3)[0]),
-        run=PulleyRun(run.exit_points_m.reshape(-1, 3), run.wrap_m.reshape(-1)),
-        **{name: getattr(statics, name)[0] for name in names},
-    )
 
 
 def _loads(one: Loaded) -> list[tuple[str, FloatArray]]:

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.region import Prism, Rectangle
 
 _OPENING_RAD = np.radians(100.0)
+_RINGS, _SPOKES = 90, 240
 
 
 def centroid_m(polygon_m: FloatArray) -> FloatArray:
@@ -21,7 +22,7 @@ def centroid_m(polygon_m: FloatArray) -> FloatArray:
     return np.asarray(origin + weighted / (3.0 * twice_area.sum()))
 
 
-def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> FloatArray:
+def disc_m(region: Prism, z_m: float, rings: int = _RINGS, spokes: int = _SPOKES) -> FloatArray:
     """Return a horizontal section of the region as rings about its centre (rings, spokes + 1, 3).
 
     Row 0 is the centre, the last row the outline with all its corners; the last spoke repeats the
@@ -31,10 +32,10 @@ def disc_m(region: Prism, z_m: float, rings: int = 90, spokes: int = 240) -> Flo
     return _at_height(_rings(centroid_m(region.polygon_m), outline, rings), z_m)
 
 
-def upright_disc_m(region: Rectangle, rings: int = 90, spokes: int = 240) -> FloatArray:
+def upright_disc_m(region: Rectangle) -> FloatArray:
     """Return a rectangle as rings about its centre, like `disc_m` (rings, spokes + 1, 3) [m]."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    return region.at(_rings(np.array([0.5, 0.5]), outline_m(corners, spokes), rings))
+    return region.at(_rings(np.array([0.5, 0.5]), outline_m(corners, _SPOKES), _RINGS))
 
 
 def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:
@@ -50,6 +51,12 @@ def outline_m(polygon_m: FloatArray, count: int) -> FloatArray:
         for a, b, n in zip(polygon_m, following, steps, strict=True)
     ]
     return np.concatenate([*parts, polygon_m[:1]])
+
+
+def every_second(grid_m: FloatArray) -> tuple[IntArray, ...]:
+    """Return the index of every second point along both axes of a grid, its rim kept."""
+    rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in grid_m.shape[:2])
+    return np.ix_(rows, columns)
 
 
 def cutaway_m(region: Prism, toward_m: FloatArray) -> Mapping[str, FloatArray]:

@@ -67,13 +67,10 @@ class Lengths:
         writer.writerow([*names, *length_names(n_cables), *tension_names(n_cables), "verdict"])
         found = np.hstack([self.statics.length_m, self.statics.exit_tension_N])
         for given, row, verdict in zip(values, found, self.statics.verdict, strict=True):
-            numbers = [*map(_exactly, given), *("" if np.isnan(x) else f"{x:.10g}" for x in row)]
-            writer.writerow([*numbers, Verdict(int(verdict)).label])
+            exactly = ["" if np.isnan(x) else repr(float(x)) for x in given]
+            solved = ["" if np.isnan(x) else f"{x:.10g}" for x in row]
+            writer.writerow([*exactly, *solved, Verdict(int(verdict)).label])
         return text.getvalue()
-
-
-def _exactly(value: float) -> str:
-    return "" if np.isnan(value) else repr(float(value))
 
 
 def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:

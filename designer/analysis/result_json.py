@@ -53,7 +53,11 @@ def result_dict(analysis: Analysis) -> Json:
                 **_qualities(analysis.qualities),
             }
         ),
-        "selection": None if analysis.selection is None else _selection(analysis),
+        "selection": (
+            None
+            if analysis.selection is None
+            else {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
+        ),
         **load_cases_dict(analysis),
         **carries_dict(analysis.carries, analysis.group_slopes),
         "uncertainty": uncertainty_dict(analysis.uncertainty),
@@ -269,11 +273,6 @@ def _why_infeasible(found: WorkspaceMap) -> str:
     if found.infeasible_example_m is None:
         return "Every pose is left out."
     return "The search between the samples met a pose without a finite cable."
-
-
-def _selection(analysis: Analysis) -> Json:
-    assert analysis.selection is not None
-    return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
 
 
 def _servable(found: Servable | None) -> Json | None:

@@ -17,7 +17,7 @@ from designer.model.robot import Poses, Robot
 from designer.selection.cases import CaseFound
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
 from designer.study import Workspace
-from designer.workspace.demand import demand_of, is_left_out
+from designer.workspace.demand import demand_of, in_worst_turn, is_left_out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +88,7 @@ def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
     if isinstance(region, Prism):
         section = _over(rope, grids.disc_m(region, region.z_m[1], 45, 120))
         pieces = grids.cutaway_m(region, place[:3])
-        shell = {name: _over(rope, _every_second(grid)) for name, grid in pieces.items()}
+        shell = {name: _over(rope, grid[grids.every_second(grid)]) for name, grid in pieces.items()}
     elif isinstance(region, Rectangle):
         section = _over(rope, grids.upright_disc_m(region))
         shell = {"section": section}
@@ -98,22 +98,14 @@ def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
     return replace(family, study=study, focus=focus, section=section, shell=shell, edge=None)
 
 
-def _every_second(grid_m: FloatArray) -> FloatArray:
-    """Return every second point along both axes of a grid, its rim kept."""
-    rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in grid_m.shape[:2])
-    return np.asarray(grid_m[np.ix_(rows, columns)])
-
-
 def _over(rope: Rope, position_m: FloatArray) -> Field:
     """Return the field at positions (..., 3), each in the orientation that asks for the most."""
     space, axes = rope.workspace.space, position_m.shape[:-1]
     places = space.places(position_m.reshape(-1, 3))
-    count = rope.workspace.orientations.count
-    if count > 1:
+    if space.orientations.count > 1:
         statics = rope.statics(places)
         asked = demand_of(rope.used(statics), statics, rope.workspace.hangs_below)
-        worst = asked.reshape(-1, count).argmax(axis=1)
-        places = places[np.arange(len(worst)) * count + worst]
+        places = in_worst_turn(space, places, asked)
     return _at(rope, places.reshape(*axes, -1))
 
 

@@ -129,9 +129,9 @@ def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float)
     side = np.zeros_like(place)
     side[:3] = outward(found.workspace.region, place[:3])
 
-    def slope(changed: Callable[[float], Loaded], step: float = _STEP) -> float:
-        ends = [found.tension_N(changed(sign * step)) for sign in (1.0, -1.0)]
-        return (ends[0] - ends[1]) / (2.0 * step * one.cable.allowable_tension_N)
+    def slope(changed: Callable[[float], Loaded]) -> float:
+        ends = [found.tension_N(changed(sign * _STEP)) for sign in (1.0, -1.0)]
+        return (ends[0] - ends[1]) / (2.0 * _STEP * one.cable.allowable_tension_N)
 
     def shifted(by: float) -> float:
         met = replace(found.verification, worst_position_m=place + by * side)

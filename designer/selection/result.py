@@ -190,3 +190,10 @@ class SelectionResult:
         first = self.objectives[0]
         rank = [(c.standing != "chosen", c.figures.burden(first)) for c in members]
         return tuple(members[k] for k in sorted(range(len(members)), key=rank.__getitem__))
+
+    def beside(self, one: Candidate) -> list[Candidate]:
+        """Return a size between the next thinner and the next thicker of its grade, if any."""
+        of_grade = next(o.candidates for o in self.outcomes if o.grade is one.grade)
+        each = sorted(of_grade, key=lambda other: other.size.diameter_m)
+        at = each.index(one)
+        return each[max(at - 1, 0) : at + 2]

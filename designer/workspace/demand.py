@@ -8,6 +8,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Material
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
+from designer.model.space import Space
 from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
@@ -36,14 +37,22 @@ def size_worst(
     """
     space = workspace.space
     some = space.places(positions_m)
-    count = space.orientations.count
     sizing = size_poses(robot, Poses.at(some), material)
-    if count == 1:
+    if space.orientations.count == 1:
         return some, sizing
     asked = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
-    worst = asked.reshape(-1, count).argmax(axis=1)
-    some = some[np.arange(len(worst)) * count + worst]
+    some = in_worst_turn(space, some, asked)
     return some, size_poses(robot, Poses.at(some), material)
+
+
+def in_worst_turn(space: Space, places: FloatArray, asked: FloatArray) -> FloatArray:
+    """Return of each position the place whose orientation asks for the most.
+
+    ``places`` (n, n_coordinates) are those of `Space.places`, ``asked`` (n,) is their demand.
+    """
+    count = space.orientations.count
+    worst = asked.reshape(-1, count).argmax(axis=1)
+    return np.asarray(places[np.arange(len(worst)) * count + worst])
 
 
 def diameter_demand(

@@ -7,7 +7,7 @@ other is quasi-random, by which the shares come out more precise from as many dr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -200,14 +200,11 @@ class _Trial:
         return draws_at(self.spreads, self.robot, shares)
 
     def poses_of(self, size: Candidate) -> list[Asked]:
-        return may_govern(self.chosen.cases, self._rope_in(size), self.probes())
-
-    def _rope_in(self, one: Candidate) -> Callable[[LoadCase], Cable]:
-        def rope(case: LoadCase) -> Cable:
+        def rope_in(case: LoadCase) -> Cable:
             allowance = Allowance.of(self.selection.under(case))
-            return self.built.cable(allowance.cable(one.grade, one.size))
+            return self.built.cable(allowance.cable(size.grade, size.size))
 
-        return rope
+        return may_govern(self.chosen.cases, rope_in, self.probes())
 
     def full(
         self,
@@ -218,13 +215,10 @@ class _Trial:
         reporter: Reporter,
     ) -> UncertaintyAnalysis:
         """Try the sizes beside the chosen one as well, search the poses, share out the spread."""
-        of_grade = next(o.candidates for o in found.outcomes if o.grade is self.chosen.grade)
-        each = sorted(of_grade, key=lambda one: one.size.diameter_m)
-        at = each.index(self.chosen)
         draws, points = self.drawn(samples), 0
         if len(self.spreads) > 1:  # of one alone, all of the spread is its own
             points = max(2 ** ((samples // (4 * SCRAMBLES)).bit_length() - 1), _LEAST_POINTS)
-        around = each[max(at - 1, 0) : at + 2]
+        around = found.beside(self.chosen)
         steps = samples * len(around) + SCRAMBLES * points * (len(self.spreads) + 2)
         with reporter.task("uncertainty", steps) as advance:
             used = largest(poses, draws, advance)
