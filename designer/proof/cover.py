@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
+from designer.arrays import FloatArray, IntArray
 from designer.model.region import PointList, Prism, Rectangle
 from designer.model.space import Space
 
@@ -84,6 +84,17 @@ class Cover:
             after_x, after_y = np.roll(x, -1, axis=1), np.roll(y, -1, axis=1)
             size[:, 0] = 0.5 * np.abs(np.sum(x * after_y - after_x * y, axis=1))
         return np.asarray(np.prod(size, axis=1))
+
+
+def halves(low: FloatArray, high: FloatArray, cut: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return where the lower halves of boxes (n, k) end, and where the upper ones begin.
+
+    Each box is cut in two across a coordinate of its own, ``cut`` (n,).
+    """
+    rows = np.arange(len(low))
+    first, second = high.copy(), low.copy()
+    first[rows, cut] = second[rows, cut] = 0.5 * (low[rows, cut] + high[rows, cut])
+    return first, second
 
 
 def covers_of(space: Space) -> list[Cover]:

@@ -64,7 +64,8 @@ class Encloser:
 
         self.cover = cover
         self._robot, self._cable = robot, cable
-        self._size = np.abs(np.concatenate([robot.exit_points_m, *self._ends()])).max()
+        ends = (cover.places(one)[:, :3] for one in (cover.low, cover.high))
+        self._size = np.abs(np.concatenate([robot.exit_points_m, *ends])).max()
         self._least_N = robot.tension_min_N if robot.is_redundant else 0.0
         weight = cable.weight_N_per_m
         levers = np.linalg.norm(robot.attachments_m, axis=1)
@@ -81,9 +82,6 @@ class Encloser:
             axes=plain(robot.upright @ cover.axes),
             level=1.0,
         )
-
-    def _ends(self) -> tuple[FloatArray, FloatArray]:
-        return self.cover.places(self.cover.low)[:, :3], self.cover.places(self.cover.high)[:, :3]
 
     def utilisation(self, places: FloatArray) -> FloatArray:
         """Return largest over allowable tension (n,) in places (n, 6); inf where none is found."""
@@ -112,7 +110,7 @@ class Encloser:
         load = np.repeat(self._robot.loads_N(), len(middle), axis=0)
         centre = self._robot.centre_pull_N
         load[:, 3:] += np.cross(arm, centre)
-        turns, load_turns, bent = self._turns(middle, half, rotation, levers, arm)
+        turns, load_turns, bent = self._turns(middle, half, levers, arm)
         boxes = Boxes(
             half=half,
             corners=corners - middle[:, None, :2],
@@ -148,7 +146,6 @@ class Encloser:
         self,
         middle: FloatArray,
         half: FloatArray,
-        rotation: FloatArray,
         levers: FloatArray,
         arm: FloatArray,
     ) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -18,7 +18,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cable
 from designer.model.robot import Robot
 from designer.model.space import Space
-from designer.proof.cover import Cover, covers_of
+from designer.proof.cover import Cover, covers_of, halves
 from designer.proof.encloser import FIRST_RAISE, Encloser, Told, why_not
 
 Status = Literal["proved", "partial", "refuted", "off"]
@@ -236,10 +236,7 @@ class _Search:
         raised: FloatArray,
         cut: IntArray,
     ) -> None:
-        rows = np.arange(len(low))
-        middle = 0.5 * (low[rows, cut] + high[rows, cut])
-        first, second = high.copy(), low.copy()
-        first[rows, cut] = second[rows, cut] = middle
+        first, second = halves(low, high, cut)
         for a, b in ((low, first), (second, high)):
             for k in np.unique(cover):
                 some = np.flatnonzero(cover == k)

@@ -28,7 +28,7 @@ from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.proof.border import Boxes, border_m
-from designer.proof.cover import Cover, covers_of
+from designer.proof.cover import Cover, covers_of, halves
 from designer.proof.encloser import Encloser, why_not
 from designer.proof.prove import Budget
 from designer.statics.geometry import upright_exit_points_m, upright_poses
@@ -126,9 +126,7 @@ class _Part:
         left = ~yes & ~no & ((high - low).max(axis=1) > 0.0)
         cut = np.where(told.solved, told.cut, (high - low)[:, :3].argmax(axis=1))[left]
         low, high = low[left], high[left]
-        rows = np.arange(len(low))
-        first, second = high.copy(), low.copy()
-        first[rows, cut] = second[rows, cut] = 0.5 * (low[rows, cut] + high[rows, cut])
+        first, second = halves(low, high, cut)
         low, high = np.concatenate([low, second]), np.concatenate([first, high])
         low, high, corners = self._cover.cut(low, high)
         some = (low <= high).all(axis=1)

@@ -31,7 +31,7 @@ def continuous_optimum(
     allowance: Allowance,
     built: AsBuilt,
     *,
-    doubtful: Sequence[FloatArray] = (),
+    doubtful: Sequence[FloatArray],
 ) -> tuple[Material, float]:
     """Return the family of a grade, and the thinnest member that holds everywhere [m].
 

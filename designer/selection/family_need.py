@@ -18,11 +18,11 @@ from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
 from designer.model.cable import Cable, Material
 from designer.model.load_case import LoadCase
-from designer.progress import SILENT, Reporter
+from designer.progress import Reporter
 from designer.selection.cases import CaseFound, Cases, governing, searched_all
 from designer.study import Study, Workspace
+from designer.workspace.section import FIRST_TRIED_M, thinnest_that
 
-_DIAMETERS_M = np.geomspace(1e-4, 1.0, 81)
 _STILL, _SAME = 1e-9, 1e-6
 _MOST_TURNS = 20
 
@@ -55,7 +55,7 @@ def most_needed(needs: Sequence[CaseNeed]) -> CaseNeed | None:
     return max(needs, key=lambda one: thickest[id(one)], default=None)
 
 
-def family_needs(study: Study, built: AsBuilt, reporter: Reporter = SILENT) -> tuple[CaseNeed, ...]:
+def family_needs(study: Study, built: AsBuilt, reporter: Reporter) -> tuple[CaseNeed, ...]:
     """Return what each load case needs where the study asks for no rope; else none."""
     workspace, needs = study.workspace, []
     if workspace is None or study.selection is not None or not study.load_cases:
@@ -82,8 +82,7 @@ def family_need(
     def cable(diameter_m: float) -> Cable:
         return built.cable(material.cable(diameter_m))
 
-    diameter_m = float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
-    section_m = 0.0
+    section_m, diameter_m = 0.0, FIRST_TRIED_M
     for _ in range(_MOST_TURNS):
         (tried,) = cases.sampled([[cable(diameter_m)]], lambda _: None)
         most = governing(tried)
@@ -111,11 +110,4 @@ def _thinnest(found: CaseFound, cable: Callable[[float], Cable]) -> float:
         one = found.loaded.on(robot, cable(diameter_m))
         return found.tension_N(one) <= one.cable.allowable_tension_N
 
-    at = next((k for k, d in enumerate(_DIAMETERS_M.tolist()) if serves(d)), None)
-    if at is None:
-        return math.nan
-    thin, thick = float(_DIAMETERS_M[max(at - 1, 0)]), float(_DIAMETERS_M[at])
-    while thick / thin > 1.0 + _STILL:
-        middle = math.sqrt(thin * thick)
-        thin, thick = (thin, middle) if serves(middle) else (middle, thick)
-    return thick
+    return thinnest_that(serves)

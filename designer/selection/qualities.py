@@ -76,7 +76,7 @@ def design_cable(
     selection: SelectionResult | None,
     groups: GroupChoice | None,
     family: Material,
-    needs: Sequence[CaseNeed] = (),
+    needs: Sequence[CaseNeed],
 ) -> DesignCable | None:
     """Return the cables of the groups, else the chosen product, else the thinnest of the family.
 
@@ -110,7 +110,7 @@ def qualities_of(
     groups: GroupChoice | None,
     built: AsBuilt,
     material: Material,
-    needs: Sequence[CaseNeed] = (),
+    needs: Sequence[CaseNeed],
 ) -> Qualities | None:
     """Survey the workspace with the cables of the design; None where no cable holds everywhere.
 

@@ -192,7 +192,7 @@ class SelectionResult:
         return tuple(members[k] for k in sorted(range(len(members)), key=rank.__getitem__))
 
     def beside(self, one: Candidate) -> list[Candidate]:
-        """Return a size between the next thinner and the next thicker of its grade, if any."""
+        """Return a size with those beside it in its grade, if any, the thinnest first."""
         of_grade = next(o.candidates for o in self.outcomes if o.grade is one.grade)
         each = sorted(of_grade, key=lambda other: other.size.diameter_m)
         at = each.index(one)

@@ -105,7 +105,7 @@ def at_samples(
     selection: Selection,
     grades: Sequence[Grade],
     built: AsBuilt,
-    load_cases: Sequence[LoadCase] = (),
+    load_cases: Sequence[LoadCase],
 ) -> list[Entry]:
     """Return every product that a study allows with what it meets at the samples alone.
 
@@ -286,7 +286,8 @@ def _usable(
     shown = [o for o in outcomes if o.candidates]
     if chosen is not None:
         shown = [o for o in shown if o.grade is chosen.grade]
-
+    if not shown:
+        return None
     few = workspace.thinned(_FEW)
 
     def most_served(outcome: GradeOutcome) -> float:
@@ -295,9 +296,8 @@ def _usable(
             return max(float(serves(robot, workspace, c, few).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
-    for one in [max(shown, key=most_served)] if len(shown) > 1 else shown:
-        return usable(robot, workspace, one.grade, [(c.size, c.cable) for c in one.candidates])
-    return None
+    one = shown[0] if len(shown) == 1 else max(shown, key=most_served)
+    return usable(robot, workspace, one.grade, [(c.size, c.cable) for c in one.candidates])
 
 
 def _reason(

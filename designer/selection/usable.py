@@ -88,7 +88,6 @@ def usable(
     that the study leaves out because a cable hangs below the platform is not served. On robots that
     are slow to solve only a part of the samples is asked, fairly drawn.
     """
-
     samples = 0
     served, lost = np.zeros((2, len(cables)))
     few = max(_FEW_PLACES, _FEW_POSITIONS * workspace.orientations.count)

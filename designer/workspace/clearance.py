@@ -155,9 +155,9 @@ def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance
     coarse = curves.polylines(np.arange(count * n), *whole, _COARSE)
     row, kind = _candidates(coarse, n, pairs)
     first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
-    distance, middle, at = _between(_pick(coarse, first), _pick(coarse, second))
-    error = coarse.sagitta_m[first].max(axis=-1) + coarse.sagitta_m[second].max(axis=-1)
     pieces = [_pick(coarse, first), _pick(coarse, second)]
+    distance, middle, at = _between(*pieces)
+    error = coarse.sagitta_m[first].max(axis=-1) + coarse.sagitta_m[second].max(axis=-1)
     for _ in range(_FINER_PASSES):
         pieces = [
             curves.polylines(which, *_around(piece, index), _FINE)

@@ -96,7 +96,6 @@ def survey(
     robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
 ) -> Interference:
     """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
-
     some = workspace.thinned(MOST_SAMPLES)
     statics = solve_sagging(robot, Poses.at(some), cable)
     cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)

@@ -125,9 +125,7 @@ def refine_over_branches(
     return refine(space, thorough, starts, effort)
 
 
-def worst_over_samples(
-    workspace: Workspace, demand_with: Callable[..., Demand], effort: Effort | None = None
-) -> list[Worst]:
+def worst_over_samples(workspace: Workspace, demand_with: Callable[..., Demand]) -> list[Worst]:
     """Return the largest of each demand over all samples, then over the region from the best.
 
     Starts are the samples that ask for most of the first demand; see `refine_over_branches`.
@@ -135,7 +133,7 @@ def worst_over_samples(
     pool, demand = Pool(workspace.space), demand_with()
     for some in workspace.places():
         pool.add(some, demand(some).reshape(len(some), -1)[:, 0])
-    return refine_over_branches(workspace.space, demand_with, pool.places, effort)
+    return refine_over_branches(workspace.space, demand_with, pool.places)
 
 
 _Climbs = Any

@@ -31,19 +31,14 @@ FamilyAt = Callable[[float], Material]
 _THICKEST_M = 1.0
 _DIAMETERS_M = np.geomspace(1e-4, _THICKEST_M, 81)
 """Where to look for the first section that serves itself; the next one is 12 % thicker."""
+FIRST_TRIED_M = float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
+"""The middle of these."""
 _STILL = 1e-9
 _MOST_TURNS = 20
 
 
-def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
-    """Return the thinnest diameter that serves one pose with its own figures [m].
-
-    NaN where none does that a cable can have.
-    """
-
-    def serves(diameter_m: float) -> bool:
-        return float(size_poses(robot, pose, family_at(diameter_m)).diameter_m) <= diameter_m
-
+def thinnest_that(serves: Callable[[float], bool]) -> float:
+    """Return the thinnest diameter that serves [m]; NaN where none does that a cable can have."""
     at = next((k for k, d in enumerate(_DIAMETERS_M.tolist()) if serves(d)), None)
     if at is None:
         return math.nan
@@ -52,6 +47,14 @@ def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
         middle = math.sqrt(thin * thick)
         thin, thick = (thin, middle) if serves(middle) else (middle, thick)
     return thick
+
+
+def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
+    """Return the thinnest diameter that serves one pose with its own figures [m].
+
+    NaN where none does that a cable can have.
+    """
+    return thinnest_that(lambda d: float(size_poses(robot, pose, family_at(d)).diameter_m) <= d)
 
 
 def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], Worst]) -> float:
@@ -66,7 +69,7 @@ def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], W
     DesignerError
         If that does not come to an end.
     """
-    section, tried = 0.0, float(_DIAMETERS_M[_DIAMETERS_M.size // 2])
+    section, tried = 0.0, FIRST_TRIED_M
     for _ in range(_MOST_TURNS):
         worst = worst_of(family_at(tried))
         if not np.isfinite(worst.place).all():  # every pose is left out

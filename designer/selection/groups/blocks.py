@@ -24,7 +24,7 @@ import numpy as np
 
 from designer.model.cable import Cable
 from designer.model.robot import Robot
-from designer.selection.groups.master import Assignment, Block
+from designer.selection.groups.master import Assignment, Block, alone
 from designer.selection.groups.trials import Trials
 from designer.study import Workspace
 
@@ -46,13 +46,12 @@ def is_monotone(robot: Robot, workspace: Workspace) -> bool:
 
 def block_by_weight(trials: Trials, assignment: Assignment, culprit: int) -> Block:
     """Return the block of a failing assignment, see the module; it alone, if nothing is proved."""
-    alone = tuple(frozenset({p}) for p in assignment)
     corner = [trials.products[p].cable for p in assignment]
     others = [g for g in range(len(corner)) if g != culprit]
     proved = (g for g in (culprit, *others) if _overloads(trials, corner, g))
     culprit = next(proved, -1)
     if culprit < 0:
-        return alone
+        return alone(assignment)
     for g in range(len(corner)):
         if g != culprit:
             corner = _lowered(trials, corner, g, culprit)

@@ -23,7 +23,7 @@ from designer.model.robot import Robot
 from designer.progress import SILENT, Reporter
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
-from designer.selection.groups.master import Assignment, Block, Guide, Master
+from designer.selection.groups.master import Assignment, Block, Guide, Master, alone
 from designer.selection.groups.result import (
     Assigned,
     GroupChoice,
@@ -178,7 +178,7 @@ class _Search:
             self.master = Master(cost, self.master.most_distinct)
         self._guide(assignment)
         if found.holds:
-            self.master.cut(_alone(assignment))
+            self.master.cut(alone(assignment))
             self.best = self._assigned(assignment, found)
             self.single = self.best if single is not None else None
 
@@ -211,7 +211,7 @@ class _Search:
         """Try a proposal, cut it off with what fails with it, and note it."""
         held: Assigned | None = None
         outcome: Outcome = "fails"
-        block = _alone(assignment)
+        block = alone(assignment)
         worst = self.trials.refutation(assignment)
         if worst is None and self._is_no_better(assignment):
             outcome = "not_better"
@@ -249,7 +249,7 @@ class _Search:
         """Return what fails with an assignment, in which a group is too weak."""
         if self.by_weight:
             block = block_by_weight(self.trials, assignment, culprit)
-            if block != _alone(assignment):
+            if block != alone(assignment):
                 return block
         room = min(300, _MOST_TRIALS - self.trials.count)  # for one block
         return block_by_trial(self.trials, assignment, culprit, self._could_be_better, room)
@@ -266,7 +266,7 @@ class _Search:
                     continue
                 if self.trials.is_refuted(other) or self._is_no_better(other):
                     self._settled.add(other)
-                    self.master.cut(_alone(other))
+                    self.master.cut(alone(other))
         return self.master.n_cuts - before
 
     def _is_no_better(self, assignment: Assignment) -> bool:
@@ -326,7 +326,3 @@ class _Search:
     def _total(self, assignment: Assignment, length_m: FloatArray) -> float:
         each = zip(self.members, assignment, strict=True)
         return float(sum(self.per_metre[p] * length_m[cables].sum() for cables, p in each))
-
-
-def _alone(assignment: Assignment) -> Block:
-    return tuple(frozenset({p}) for p in assignment)

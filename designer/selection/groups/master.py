@@ -32,6 +32,11 @@ Guide = tuple[FloatArray, float]
 """Coefficients (n_groups, n_products) of x, and what their sum may reach."""
 
 
+def alone(assignment: Assignment) -> Block:
+    """Return the block of this assignment and no other."""
+    return tuple(frozenset({p}) for p in assignment)
+
+
 @dataclass(slots=True, eq=False)
 class Master:
     """The programme and its cuts."""
