@@ -110,9 +110,7 @@ def read_quantity(given: object, dimension: Dimension) -> float:
     try:
         return _read(given, dimension)
     except _MisreadError as error:
-        expected = error.instead or dimension.expected
-        hint = f"; did you mean '{error.nearest}'?" if error.nearest else ""
-        raise QuantityError(f"{describe(given)} {error.problem}", expected + hint) from None
+        raise error.about(given, dimension.expected) from None
 
 
 def split_quantity(given: object) -> tuple[float, str] | None:
@@ -136,14 +134,11 @@ def in_SI(given: object) -> float:
         if parts is None or not math.isfinite(parts[0]):
             raise _MisreadError("is not a number")
         value, unit = parts
-        return (
-            float(_registry().Quantity(value, _unit(unit)).to_root_units().magnitude)
-            if unit
-            else value
-        )
+        if not unit:
+            return value
+        return float(_registry().Quantity(value, _unit(unit)).to_root_units().magnitude)
     except _MisreadError as error:
-        hint = f"; did you mean '{error.nearest}'?" if error.nearest else ""
-        raise QuantityError(f"{describe(given)} {error.problem}", f"a quantity{hint}") from None
+        raise error.about(given, "a quantity") from None
 
 
 def format_SI(value: float, dimension: Dimension) -> str:
@@ -172,6 +167,11 @@ class _MisreadError(Exception):
     def __init__(self, problem: str, *, instead: str = "", nearest: str | None = None) -> None:
         super().__init__(problem)
         self.problem, self.instead, self.nearest = problem, instead, nearest
+
+    def about(self, given: object, expected: str) -> QuantityError:
+        """Return the error about a value of a file."""
+        hint = f"; did you mean '{self.nearest}'?" if self.nearest else ""
+        return QuantityError(f"{describe(given)} {self.problem}", (self.instead or expected) + hint)
 
 
 def _read(given: object, dimension: Dimension) -> float:

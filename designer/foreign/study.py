@@ -125,20 +125,17 @@ def _robot(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
         yield from _centre_of_mass(robot, answers)
         yield "    attachments:"
         yield from (f"      - {_list(point)}" for point in robot.attachments_m)
-    yield from _tension_min(robot)
+    if robot.tension_min_N > 0.0:
+        least = format_SI(robot.tension_min_N, FORCE)
+        if robot.has_choice:
+            yield from _remarks(robot, "robot.tension_min", "  ")
+            yield f"  tension_min: {least}"
+        else:
+            yield f"  # The file asks for {least} at least, which so few cables cannot choose."
     if answers.gravity is not None:
         yield f"  gravity: {_list(answers.gravity)}"
     if robot.plane_normal is not None:
         yield "  planar: true"
-
-
-def _tension_min(robot: ForeignRobot) -> Iterator[str]:
-    least = format_SI(robot.tension_min_N, FORCE)
-    if robot.tension_min_N > 0.0 and robot.has_choice:
-        yield from _remarks(robot, "robot.tension_min", "  ")
-        yield f"  tension_min: {least}"
-    elif robot.tension_min_N > 0.0:
-        yield f"  # The file asks for {least} at least, which so few cables cannot choose."
 
 
 def _mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:

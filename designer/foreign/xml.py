@@ -56,21 +56,18 @@ class Element:
 
     def number(self, name: str) -> float:
         """Return an attribute as a finite number; `InputError` if it is none."""
-        return self._numbers(self.attribute(name), 1, f"{name}=")[0]
+        return self.numbers(1, name)[0]
 
     def numbers(self, count: int, name: str | None = None) -> tuple[float, ...]:
         """Return the finite numbers in the text, or in an attribute; `InputError` otherwise."""
-        if name is None:
-            return self._numbers(self.text, count, "")
-        return self._numbers(self.attribute(name), count, f"{name}=")
-
-    def _numbers(self, text: str, count: int, where: str) -> tuple[float, ...]:
-        wanted = "a finite number" if count == 1 else f"{count} finite numbers"
+        text = self.text if name is None else self.attribute(name)
         try:
             values = tuple(float(word) for word in text.split())
         except ValueError:
             values = ()
         if len(values) != count or not all(map(math.isfinite, values)):
+            wanted = "a finite number" if count == 1 else f"{count} finite numbers"
+            where = "" if name is None else f"{name}="
             shown = printable(" ".join(text.split()))[:60]
             self.refuse(f"<{self.tag}> has {where}'{shown}'", wanted)
         return values

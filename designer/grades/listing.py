@@ -39,10 +39,12 @@ class Wanted:
 
     def among(self, grades: Iterable[Grade]) -> list[Grade]:
         """Return the grades that match, with the sizes that do."""
-        matching = [replace(grade, sizes=self._sizes(grade)) for grade in grades if self._is(grade)]
+        matching = [
+            replace(grade, sizes=self._sizes(grade)) for grade in grades if self._matches(grade)
+        ]
         return [grade for grade in matching if grade.sizes]
 
-    def _is(self, grade: Grade) -> bool:
+    def _matches(self, grade: Grade) -> bool:
         makers = f"{grade.manufacturer} {grade.source.publisher}".casefold()
         material = (grade.material or "").casefold()
         return (

@@ -73,7 +73,7 @@ def _outliers(sizes: Sequence[Size], values: Sequence[float], allowed: float) ->
     trusted = [index for index, size in enumerate(sizes) if size.doubt is None]
     among_trusted = _stand_off(values, trusted, allowed)
     among_all = _stand_off(values, range(len(sizes)), allowed)
-    return {index: among_trusted[index] for index in among_trusted if index in among_all}
+    return {index: off for index, off in among_trusted.items() if index in among_all}
 
 
 def _stand_off(values: Sequence[float], indices: Sequence[int], allowed: float) -> dict[int, float]:

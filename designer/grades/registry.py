@@ -188,7 +188,11 @@ class _Shelf:
         for item in offer.items:
             for grade in _grades_in(item, complaints.append):
                 complaints += self._add(replace(grade, origin=offer.name))
-        self._report(offer.label, complaints)
+        lines = [f"{offer.label}: {one_line(complaint)}: left out" for complaint in complaints]
+        self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
+        hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
+        if hidden > 0:
+            self.problems.append(f"{offer.label}: {hidden} more problems of this kind")
         added = list(self.grades.values())[before:]
         self.sources.append(CatalogueSource(offer.name, offer.source, len(added), _digest(added)))
 
@@ -214,13 +218,6 @@ class _Shelf:
         if first is grade:
             return []
         return [f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already"]
-
-    def _report(self, label: str, complaints: Iterable[str]) -> None:
-        lines = [f"{label}: {one_line(complaint)}: left out" for complaint in complaints]
-        hidden = len(lines) - MOST_PROBLEMS_OF_A_SOURCE
-        self.problems += lines[:MOST_PROBLEMS_OF_A_SOURCE]
-        if hidden > 0:
-            self.problems.append(f"{label}: {hidden} more problems of this kind")
 
 
 def _digest(grades: Iterable[Grade]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import EntryPoint, entry_points
@@ -66,7 +66,10 @@ def find_plugins(with_plugins: bool = True) -> Plugins:
     """Load the entry points, ours first; without plugins, ours alone."""
     problems: list[str] = []
     found: dict[str, Plugin] = {}
-    for entry in _entries(with_plugins):
+    installed = entry_points(group=hookspecs.ENTRY_POINT_GROUP) if with_plugins else ()
+    strangers = [entry for entry in installed if entry.value not in _OWN_MODULES]
+    strangers.sort(key=lambda entry: (entry.name, entry.value))
+    for entry in (*OWN_ENTRIES, *strangers):
         name, source = one_line(entry.name), _distribution(entry)
         plugin = Plugin(name, source, {})
         if name in found:
@@ -90,14 +93,6 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
         if items is not None:
             offers.append(Offer(plugin.name, plugin.source, plugin.label, items))
     return offers, problems
-
-
-def _entries(with_plugins: bool) -> Iterable[EntryPoint]:
-    installed = entry_points(group=hookspecs.ENTRY_POINT_GROUP)
-    strangers = [entry for entry in installed if entry.value not in _OWN_MODULES]
-    yield from OWN_ENTRIES
-    if with_plugins:
-        yield from sorted(strangers, key=lambda entry: (entry.name, entry.value))
 
 
 def _hooks(entry: EntryPoint) -> dict[str, Callable[[], object]]:

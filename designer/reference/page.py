@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from designer import __version__
 from designer.reference import robots, single_cables
 from designer.reference.case import Case, Figure
-from designer.reference.converted import ROBOTS, Converted
+from designer.reference.converted import ROBOTS
 
 CASES: tuple[Case, ...] = (*robots.CASES, *single_cables.CASES)
 HEADINGS = ("unit", "theirs", "ours", "difference", "allowed", "")
@@ -40,21 +40,16 @@ def _lines(computed: Computed) -> Iterator[str]:
     )
     yield ""
     yield from table(("source", "figures", "largest difference", "outside"), "lrrr")
-    yield from (row(_in_short(*one)) for one in computed)
+    for case, figures in computed:
+        # What is only shown, since theirs is wrong, is no difference of ours.
+        judged = [abs(one.difference) for one in figures if one.tolerance is not None]
+        failed = sum(not one.holds for one in figures)
+        yield row((case.title, str(len(figures)), f"{max(judged):.1e}", str(failed)))
     for case, figures in computed:
         yield from ("", f"## {case.title}", "", f"{case.source}.", "", case.note, "")
-        yield from table(
-            ("figure", "unit", "theirs", "ours", "difference", "allowed", ""), "llrrrrl"
-        )
+        yield from table(("figure", *HEADINGS), "llrrrrl")
         yield from (row(cells(one)) for one in figures)
     yield from _converted()
-
-
-def _in_short(case: Case, figures: Sequence[Figure]) -> tuple[str, ...]:
-    """Cells of a case; what is only shown, since theirs is wrong, is no difference of ours."""
-    judged = [abs(one.difference) for one in figures if one.tolerance is not None]
-    outside = sum(not one.holds for one in figures)
-    return (case.title, str(len(figures)), f"{max(judged):.1e}", str(outside))
 
 
 def cells(figure: Figure) -> tuple[str, ...]:
@@ -83,15 +78,12 @@ def _converted() -> Iterator[str]:
     yield ""
     heading = ("robot", "file of", "cables", "left out", "answer", "diameter, mm", "tension, N")
     yield from table(heading, "llrllrr")
-    yield from (row(_of_robot(one)) for one in ROBOTS)
-
-
-def _of_robot(robot: Converted) -> tuple[str, ...]:
-    answer = robot.reason if robot.verdict is None else robot.verdict.reason
-    figures = (robot.diameter_mm, robot.tension_N)
-    shown = ("" if one is None else f"{one:.6g}" for one in figures)
-    left_out = ", ".join(robot.gaps)
-    return (robot.name, robot.source, str(robot.n_cables), left_out, answer, *shown)
+    for robot in ROBOTS:
+        answer = robot.reason if robot.verdict is None else robot.verdict.reason
+        figures = (robot.diameter_mm, robot.tension_N)
+        shown = ("" if one is None else f"{one:.6g}" for one in figures)
+        left_out = ", ".join(robot.gaps)
+        yield row((robot.name, robot.source, str(robot.n_cables), left_out, answer, *shown))
 
 
 def table(heading: Sequence[str], sides: str) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -69,17 +69,20 @@ def _upper_end_N(line: Line) -> tuple[float, float]:
     return float(force_x), float(weight * length - force_z)
 
 
-def _closed_form() -> Iterator[Figure]:
-    for name, line, theirs, _ in LINES:
-        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True):
-            yield Figure(f"{name}, {end}", "N", known, ours, 1e-9)
+def _closed_form() -> Sequence[Figure]:
+    return [
+        Figure(f"{name}, {end}", "N", known, ours, 1e-9)
+        for name, line, theirs, _ in LINES
+        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
+    ]
 
 
-def _moorpy() -> Iterator[Figure]:
-    for name, line, _, theirs in LINES:
-        tolerance = None if name == WRONG_IN_MOORPY else 1e-9
-        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True):
-            yield Figure(f"{name}, {end}", "N", known, ours, tolerance)
+def _moorpy() -> Sequence[Figure]:
+    return [
+        Figure(f"{name}, {end}", "N", known, ours, None if name == WRONG_IN_MOORPY else 1e-9)
+        for name, line, _, theirs in LINES
+        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
+    ]
 
 
 def _lowe_and_langley() -> Sequence[Figure]:
@@ -126,14 +129,14 @@ CASES = (
         "H. M. Irvine, Cable Structures, MIT Press, 1981; evaluated in 40 digits",
         "Seven suspended cables, from slack to nearly taut. H: horizontal force; V: vertical force "
         "at the upper end, with the whole weight of the cable.",
-        lambda: tuple(_closed_form()),
+        _closed_form,
     ),
     Case(
         "The same cables in MoorPy",
         "MoorPy 1.3.0, function catenary, tolerance 1e-9 m, far above the sea bed",
         f"At '{WRONG_IN_MOORPY}' MoorPy falls back on a straight line without weight and reports "
         "no error; the closed form above tells which is right.",
-        lambda: tuple(_moorpy()),
+        _moorpy,
     ),
     Case(
         "A heavy cable between fixed ends",
