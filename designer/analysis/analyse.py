@@ -113,8 +113,10 @@ class Provenance:
     def now(cls, study: Study | None = None) -> Provenance:
         """Return the provenance of an analysis that starts now, with what the study asks for."""
         names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
-        if study is not None and _needs_programmes(study):
-            names += ["cvxpy", "highspy"]
+        if study is not None:
+            has_groups = study.selection is not None and bool(study.selection.groups)
+            if has_groups or study.robot.is_redundant:  # chosen by mathematical programmes
+                names += ["cvxpy", "highspy"]
         return cls(
             version=__version__,
             libraries=tuple((name, version(name)) for name in names),
@@ -254,12 +256,6 @@ class Analysis:
         if self.groups is not None:
             return self.groups.chosen is not None
         return self.selection is None or self.selection.chosen is not None
-
-
-def _needs_programmes(study: Study) -> bool:
-    """Tell whether tensions or products are chosen by mathematical programmes."""
-    has_groups = study.selection is not None and bool(study.selection.groups)
-    return has_groups or study.robot.is_redundant
 
 
 def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis | None:

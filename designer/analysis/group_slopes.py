@@ -86,8 +86,8 @@ def _slopes(
         own = _named(choice, found, g, (math.nan, math.nan), (none, none))
         return GroupSlopes(choice.groups[g], most + 1, float(used[most]), tuple(own), nothing, why)
     (one,) = slopes
-    twice = replace(robot.platform, mass_kg=2.0 * robot.platform.mass_kg)
-    twice = replace(twice, wrench_N=2.0 * robot.platform.wrench_N)
+    body = robot.platform
+    twice = replace(body, mass_kg=2.0 * body.mass_kg, wrench_N=2.0 * body.wrench_N)
     heavier = load_wrench_N(replace(robot, platform=twice), statics.poses)[0]
     payload = float(one.load @ (heavier - load_wrench_N(robot, statics.poses)[0]))
     region = float(one.position_per_m @ outward(workspace.region, place[:3]))

@@ -21,7 +21,6 @@ from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
 from designer.proof.servable import Servable
 from designer.selection.qualities import Qualities
-from designer.sizing.newton import Sizing
 from designer.statics.rest import RestingPlaces
 from designer.study import Study
 from designer.workspace.hanging import Hanging, HangingCables
@@ -123,7 +122,8 @@ def _answer(analysis: Analysis) -> Json | None:
 
 def _pose(study: Study, pose: PoseAnalysis) -> Json:
     statics, sizing = pose.sizing.statics, pose.sizing
-    diameter = _number(sizing.diameter_m)
+    diameter, is_solved = _number(sizing.diameter_m), bool(statics.is_solved)
+    how_surely = "proved" if sizing.is_thinnest else "found"
     return {
         "position_m": _numbers(statics.poses.position_m),
         "in_workspace": None if study.workspace is None else not study.pose_outside,
@@ -136,11 +136,11 @@ def _pose(study: Study, pose: PoseAnalysis) -> Json:
             "platform_tensions_N": _numbers(statics.platform_tension_N),
             "forces_x_N": _numbers(statics.force_x_N),
             "forces_z_N": _numbers(statics.force_z_N),
-            "hangs_below": bool(statics.hangs_below) if statics.is_solved else None,
+            "hangs_below": bool(statics.hangs_below) if is_solved else None,
             "closure_residual_m": _number(statics.closure_residual_m().max()),
             "equilibrium_residual_N": _number(abs(statics.equilibrium_residual_N()).max()),
             "status": Verdict(int(statics.verdict)).label,
-            "thinnest": _how_surely(sizing),
+            "thinnest": how_surely if is_solved else None,
         },
         "massless": {
             "diameter_m": _number(sizing.massless_diameter_m),
@@ -157,13 +157,6 @@ def _pose(study: Study, pose: PoseAnalysis) -> Json:
         "optimum": {"diameter_m": diameter},
         "rest": _rest(pose.rest),
     }
-
-
-def _how_surely(sizing: Sizing) -> str | None:
-    """Return whether it is proved that no thinner cable holds the pose, or it is the best found."""
-    if not sizing.statics.is_solved:
-        return None
-    return "proved" if sizing.is_thinnest else "found"
 
 
 def _rest(rest: RestingPlaces | None) -> Json | None:

@@ -230,10 +230,8 @@ def outward(region: Region, position_m: FloatArray) -> FloatArray:
         way = np.append((region.ends_m[1] - region.ends_m[0]) / region.size_m[0], 0.0)
         near = [abs(share - end) <= _ON_A_SIDE for end in (0.0, 1.0)]
         return np.asarray((near[1] * 1.0 - near[0] * 1.0) * way)
-    return _out_of_prism(region, position_m) if isinstance(region, Prism) else np.zeros(3)
-
-
-def _out_of_prism(region: Prism, position_m: FloatArray) -> FloatArray:
+    if not isinstance(region, Prism):
+        return np.zeros(3)
     edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
     normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
     gap = np.einsum("ek,ek->e", normal, region.polygon_m - position_m[:2])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ import numpy as np
 from designer import __version__
 from designer.diagnosis.errors_of import Error, Interval, Outlier
 from designer.documents.formats import DIAGNOSIS_FORMAT
+from designer.documents.plain import finite
 from designer.model.measured_data import Measured
 from designer.study import DeclaredEffect, Study
 
@@ -74,7 +74,8 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         },
         "provenance": _provenance(diagnosis.study, diagnosis.measured),
     }
-    return _plain(answer)
+    plain: Json = finite(answer)
+    return plain
 
 
 def check_dict(check: Check) -> Json:
@@ -103,7 +104,8 @@ def check_dict(check: Check) -> Json:
         "noise": {"length_m": noise.length_m, "tension_N": noise.tension_N, "source": noise.source},
         "provenance": _provenance(check.study, check.measured),
     }
-    return _plain(answer)
+    plain: Json = finite(answer)
+    return plain
 
 
 def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
@@ -116,12 +118,6 @@ def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
         else:
             answer.setdefault(effect.id, []).append({"cable": effect.cable, **values})
     return answer
-
-
-def _plain(answer: Json) -> Json:
-    """Return the same in JSON's own types, with None for each number that is not finite."""
-    plain: Json = json.loads(json.dumps(answer), parse_constant=lambda _: None)
-    return plain
 
 
 def _by_model(
@@ -237,30 +233,26 @@ def _before_after(before: Error | None, after: Error | None, noise: float) -> Js
 
 
 def _error(error: Error | None) -> Json | None:
-    return (
-        None
-        if error is None
-        else {
-            "rms": error.rms,
-            "heldout_rms": error.heldout.value,
-            "heldout_interval": [error.heldout.low, error.heldout.high],
-            "heldout_rms_of_cable": error.heldout_of_cable.tolist(),
-        }
-    )
+    if error is None:
+        return None
+    return {
+        "rms": error.rms,
+        "heldout_rms": error.heldout.value,
+        "heldout_interval": [error.heldout.low, error.heldout.high],
+        "heldout_rms_of_cable": error.heldout_of_cable.tolist(),
+    }
 
 
 def _foretold(foretold: Foretold | None) -> Json | None:
-    return (
-        None
-        if foretold is None
-        else {
-            "rows": foretold.n_rows,
-            "solved": foretold.n_solved,
-            "position_m": _interval(foretold.position_m),
-            "turn_rad": foretold.turn_rad and _interval(foretold.turn_rad),
-            "tension_N": foretold.tension_N and _interval(foretold.tension_N),
-        }
-    )
+    if foretold is None:
+        return None
+    return {
+        "rows": foretold.n_rows,
+        "solved": foretold.n_solved,
+        "position_m": _interval(foretold.position_m),
+        "turn_rad": foretold.turn_rad and _interval(foretold.turn_rad),
+        "tension_N": foretold.tension_N and _interval(foretold.tension_N),
+    }
 
 
 def _interval(interval: Interval) -> Json:

@@ -48,11 +48,10 @@ class Case:
     fixed: tuple[Setting, ...] = ()
     idle: tuple[tuple[str, str], ...] = ()
 
-    def predictor(self, measured: Measured | None = None) -> Predictor:
-        """Return the model as declared, for these rows or others."""
-        rows = self.measured if measured is None else measured
-        kind = Predictor if rows.has_poses else FreePredictor
-        return kind(self.machine, rows, self.fixed, self.study.known_effects)
+    def predictor(self) -> Predictor:
+        """Return the model as declared, for these rows."""
+        kind = Predictor if self.measured.has_poses else FreePredictor
+        return kind(self.machine, self.measured, self.fixed, self.study.known_effects)
 
     def fault(self, problem: str, expected: str) -> InputError:
         """Return what is wrong with the data as a whole."""

@@ -149,22 +149,16 @@ def _starts(
     keys = {s.effect.key for s in known}
     several = [e for e in effects if e.starts or e.starts_from]
     fresh = [e for e in several if anew or e.key not in keys]
-    near = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
-    return near + [
-        starting_vector(effects, [s for s in known if s.effect.key != e.key], values)
-        for e in fresh
-        for values in (*e.starts, *_starts_from(problem, e, effects, known))
-    ]
-
-
-def _starts_from(
-    problem: Problem, effect: Effect, effects: Sequence[Effect], known: Sequence[Setting]
-) -> Sequence[Values]:
-    if effect.starts_from is None:
-        return ()
-    keys = {one.key for one in effects} - {effect.key}
-    rest = tuple(s for s in known if s.effect.key in keys)
-    return effect.starts_from(problem.measured, problem.residual(rest))
+    starts = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
+    fitted = {effect.key for effect in effects}
+    for effect in fresh:
+        others = [s for s in known if s.effect.key != effect.key]
+        tried = list(effect.starts)
+        if effect.starts_from is not None:
+            rest = tuple(s for s in others if s.effect.key in fitted)
+            tried += effect.starts_from(problem.measured, problem.residual(rest))
+        starts += [starting_vector(effects, others, values) for values in tried]
+    return starts
 
 
 def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) -> FloatArray:

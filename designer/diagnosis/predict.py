@@ -94,7 +94,7 @@ class Predictor:
             return self(settings, noise)
         return self._shown(self._physical(settings, noise)[1], settings)
 
-    def true_readings(self, settings: Sequence[Setting], noise: Noise = EVEN) -> Readings:
+    def true_readings(self, settings: Sequence[Setting], noise: Noise) -> Readings:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
         shown = self(settings, noise)
         if self.spare_cables:

@@ -193,9 +193,7 @@ class Searcher:
         known = near.settings if near else ()
         return fit(self._problem, effects, self._rows, known, thorough=thorough, anew=anew)
 
-    def trials(
-        self, found: Sequence[Effect], present: Fit, part: str = "candidates"
-    ) -> list[Trial]:
+    def trials(self, found: Sequence[Effect], present: Fit, part: str) -> list[Trial]:
         """Try every other candidate in addition, best first."""
         others = self._others(found)
         tried: list[Trial] = []
@@ -222,7 +220,7 @@ class Searcher:
         return answer
 
     def rivals(
-        self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step] = ()
+        self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
         """Return the effects that the data cannot reject in place of one that was found.
 

@@ -144,7 +144,7 @@ def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArr
 
 
 def find_structure(
-    residual: FloatArray, covariates: Mapping[str, FloatArray], *, settled: bool, seed: int = 0
+    residual: FloatArray, covariates: Mapping[str, FloatArray], *, settled: bool
 ) -> Structure:
     """Test the residual against every covariate.
 
@@ -170,7 +170,7 @@ def find_structure(
     observed = _largest_share(bases, channels)
     # What a covariate explains does not last of itself.
     lasts = lasting(beside(bases[int(np.argmax(observed))], channels))
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     chances = chances_of(
         observed, [_largest_share(bases, one).max() for one in draws(channels, lasts, rng)]
     )

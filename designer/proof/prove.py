@@ -199,7 +199,14 @@ class _Search:
         tiny = high[rows, cut] - low[rows, cut] <= _SMALLEST * self._extent[cut]
         self._stuck = max(self._stuck, bound[~good & tiny].max(initial=0.0))
         left = ~good & ~tiny
-        self._halve(*(values[left] for values in (low, high, cover, bound, raised, cut)))
+        low, high, cover, bound, raised, cut = (
+            values[left] for values in (low, high, cover, bound, raised, cut)
+        )
+        first, second = halves(low, high, cut)
+        for a, b in ((low, first), (second, high)):
+            for k in np.unique(cover):
+                some = np.flatnonzero(cover == k)
+                self._add(int(k), a[some], b[some], bound[some], raised[some])
 
     def _next(self, most: int) -> IntArray:
         """Return the boxes that are not known to hold, the largest first; else the worst."""
@@ -226,21 +233,6 @@ class _Search:
         used = encloser.utilisation(places)
         if used.max() > self._found * _BETTER:
             self._found, self._worst = float(used.max()), places[used.argmax()]
-
-    def _halve(
-        self,
-        low: FloatArray,
-        high: FloatArray,
-        cover: IntArray,
-        bound: FloatArray,
-        raised: FloatArray,
-        cut: IntArray,
-    ) -> None:
-        first, second = halves(low, high, cut)
-        for a, b in ((low, first), (second, high)):
-            for k in np.unique(cover):
-                some = np.flatnonzero(cover == k)
-                self._add(int(k), a[some], b[some], bound[some], raised[some])
 
     def _add(
         self, k: int, low: FloatArray, high: FloatArray, bound: FloatArray, raised: FloatArray

@@ -80,13 +80,6 @@ class CableLoss:
         return np.asarray(np.nan_to_num(self.tension_N.max(axis=1), nan=np.inf))
 
 
-def lose_cable(
-    robot: Robot, poses: Poses, cable: Cable, lost: int, *, seeks_better: bool = True
-) -> CableLoss:
-    """Return what becomes of poses (n_poses,) when a cable, counted from 1, is gone."""
-    return settle(robot, poses, cable, lost, seeks_better=seeks_better)
-
-
 def settle(
     robot: Robot,
     poses: Poses,

@@ -123,7 +123,6 @@ def find_equilibria(
     cable: Cable | Cables,
     length_m: FloatArray,
     starts: Poses,
-    force_N: FloatArray | None = None,
 ) -> Equilibria:
     """Solve the forward statics from every start, and tell the results apart.
 
@@ -137,11 +136,8 @@ def find_equilibria(
         Unstrained lengths [m].
     starts : Poses
         Poses (n_starts,), such as `spread_poses`, the same for all problems.
-    force_N : array (..., 3), optional
-        Force on the platform beside its weight, base frame [N].
     """
-    force = None if force_N is None else np.asarray(force_N)[..., None, :]
-    found = solve_forward(robot, cable, np.asarray(length_m)[..., None, :], starts, force)
+    found = solve_forward(robot, cable, np.asarray(length_m)[..., None, :], starts)
     places = found.poses.position_m
     if not robot.is_point_mass:  # turned axes times reach, so that poses compare as points
         axes = found.poses.rotation.reshape(*places.shape[:-1], 9)
@@ -156,7 +152,7 @@ def find_equilibria(
     return Equilibria(found, which, n_stable)
 
 
-def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5, seed: int = 0) -> Poses:
+def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5) -> Poses:
     """Return poses to start from: under the exit points, turned by up to some angle (count,).
 
     Those of a planar robot lie in its plane.
@@ -169,10 +165,8 @@ def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5, seed: 
         How many poses; the first is in the middle and not turned.
     largest_turn_rad : float
         Largest angle of the random turns [rad].
-    seed : int
-        Of the random choice.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     upright = robot.upright
     exits = robot.exit_points_m @ upright.T
     weights = rng.dirichlet(np.ones(len(exits)), count)

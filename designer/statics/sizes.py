@@ -31,7 +31,7 @@ def meet(
     cells: IntArray,
     n_cells: int,
     *,
-    leaves_out_hanging: bool = False,
+    leaves_out_hanging: bool,
 ) -> Meets:
     """Solve poses (n_poses,) with each of the cables on all winches, by `designer.kernel.sizes`.
 

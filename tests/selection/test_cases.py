@@ -23,7 +23,7 @@ from designer.selection.cases import CaseFound, Cases, searched_all, together
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.verify import verify
-from designer.statics.cable_loss import Fate, lose_cable
+from designer.statics.cable_loss import Fate, settle
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, Workspace
 
@@ -99,7 +99,7 @@ def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
     if robot.is_redundant:  # the internal forces before the loss need not be the twin's
         length = ours.length_m[0]
     others = np.delete(np.arange(robot.n_cables), one.lost_cable - 1)
-    loss = lose_cable(one.robot, found.pose, one.cable, one.lost_cable)
+    loss = settle(one.robot, found.pose, one.cable, one.lost_cable)
     near, turned = loss.rest.position_m[0] + 1e-3, loss.rest.rotation[0]
     turned = Rotation.from_rotvec([1e-3, -1e-3, 1e-3]).as_matrix() @ turned
     _, _, pull = rest(twin, load, near, turned, length[others], others)
@@ -263,7 +263,7 @@ def test_poses_are_left_out_in_each_direction_of_a_case_by_itself() -> None:
     assert len(shares) > 1
     lost = LoadCase("lost", cable_lost=1)
     ((after,),) = Cases(study.robot, workspace, (lost,)).sampled([[cable]], lambda _: None)
-    loss = lose_cable(study.robot, Poses.at(places), cable, 1)
+    loss = settle(study.robot, Poses.at(places), cable, 1)
     counts = ~loss.before.hangs_below
     assert 0 < counts.sum() < len(places)
     used = loss.largest_tension_N[counts].max() / cable.allowable_tension_N

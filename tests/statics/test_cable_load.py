@@ -16,7 +16,7 @@ from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Loaded, Wind
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
-from designer.statics.cable_loss import Fate, lose_cable
+from designer.statics.cable_loss import Fate, settle
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics, solve_sagging
 
@@ -173,7 +173,7 @@ def test_a_point_mass_swings_into_the_plane_of_two_cables(lost: int) -> None:
     twin = twin_of(robot, ROPE, Wind(0.0, 0.0))
     load = acting(twin)
     _, length = held(twin, load, place, np.eye(3))
-    loss = lose_cable(robot, Poses.at(place[None]), ROPE, lost)
+    loss = settle(robot, Poses.at(place[None]), ROPE, lost)
     assert loss.fate[0] == Fate.RESTS_ELSEWHERE
     others = np.delete(np.arange(3), lost - 1)
     there, _, pull = rest(
