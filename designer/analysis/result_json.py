@@ -52,11 +52,7 @@ def result_dict(analysis: Analysis) -> Json:
                 **_qualities(analysis.qualities),
             }
         ),
-        "selection": (
-            None
-            if analysis.selection is None
-            else {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
-        ),
+        "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
         **carries_dict(analysis.carries, analysis.group_slopes),
         "uncertainty": uncertainty_dict(analysis.uncertainty),
@@ -123,7 +119,7 @@ def _answer(analysis: Analysis) -> Json | None:
 def _pose(study: Study, pose: PoseAnalysis) -> Json:
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter, is_solved = _number(sizing.diameter_m), bool(statics.is_solved)
-    how_surely = "proved" if sizing.is_thinnest else "found"
+    how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
     return {
         "position_m": _numbers(statics.poses.position_m),
         "in_workspace": None if study.workspace is None else not study.pose_outside,
@@ -266,6 +262,11 @@ def _why_infeasible(found: WorkspaceMap) -> str:
     if found.infeasible_example_m is None:
         return "Every pose is left out."
     return "The search between the samples met a pose without a finite cable."
+
+
+def _selection(analysis: Analysis) -> Json:
+    assert analysis.selection is not None
+    return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
 
 
 def _servable(found: Servable | None) -> Json | None:

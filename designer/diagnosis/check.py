@@ -198,10 +198,7 @@ def check(
     if unknown and without.free_readings(np.isfinite(without.readings)) > unknown:
         progress("what is unknown, fitted without the effects")
         tried["fitted"] = (without, fit(without, bare.given, everywhere).settings)
-    held = {
-        name: np.asarray(np.isfinite(problem.predicted(settings).length_m).all(axis=1))
-        for name, (problem, settings) in tried.items()
-    }
+    held = {name: _held(*model) for name, model in tried.items()}
     compared = np.asarray(np.all([*held.values()], axis=0))
     models = {}
     for name, (problem, settings) in tried.items():
@@ -220,6 +217,10 @@ def check(
         structure=structure_left(declared, (), everywhere),
         outliers=outliers_of(declared.residual(()), measured.row_numbers),
     )
+
+
+def _held(problem: Problem, settings: tuple[Setting, ...]) -> BoolArray:
+    return np.asarray(np.isfinite(problem.predicted(settings).length_m).all(axis=1))
 
 
 def _model(
