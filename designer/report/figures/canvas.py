@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
+from designer.model.region import PointList, Prism, Region
 from designer.report import format as fmt
 from designer.report.figures import palette
 
@@ -62,6 +63,8 @@ HATCHED: Style = {
     "hatch": "//////",
 }
 """Where no cable holds the platform."""
+REGION: Style = {"facecolor": "#EEF1F4", "edgecolor": palette.FAINT}
+"""Where the platform goes, in a plan."""
 
 
 @contextmanager
@@ -75,15 +78,20 @@ def drawing() -> Iterator[None]:
         yield
 
 
-def sheet(height_mm: float, *, keeps_aspect: bool = False) -> Figure:
-    """Return an empty figure of this height on paper [mm] and of the column's width.
+def sheet(
+    height_mm: float,
+    *,
+    width_mm: float = palette.PAPER_WIDTH_MM,
+    keeps_aspect: bool = False,
+) -> Figure:
+    """Return an empty figure of this height on paper and, unless told, of the column's width [mm].
 
     ``keeps_aspect`` tells that its axes have equal scales, so that they cannot fill their space.
     """
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    size = (palette.PAPER_WIDTH_MM / 25.4, height_mm / 25.4)
+    size = (width_mm / 25.4, height_mm / 25.4)
     figure = Figure(figsize=size, layout="compressed" if keeps_aspect else "constrained")
     FigureCanvasSVG(figure).get_renderer = partial(_ruler, figure)
     return figure
@@ -149,6 +157,19 @@ def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layou
     ]
     if entries:
         figure.legend(handles=entries, loc=loc, **layout)
+
+
+def region(axes: Axes, shape: Region, plane: list[int], label: str = "") -> None:
+    """Draw where the platform goes, seen along the axis that is not in the plane (2,)."""
+    if isinstance(shape, PointList):
+        points = shape.points_m[:, plane]
+        axes.plot(*points.T, ".", color=palette.FAINT, markersize=2.5, label=label)
+        return
+    (left, low), (right, high) = shape.bounds_m[:, plane]
+    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    if isinstance(shape, Prism) and plane == [0, 1]:
+        corners = shape.polygon_m
+    axes.fill(*corners.T, **REGION, label=label)
 
 
 def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:

@@ -28,8 +28,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     start, top = _window(profile), _top(profile, focus)
     shown = "Needed diameter from the centre of the region through the worst pose to the edge"
     with canvas.drawing():
-        figure = canvas.sheet(62.0)
-        figure.set_figwidth(palette.HALF_WIDTH_MM / 25.4)
+        figure = canvas.sheet(62.0, width_mm=palette.HALF_WIDTH_MM)
         axes = figure.subplots()
         axes.set(xlim=(start, 0.0), ylim=(0.0, top))
         _zones(axes, profile, start)

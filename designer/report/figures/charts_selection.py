@@ -27,17 +27,18 @@ _SIZE: Style = {"marker": "o", "markersize": 4.2, "markeredgecolor": palette.INK
 _BEATEN: Style = {"markersize": 2.6, "markeredgewidth": 0.0}
 _FRONT: Style = {"markersize": 6.0, "markeredgewidth": 0.9, "markeredgecolor": palette.INK}
 _CHOSEN: Style = _FRONT | {"markersize": 9.0, "markeredgewidth": 1.8}
+_MOST_GRADES = 18
 
 
-def candidates_chart(selection: SelectionResult, most: int = 18) -> str:
+def candidates_chart(selection: SelectionResult) -> str:
     """Return a row for each grade: range of sizes, need, best size, as SVG.
 
     Grades that hold come first, the lightest on top; then those that end too thin, the nearest
     first; then those of which no section holds. Where nothing was chosen, the grades outside the
-    study's list that would hold follow. The figure says how many more than ``most`` there are.
+    study's list that would hold follow. The figure says how many more there are than it shows.
     """
-    others = rank(selection.alternatives)[: most // 2]
-    own = rank(selection.outcomes)[: most - len(others)]
+    others = rank(selection.alternatives)[: _MOST_GRADES // 2]
+    own = rank(selection.outcomes)[: _MOST_GRADES - len(others)]
     shown = own + others
     left_out = len(selection.outcomes) + len(selection.alternatives) - len(shown)
     with canvas.drawing():

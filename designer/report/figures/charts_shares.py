@@ -28,8 +28,7 @@ def served_chart(served: Served) -> str:
     """Return the cumulative share of the workspace over the diameter, as SVG."""
     title = "Share of the workspace that a cable serves, over its diameter"
     with canvas.drawing():
-        figure = canvas.sheet(62.0)
-        figure.set_figwidth(palette.HALF_WIDTH_MM / 25.4)
+        figure = canvas.sheet(62.0, width_mm=palette.HALF_WIDTH_MM)
         axes = figure.subplots()
         axes.set(ylim=(0.0, 104.0), xlim=_served_range(served))
         sag, straight = (palette.SAG, 1), (palette.MASSLESS, -1)

@@ -31,9 +31,7 @@ _BINS = 12
 Layout = Literal["stacked", "overlaid", "after"]
 
 
-def carriers_chart(
-    diagnosis: Diagnosis, names: Sequence[str], key: str, layout: Layout = "stacked"
-) -> str:
+def carriers_chart(diagnosis: Diagnosis, names: Sequence[str], key: str, layout: Layout) -> str:
     """Return the residual against what it goes with, as SVG: a panel or two for each covariate.
 
     ``key`` is put before ids, so that several charts can stand in one page. The layout is before

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.region import PointList, Prism, Region
+from designer.model.region import Region
 from designer.model.robot import Poses, Robot
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
@@ -38,7 +38,7 @@ def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assig
     with canvas.drawing():
         figure = canvas.sheet(104.0, keeps_aspect=True)
         axes = figure.subplots()
-        _region(axes, region, plane)
+        canvas.region(axes, region, plane, "where the platform goes")
         for group, rope, share in zip(choice.groups, chosen.products, used, strict=True):
             style, colour = next(looks)
             label = f"{group.name}: {rope.size.id}\n{rope.grade.id}\n{100 * share:.1f} % used"
@@ -53,19 +53,6 @@ def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assig
         axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
         figure.legend(loc="outside right upper", handlelength=2.6)
         return canvas.svg(figure, "groups", "The robot from above with the cables of each group")
-
-
-def _region(axes: Axes, region: Region, plane: list[int]) -> None:
-    label = "where the platform goes"
-    if isinstance(region, PointList):
-        points = region.points_m[:, plane]
-        axes.plot(*points.T, ".", color=palette.FAINT, markersize=2.5, label=label)
-        return
-    (left, low), (right, high) = region.bounds_m[:, plane]
-    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
-    if isinstance(region, Prism) and plane == [0, 1]:
-        corners = region.polygon_m
-    axes.fill(*corners.T, facecolor="#EEF1F4", edgecolor=palette.FAINT, label=label)
 
 
 def _platform(axes: Axes, ends_m: FloatArray) -> None:

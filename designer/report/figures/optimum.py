@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.model.region import PointList, Prism, Region
+from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 _BEFORE: Style = {"color": palette.MASSLESS, "linewidth": 0.8, "linestyle": canvas.DASHES}
 _AFTER: Style = {"color": palette.SAG, "linewidth": 1.2}
-_REGION: Style = {"facecolor": "#EEF1F4", "edgecolor": palette.FAINT}
 _STARTS = (palette.SAG, "#E69F00", "#009E73", "#CC79A7")
 
 
@@ -52,7 +51,7 @@ def robots(before: Robot, after: Robot, region: Region | None, where_m: FloatArr
             ("optimised", {**_AFTER, "marker": "^"}),
         ]
         if region is not None:
-            looks.append(("where the platform goes", _REGION))
+            looks.append(("where the platform goes", canvas.REGION))
         canvas.legend(figure, looks, "outside lower center", ncols=3)
         return canvas.svg(figure, "robots", "The robot as given and optimised")
 
@@ -66,7 +65,7 @@ def _view(
     plane: list[int],
 ) -> None:
     if region is not None:
-        _region(axes, region, plane)
+        canvas.region(axes, region, plane)
     for robot, look, face in ((before, _BEFORE, "white"), (after, _AFTER, palette.SAG)):
         exits, ends = robot.exit_points_m, where_m + robot.attachments_m
         for a, b in zip(exits, ends, strict=True):
@@ -89,17 +88,6 @@ def _view(
     axes.set_aspect("equal")
     axes.margins(0.09)
     axes.set(xlabel=f"{'xyz'[plane[0]]} [m]", ylabel=f"{'xyz'[plane[1]]} [m]")
-
-
-def _region(axes: Axes, region: Region, plane: list[int]) -> None:
-    if isinstance(region, PointList):
-        axes.plot(*region.points_m[:, plane].T, ".", color=palette.FAINT, markersize=2.5)
-        return
-    (left, low), (right, high) = region.bounds_m[:, plane]
-    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
-    if isinstance(region, Prism) and plane == [0, 1]:
-        corners = region.polygon_m
-    axes.fill(*corners.T, **_REGION)
 
 
 def convergence(

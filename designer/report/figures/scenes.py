@@ -145,7 +145,7 @@ def base_outline_m(robot: Robot) -> FloatArray:
 
 
 def _label_robot(
-    axes: Axes, view: View, statics: Statics, curves: FloatArray, others: Sequence[FloatArray] = ()
+    axes: Axes, view: View, statics: Statics, curves: FloatArray, others: Sequence[FloatArray]
 ) -> None:
     """Write mass, largest sag and tensions at the exit points beside what they belong to."""
     clear = overlay.obstacles(view, [*curves, *body_lines_m(statics), *others])

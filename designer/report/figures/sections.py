@@ -33,6 +33,8 @@ _NARROW_MM = 112.0
 """Of the sheet of a map that has a list beside it."""
 _ZOOM = 0.6
 """Of the extent with the exit points: a smaller region is shown alone."""
+_APART = 0.09
+"""Of labels of contour lines, over the size of the region."""
 _HATCHED: Style = canvas.HATCHED | {"linewidth": 0.5}
 _GREY: Style = {"facecolor": palette.LEFT_OUT}
 
@@ -42,12 +44,16 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
 
     One for each quantity. A list of points is drawn as points, seen from above.
     """
-    bar = {"location": "bottom", "shrink": 0.92, "aspect": 30}
+    looks, width_mm = _slice_looks(maps.section), 150.0 / len(quantities)
+    corners = maps.flat_m(maps.study.robot.exit_points_m)
+    flat = maps.flat_m(maps.section.position_m)
+    map_mm = min(width_mm * _height_over_width(flat, corners), 56.0)
     with canvas.drawing():
-        figure = _slice_sheet(maps, 38.0, 150.0 / len(quantities))
+        figure = canvas.sheet(38.0 + (6.0 if looks else 0.0) + map_mm, keeps_aspect=True)
+        canvas.legend(figure, looks, "outside lower center", ncols=3)
         row = figure.subplots(1, len(quantities), squeeze=False)[0]
         for axes, quantity in zip(row, quantities, strict=True):
-            _slice(figure, axes, maps, quantity, 0.09, bar)
+            _slice(figure, axes, maps, quantity)
         for axes in row[1:]:
             axes.set_ylabel("")
             axes.tick_params(labelleft=False)
@@ -99,8 +105,7 @@ def section_map(
     values, steps = np.ma.masked_invalid(shown.values), steps_over_decades(shown.values)
     with canvas.drawing():
         height_mm = 20.0 + min(80.0 * _height_over_width(flat, corners), 56.0)
-        figure = canvas.sheet(height_mm, keeps_aspect=True)
-        figure.set_figwidth(_NARROW_MM / 25.4)
+        figure = canvas.sheet(height_mm, width_mm=_NARROW_MM, keeps_aspect=True)
         axes = figure.subplots()
         _paint(axes, flat, values, shown.is_bad, steps)
         if has_limit:
@@ -125,31 +130,13 @@ def section_map(
         return canvas.svg(figure, key, f"{label}, {place}")
 
 
-def _slice_sheet(maps: WorkspaceMaps, frame_mm: float, wide_mm: float) -> Figure:
-    """A sheet for maps of this width, with its legend."""
-    corners = maps.flat_m(maps.study.robot.exit_points_m)
-    proportions = _height_over_width(maps.flat_m(maps.section.position_m), corners)
-    looks = _slice_looks(maps.section)
-    height_mm = frame_mm + (6.0 if looks else 0.0) + min(wide_mm * proportions, 56.0)
-    figure = canvas.sheet(height_mm, keeps_aspect=True)
-    canvas.legend(figure, looks, "outside lower center", ncols=3)
-    return figure
-
-
-def _slice(
-    figure: Figure,
-    axes: Axes,
-    maps: WorkspaceMaps,
-    quantity: MapQuantity,
-    room: float,
-    bar: dict[str, Any],
-) -> None:
-    """One map, its contour labels ``room`` apart (over the size of the region), and its scale."""
+def _slice(figure: Figure, axes: Axes, maps: WorkspaceMaps, quantity: MapQuantity) -> None:
+    """One map and its scale."""
     field, flat = maps.section, maps.flat_m(maps.section.position_m)
     steps = steps_for(quantity.of(field))
     if maps.has_area:
         values = np.ma.masked_invalid(quantity.of(field))
-        _paint(axes, flat, values, field.is_infeasible, steps, room)
+        _paint(axes, flat, values, field.is_infeasible, steps, is_labelled=True)
         if _has_border(field):
             border: Style = {"colors": palette.INK, "linewidths": 0.9, "linestyles": "--"}
             uplift = np.ma.masked_invalid(field.uplift)
@@ -166,8 +153,9 @@ def _slice(
         axes.set_title(f"{_place(maps)}; {why}", loc="left")
         return
     axes.set_title(_place(maps), loc="left")
-    crowded = bar["location"] == "bottom" and canvas.decimals(steps.ticks) > 2
-    ticks = steps.ticks[:: 2 if crowded else 1]
+    is_crowded = canvas.decimals(steps.ticks) > 2
+    ticks = steps.ticks[:: 2 if is_crowded else 1]
+    bar: Style = {"location": "bottom", "shrink": 0.92, "aspect": 30}
     steps.bar(figure, quantity.label, ax=axes, ticks=ticks, **bar)
 
 
@@ -205,12 +193,10 @@ def _paint(
     values: FloatArray,
     is_bad: BoolArray,
     steps: Steps | None,
-    room: float | None = None,
+    *,
+    is_labelled: bool = False,
 ) -> None:
-    """Colour rings (rings, spokes, 2): grey, hatched where bad, in steps where there are values.
-
-    Contour lines have labels, ``room`` apart, unless that is None.
-    """
+    """Colour rings (rings, spokes, 2): grey, hatched where bad, in steps where there are values."""
     x, y = np.moveaxis(flat, -1, 0)
     axes.fill(x[-1], y[-1], facecolor=palette.LEFT_OUT, edgecolor="none")
     if is_bad.any():
@@ -221,14 +207,14 @@ def _paint(
         return
     steps.fill(axes, x, y, values)
     lines = axes.contour(x, y, values, levels=steps.ticks, colors="white", linewidths=0.5)
-    if room is None:
+    if not is_labelled:
         return
     form = f"%.{canvas.decimals(steps.ticks)}f"
     style: Style = {"fontsize": palette.FONT_POINTS - 1.5, "colors": palette.INK}
     placed = list(flat[-1])  # keeps labels off the outline, too
     for label in axes.clabel(lines, fmt=form, inline=False, **style):
         at = np.array(label.get_position())
-        if np.hypot(*(np.array(placed) - at).T).min() < room * max(np.ptp(x), np.ptp(y)):
+        if np.hypot(*(np.array(placed) - at).T).min() < _APART * max(np.ptp(x), np.ptp(y)):
             label.remove()
             continue
         placed.append(at)
