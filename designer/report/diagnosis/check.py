@@ -7,7 +7,6 @@ from pathlib import Path
 
 from designer.analysis.analyse import Provenance
 from designer.diagnosis.check import Check
-from designer.diagnosis.errors_of import Interval
 from designer.report import format as fmt
 from designer.report.blocks import (
     MOST_ROWS,
@@ -24,9 +23,8 @@ from designer.report.blocks import (
 )
 from designer.report.design.provenance import facts_of
 from designer.report.diagnosis import words
+from designer.report.diagnosis.quantity import kinds
 from designer.report.render import write_pages
-
-_KINDS = (("length", "mm", 1e3), ("tension", "N", 1.0))
 
 
 def check_report(check: Check, provenance: Provenance) -> Report[None]:
@@ -72,24 +70,18 @@ def _tables(check: Check) -> Iterator[Table]:
 
 
 def _errors(check: Check) -> Iterator[tuple[str, ...]]:
-    for name, unit, scale in _KINDS:
+    length, tension = kinds(check.noise)
+    for kind in (length, tension):
         for label, model in check.models:
-            left = model.length_m if name == "length" else model.tension_N
+            left = model.length_m if kind is length else model.tension_N
             if left is not None:
-                yield name, label, *_cells(left.rms, unit, scale), _shown(left.median, unit, scale)
+                rms, ends = kind.with_unit(left.rms.value), kind.interval(left.rms)
+                yield kind.name, label, rms, ends, kind.with_unit(left.median)
     for label, model in check.models:
         if model.foretold is not None and model.foretold.n_solved:
-            cells = _cells(model.foretold.position_m, "mm", 1e3)
-            yield "pose by the lengths alone", label, *cells, fmt.MISSING
-
-
-def _cells(found: Interval, unit: str, scale: float) -> tuple[str, str]:
-    ends = " to ".join(fmt.number(scale * end, 3) for end in (found.low, found.high))
-    return _shown(found.value, unit, scale), ends
-
-
-def _shown(value: float, unit: str, scale: float) -> str:
-    return f"{fmt.number(scale * value, 3)}\u00a0{unit}"
+            off = model.foretold.position_m
+            rms, ends = length.with_unit(off.value), length.interval(off)
+            yield "pose by the lengths alone", label, rms, ends, fmt.MISSING
 
 
 def _left(check: Check) -> Section | None:
@@ -117,8 +109,7 @@ def _provenance(check: Check, provenance: Provenance) -> Section:
     facts = [
         *facts_of(provenance, check.study),
         Fact("SHA-256 of the data", check.measured.sha256),
-        Fact("Noise of a length", _shown(noise.length_m, "mm", 1e3), noise.source),
-        Fact("Noise of a tension", _shown(noise.tension_N, "N", 1.0), noise.source),
+        *(Fact(f"Noise of a {k.name}", k.with_unit(k.noise), noise.source) for k in kinds(noise)),
         Fact("Everything in numbers", "diagnosis.json", "beside this page"),
     ]
     if measurements is not None:

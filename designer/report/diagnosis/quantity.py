@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from designer.diagnosis.errors_of import Error, Interval, Stage
 from designer.diagnosis.result import Diagnosis
+from designer.model.measured_data import Noise
 from designer.report import format as fmt
 
 
@@ -44,13 +45,17 @@ class Quantity:
         return fmt.number(ratio, 2 if ratio < 10.0 else 3)
 
 
-def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:
-    """Yield each kind that was measured, with its error before and after."""
-    noise = diagnosis.noise
-    for quantity in (
+def kinds(noise: Noise) -> tuple[Quantity, Quantity]:
+    """Return lengths and tensions, measured or not."""
+    return (
         Quantity("length", "mm", 1e3, noise.length_m),
         Quantity("tension", "N", 1.0, noise.tension_N),
-    ):
+    )
+
+
+def quantities(diagnosis: Diagnosis) -> Iterator[tuple[Quantity, Error, Error]]:
+    """Yield each kind that was measured, with its error before and after."""
+    for quantity in kinds(diagnosis.noise):
         before = quantity.error_of(diagnosis.stages[0])
         after = quantity.error_of(diagnosis.final)
         if before is not None and after is not None:

@@ -147,17 +147,20 @@ def interval(item: Estimate, unit: str, width: float) -> str:
     """Return a value plus and minus so many standard deviations."""
     if not math.isfinite(item.std):
         return fmt.MISSING
-    scale, unit = (1e3, "mm") if unit == "m" and abs(item.value) < 1.0 else (1.0, unit)
-    ends = (scale * (item.value + sign * width * item.std) for sign in (-1, 1))
-    return f"{' to '.join(_short(end) for end in ends)} {unit}".strip().replace(" ", NO_BREAK)
+    ends = [item.value + sign * width * item.std for sign in (-1, 1)]
+    return _range(ends, unit, abs(item.value))
 
 
 def plausible(parameter: Parameter) -> str:
     """Return the range that an engineer would believe."""
-    is_small = parameter.unit == "m" and max(map(abs, parameter.plausible)) < 1.0
-    scale, unit = (1e3, "mm") if is_small else (1.0, parameter.unit)
-    ends = (_short(scale * end) for end in parameter.plausible)
-    return f"{' to '.join(ends)} {unit}".strip().replace(" ", NO_BREAK)
+    return _range(parameter.plausible, parameter.unit, max(map(abs, parameter.plausible)))
+
+
+def _range(ends: Iterable[float], unit: str, size: float) -> str:
+    """Return two ends with their unit, in millimetres where they are of a size below a metre."""
+    scale, unit = (1e3, "mm") if unit == "m" and size < 1.0 else (1.0, unit)
+    shown = " to ".join(_short(scale * end) for end in ends)
+    return f"{shown} {unit}".strip().replace(" ", NO_BREAK)
 
 
 def chance(value: float) -> str:
