@@ -41,7 +41,8 @@ def section(source: Source) -> Section:
     items = (
         f"Static equilibrium only: a {kind} of {fmt.kilograms(robot.platform.mass_kg)} on "
         f"{robot.n_cables} cables{where}. {_motion(analysis.study)}",
-        f"{_alike(analysis)}. Each is elastic, carries no bending and no compression.",
+        f"All cables{' of a group' if analysis.has_groups else ''} are equal. Each is elastic, "
+        "carries no bending and no compression.",
         _loads(robot),
         f"{exits} {_losses(selection)}",
         _thinnest(robot),
@@ -53,10 +54,6 @@ def section(source: Source) -> Section:
     )
     shown = Bullets(tuple(item for item in items if item))
     return Section.of("assumptions", "Assumptions and limits", shown)
-
-
-def _alike(analysis: Analysis) -> str:
-    return "All cables of a group are equal" if analysis.has_groups else "All cables are equal"
 
 
 def _not_counted(study: Study) -> str:

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Sequence
 
 from designer.report import format as fmt
 from designer.report.blocks import MOST_ROWS, Column, Group, Row, Table, Tone
+from designer.report.figures.charts_selection import rank
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import (
     Candidate,
     GradeOutcome,
-    NotTried,
     SelectionResult,
     Standing,
 )
@@ -116,31 +116,41 @@ def _row(one: Candidate, cells: Iterable[_Cell], *, marks: bool = True) -> Row:
 
 def thin_table(outcomes: Sequence[GradeOutcome]) -> Table | None:
     """Return the grades of which no size holds; None where there are none."""
-    failing = [o for o in outcomes if o.best is None]
+    failing = [o for o in rank(outcomes) if o.best is None]
     if not failing:
         return None
-    failing.sort(key=_shortfall)
+    rows = []
+    for outcome in failing[:MOST_ROWS]:
+        needed_m, thickest = outcome.continuous_diameter_m, outcome.grade.thickest
+        why = "its own weight is too much"
+        if math.isfinite(needed_m):
+            why = "largest size sold is insufficient"
+        rows.append((outcome.grade.id, thickest.id, _known(1e3 * needed_m, 1), why))
     columns = ("Grade", "Largest size", Column("Needed", "mm"), "Why not")
     caption = "Grades of which no size holds, the nearest first."
     if len(failing) > MOST_ROWS:
         caption += f" {_more(len(failing) - MOST_ROWS, 'grade')}"
-    return Table.of(caption, columns, *map(_thin, failing[:MOST_ROWS]), kind="long")
+    return Table.of(caption, columns, *rows, kind="long")
 
 
 def fallen_table(selection: SelectionResult) -> Table:
     """Return why sizes fell out, with how many and for example which."""
-    fallen = (
-        _fallen_row(meaning, some)
-        for standing, meaning in _MEANINGS.items()
-        if (some := [c for c in selection.candidates if c.standing == standing])
-    )
-    reasons = dict.fromkeys(one.reason for one in selection.not_tried)
-    others = (
-        _not_tried_row([n for n in selection.not_tried if n.reason == reason]) for reason in reasons
-    )
+    rows = []
+    for standing, meaning in _MEANINGS.items():
+        fallen = [c for c in selection.candidates if c.standing == standing]
+        if fallen:
+            grades = {c.grade.id for c in fallen}
+            example = min(fallen, key=lambda c: c.verification.utilisation)
+            named = fmt.printed(f"{example.name}: {example.reason}")
+            rows.append((meaning, fmt.count(len(fallen)), fmt.count(len(grades)), named))
+    for reason in dict.fromkeys(one.reason for one in selection.not_tried):
+        left = [one for one in selection.not_tried if one.reason == reason]
+        sizes = sum(1 if one.size else len(one.grade.sizes) for one in left)
+        names = [*dict.fromkeys(one.grade.id for one in left)]
+        rows.append((f"not solved: {reason}", fmt.count(sizes), fmt.count(len(names)), names[0]))
     columns = ("Why", Column("Sizes"), Column("Grades"), "For example")
     caption = "Why the other sizes fell out. candidates.csv has the reason of each."
-    return Table.of(caption, columns, *fallen, *others)
+    return Table.of(caption, columns, *rows)
 
 
 def main_dominators(selection: SelectionResult) -> str:
@@ -210,32 +220,3 @@ def _columns(
 
 def _known(value: float, decimals: int) -> str:
     return fmt.fixed(value, decimals) if math.isfinite(value) else fmt.MISSING
-
-
-def _shortfall(outcome: GradeOutcome) -> tuple[bool, float]:
-    needed = outcome.continuous_diameter_m / outcome.grade.thickest.diameter_m
-    return math.isnan(needed), 0.0 if math.isnan(needed) else needed
-
-
-def _thin(outcome: GradeOutcome) -> tuple[str, ...]:
-    needed = outcome.continuous_diameter_m
-    why = (
-        "largest size sold is insufficient"
-        if math.isfinite(needed)
-        else "its own weight is too much"
-    )
-    return outcome.grade.id, outcome.grade.thickest.id, _known(1e3 * needed, 1), why
-
-
-def _fallen_row(meaning: str, fallen: Sequence[Candidate]) -> tuple[str, ...]:
-    example = min(fallen, key=lambda c: c.verification.utilisation)
-    grades = {c.grade.id for c in fallen}
-    named = fmt.printed(f"{example.name}: {example.reason}")
-    return meaning, fmt.count(len(fallen)), fmt.count(len(grades)), named
-
-
-def _not_tried_row(some: Sequence[NotTried]) -> tuple[str, ...]:
-    sizes = sum(1 if one.size else len(one.grade.sizes) for one in some)
-    grades = dict.fromkeys(one.grade.id for one in some)
-    why = f"not solved: {some[0].reason}"
-    return why, fmt.count(sizes), fmt.count(len(grades)), next(iter(grades))

@@ -46,11 +46,10 @@ def section(source: Source) -> Section | None:
         groups = source.analysis.group_slopes
         return _of_groups(groups) if groups else None
     slopes, moves = found.sensitivities, _moves(found)
-    mass = found.governing.loaded.bare[0].platform.mass_kg
     return Section.of(
         "carries",
         "What carries the result",
-        _reserves(found, mass),
+        _reserves(found),
         _slopes(found, moves),
         _chart(slopes, moves) if source.draws else None,
         slopes.why_not,
@@ -109,29 +108,25 @@ def _group_moves(groups: tuple[GroupSlopes, ...]) -> Iterator[tuple[str, list[fl
         yield f"Exit point {cable + 1} along {'xyz'[axis]}", each[:, cable, axis].tolist()
 
 
-def _reserves(found: Carries, mass_kg: float) -> Statement:
-    payload, region = found.payload, found.region
+def _reserves(found: Carries) -> Statement:
+    payload, region, platform = found.payload, found.region, found.governing.loaded.bare[0].platform
     parts = []
     if payload is not None:
-        more = fmt.percent(payload.value - 1.0)
-        loads = "weight and constant loads of the platform"
+        alike = ", its loads alike" if platform.wrench_N.any() else ""
         parts.append(
-            f"{fmt.capital(loads)} may grow by {more} (a platform of "
-            f"{fmt.kilograms(payload.value * mass_kg)} instead of {fmt.kilograms(mass_kg)}"
-            f"{', its loads alike' if _has_loads(found) else ''}){_end(payload)}"
+            "Weight and constant loads of the platform may grow by "
+            f"{fmt.percent(payload.value - 1.0)} (a platform of "
+            f"{fmt.kilograms(payload.value * platform.mass_kg)} instead of "
+            f"{fmt.kilograms(platform.mass_kg)}{alike}){_end(payload)}"
         )
     if region is not None:
         parts.append(
             f"The sides of the region may move outward by {fmt.metres(region.value)}{_end(region)}"
         )
-    if found.payload is None:
+    if payload is None:
         parts.append("No end of the reserve in payload was found")
     text = ". ".join(parts)
     return Statement("Reserve", f"{text}. Each alone, by a search over the region at that end.")
-
-
-def _has_loads(found: Carries) -> bool:
-    return bool(found.governing.loaded.bare[0].platform.wrench_N.any())
 
 
 def _end(one: Reserve) -> str:
@@ -157,13 +152,12 @@ def _moves(found: Carries) -> list[tuple[str, float]]:
 def _slopes(found: Carries, moves: list[tuple[str, float]]) -> Table:
     slopes, used = found.sensitivities, found.governing.utilisation
     values = {
-        "payload": "1",
+        "payload": fmt.kilograms(found.governing.loaded.bare[0].platform.mass_kg),
         "breaking_load": fmt.newtons(slopes.of("breaking_load").value),
         "efficiency": fmt.percent(slopes.of("efficiency").value),
         "modulus": fmt.newtons(slopes.of("modulus").value),
         "linear_mass": fmt.kilograms_per_metre(slopes.of("linear_mass").value),
     }
-    values["payload"] = fmt.kilograms(found.governing.loaded.bare[0].platform.mass_kg)
     rows = [
         Row((name, values[key], "1\u00a0%", _points(0.01 * used * slopes.of(key).elasticity)))
         for key, name in _NAMES.items()
@@ -175,7 +169,7 @@ def _slopes(found: Carries, moves: list[tuple[str, float]]) -> Table:
     )  # fmt: skip
     caption = (
         f"What changes the utilisation of {fmt.utilisation(used)} at the governing pose, {how}. "
-        f"Of the exit points those that matter most; result.json has all. A dash: no slope."
+        "Of the exit points those that matter most; result.json has all. A dash: no slope."
     )
     columns: Heads = (
         *("Input", Column("Now"), Column("More by")),
@@ -256,7 +250,7 @@ def _way_out(found: Carries) -> Iterator[Block]:
         f"'{found.governing.case.name}' and turned as at the governing pose, on ways from corners, "
         "edges and sides straight outward."
     )
-    heads: Heads = ("", *(Column(_signed(one.name), "m") for one in failures))
+    heads: Heads = ("", *(Column(one.name.replace("-", "−"), "m") for one in failures))
     yield Table.of(caption, heads, ("First failure", *cells))
 
 
@@ -265,7 +259,3 @@ def _why(name: str) -> str:
         return "it is used beyond 100\u00a0%"
     verdict = next((one for one in Verdict if one.label == name), None)
     return name if verdict is None else verdict.clause
-
-
-def _signed(name: str) -> str:
-    return name.replace("-", "−")

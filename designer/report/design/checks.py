@@ -28,9 +28,8 @@ from designer.study import Study
 
 def section(source: Source) -> Section | None:
     """Return every check of the chosen rope; None where none is chosen for all cables."""
-    study, found = source.analysis.study, source.analysis.selection
     checks = _checks(source.analysis)
-    if not checks or found is None or found.chosen is None or study.selection is None:
+    if not checks:
         return None
     pose = source.governing
     shown: tuple[Block | None, ...] = ()
@@ -41,7 +40,7 @@ def section(source: Source) -> Section | None:
         "checks",
         "Checks and the governing pose",
         _table(checks),
-        _not_checked(study, checks),
+        _not_checked(source.analysis.study, checks),
         *shown,
     )
 
@@ -138,7 +137,7 @@ def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
     if "clearance" not in done:
         lacking.append("clearance (none is asked for)")
     lacking += [words for name, words in _LIMITS.items() if name not in done]
-    return f"Not checked: {fmt.listing(lacking, 'and')}."
+    return f"Not checked: {fmt.listing(lacking)}."
 
 
 def _facts(pose: GoverningPose) -> Facts:

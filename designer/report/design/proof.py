@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
-from designer.proof.prove import Proof
 from designer.report import format as fmt
 from designer.report.blocks import Section, Statement
 from designer.report.design.source import Source
@@ -54,18 +53,15 @@ def proof_statement(case: CaseProof) -> Statement:
     if found.status == "off":
         return Statement("Found, not proved", f"{fmt.capital(found.reason)}. {largest}")
     if found.status == "proved":
+        bound = fmt.utilisation(_up(found.bound))
         text = f"Each has an equilibrium without tensions beyond that{where}. {largest}"
-        return Statement(f"Proved for all poses: {_bound(found).lower()}", text, "good")
+        return Statement(f"Proved for all poses: at most {bound}", text, "good")
     share = fmt.percent(_down(found.fraction))
     text = (
         f"In the time given it is proved for {share} of the volume{where} that the rope holds. "
         f"{largest}"
     )
     return Statement(f"Found, not proved: {share} of the volume", text, "doubt")
-
-
-def _bound(found: Proof) -> str:
-    return f"At most {fmt.utilisation(_up(found.bound))}"
 
 
 def _up(share: float) -> float:

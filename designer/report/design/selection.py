@@ -45,12 +45,14 @@ def section(source: Source) -> Section | None:
     chosen = selection.chosen
     alternatives = alternatives_table(selection)
     grades = _grades_chart(selection) if source.draws else None
+    trusts = {outcome.grade.trust for outcome in selection.outcomes}
+    letters = (f"Trust {k}: {meaning}." for k, meaning in TRUST_MEANING.items() if k in trusts)
     return Section.of(
         "selection",
         "The choice of a rope",
         _statement(selection),
         Box.of("loose", sources(chosen.grade)) if chosen else None,
-        " ".join((_tried(selection), *_trusts(selection))),
+        " ".join((_tried(selection), *letters)),
         *(_front(selection, draws=source.draws) if selection.front else ()),
         Box.of("keep", Subheading("fallen", "Why the others fell out"), fallen_table(selection)),
         main_dominators(selection),
@@ -61,14 +63,6 @@ def section(source: Source) -> Section | None:
         Subheading("alternatives", "Grades that would hold") if alternatives else None,
         alternatives,
     )
-
-
-def _trusts(selection: SelectionResult) -> Iterator[str]:
-    """Yield what the trust letters of the tables mean."""
-    seen = {outcome.grade.trust for outcome in selection.outcomes}
-    for letter, meaning in TRUST_MEANING.items():
-        if letter in seen:
-            yield f"Trust {letter}: {meaning}."
 
 
 def product_name(grade: Grade) -> str:
@@ -164,9 +158,10 @@ def _pareto_chart(selection: SelectionResult) -> Picture | None:
     caption = "Every size that holds, by what sizes are compared by"
     if not any(MEANINGS[objective].more_is_better for objective in selection.objectives):
         caption += "; better is further left and further down"
-    caption += ". A size of which a figure is not known is not in that panel."
-    if len(selection.front) > 1:
-        caption += " Numbers are the rows of the table below."
+    caption += (
+        ". A size of which a figure is not known is not in that panel. Numbers are the rows of the "
+        "table below."
+    )
     return chart(caption, "Clouds of points with a lower left edge", pareto_chart(selection))
 
 
@@ -191,12 +186,10 @@ def _usable(source: Source, selection: SelectionResult, found: Usable) -> tuple[
     if not found.sizes:
         return ()
     heading, table = Subheading("usable", "Where each size may go"), usable_table(found)
-    layers: Picture | None = None
-    if found.differs:
-        layers = _layers(source, found)
-    if layers is None and source.draws and found.differs:
-        layers = _usable_chart(selection, found)
-    shown = table if layers is None else Box.of("lead", layers, table)
+    picture: Picture | None = None
+    if found.differs and source.draws:
+        picture = _layers(source, found) or _usable_chart(selection, found)
+    shown = table if picture is None else Box.of("lead", picture, table)
     return (Box.of("keep", heading, shown),)
 
 
@@ -239,7 +232,7 @@ def layers_caption(found: Usable) -> str:
     )
 
 
-def usable_table(found: Usable, kind: str = "") -> Table:
+def usable_table(found: Usable) -> Table:
     """Return how much each size serves, up to the thinnest from which on all serve all."""
     has_volume = found.sizes[0].volume_m3 is not None
     of_what = "of the region" if has_volume else "of the points"
@@ -255,7 +248,7 @@ def usable_table(found: Usable, kind: str = "") -> Table:
     if shown < len(found.sizes):
         caption += " All thicker ones serve all of it."
     columns = ("Size", Column("Diameter", "mm"), Column("Serves", of_what), *volume)
-    return Table.of(caption, columns, *map(_usable_row, found.sizes[:shown]), kind=kind)
+    return Table.of(caption, columns, *map(_usable_row, found.sizes[:shown]))
 
 
 def _usable_row(one: UsableSize) -> Row:

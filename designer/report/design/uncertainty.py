@@ -225,11 +225,7 @@ def _shares(found: UncertaintyAnalysis) -> Table | None:
 
 def _interval(ends: tuple[float, float]) -> str:
     low, high = (min(max(end, 0.0), 1.0) for end in ends)
-    return f"{fmt.fixed(100.0 * low, 1)} to {_percent_1(high)}"
-
-
-def _percent_1(share: float) -> str:
-    return f"{fmt.fixed(100.0 * share, 1)}\u00a0%"
+    return f"{fmt.fixed(100.0 * low, 1)} to {fmt.fixed(100.0 * high, 1)}\u00a0%"
 
 
 def _bars(found: UncertaintyAnalysis) -> Picture | None:
