@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, ClassVar, Generic, Literal, TypeVar
 
+from designer import __version__
+
 if TYPE_CHECKING:
     from designer.analysis.analyse import Provenance
     from designer.study import Study
@@ -296,6 +298,22 @@ class Report(Generic[Page]):
     def section(self, section_id: str) -> Section:
         """Return a section that this report has."""
         return next(section for section in self.sections if section.id == section_id)
+
+
+def plain_report(
+    name: str, title: str, document: str, created: datetime, sections: Iterable[Section | None]
+) -> Report[None]:
+    """Return a report that is not on one study; sections that are None are left out."""
+    return Report(
+        name,
+        title,
+        document,
+        f"cdpr-designer {__version__}",
+        shown_time(created),
+        created.isoformat(timespec="seconds"),
+        None,
+        tuple(section for section in sections if section is not None),
+    )
 
 
 def shown_time(moment: datetime) -> str:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from designer import __version__
 from designer.analysis.comparison import Comparison, Line
 from designer.report import format as fmt
 from designer.report.blocks import (
@@ -21,12 +20,12 @@ from designer.report.blocks import (
     Section,
     Statement,
     Table,
-    shown_time,
+    plain_report,
 )
 from designer.report.figures import canvas, palette
 from designer.report.render import write_pages
 
-_MOST_OTHERS = 60
+_MOST_PRODUCTS, _MOST_OTHERS = 5 * MOST_ROWS, 60
 _SHOWN: tuple[tuple[str, Callable[[Any], str]], ...] = (
     ("utilisation", lambda x: fmt.utilisation(float(x))),
     ("ratio", lambda x: fmt.percent(float(x))),
@@ -51,16 +50,8 @@ def comparison_report(found: Comparison, names: tuple[str, str], created: dateti
         _origin(found, names),
     )
     titles = dict.fromkeys(str(one.get("name", "")) for one in (found.a, found.b))
-    return Report(
-        "comparison",
-        " and ".join(titles),
-        "Comparison of two designs",
-        f"cdpr-designer {__version__}",
-        shown_time(created),
-        created.isoformat(timespec="seconds"),
-        None,
-        tuple(section for section in sections if section is not None),
-    )
+    title = " and ".join(titles)
+    return plain_report("comparison", title, "Comparison of two designs", created, sections)
 
 
 def write_comparison(
@@ -152,31 +143,26 @@ def _inputs(found: Comparison, names: tuple[str, str]) -> tuple[Block, ...]:
 def _products(found: Comparison, names: tuple[str, str]) -> Section | None:
     if not found.products:
         return None
-    rest = len(found.products) - 5 * MOST_ROWS
-    return Section.of(
-        "products",
-        "Which ropes hold",
-        _table(
-            "Sizes that hold in one of the two only, or were tried in one only.",
-            found.products[: 5 * MOST_ROWS],
-            names,
-            "Size",
-        ),
-        f"{fmt.plural(rest, 'more size')} in comparison.json." if rest > 0 else None,
-    )
+    caption = "Sizes that hold in one of the two only, or were tried in one only."
+    shown = _first(caption, found.products, _MOST_PRODUCTS, names, "Size")
+    return Section.of("products", "Which ropes hold", *shown)
 
 
 def _others(found: Comparison, names: tuple[str, str]) -> Section | None:
     if not found.others:
         return None
-    rest = len(found.others) - _MOST_OTHERS
     caption = "Other values of result.json that differ, by their path."
-    return Section.of(
-        "others",
-        "All else that differs",
-        _table(caption, found.others[:_MOST_OTHERS], names, "Value"),
-        f"{fmt.plural(rest, 'more value')} in comparison.json." if rest > 0 else None,
-    )
+    shown = _first(caption, found.others, _MOST_OTHERS, names, "Value")
+    return Section.of("others", "All else that differs", *shown)
+
+
+def _first(
+    caption: str, lines: tuple[Line, ...], most: int, names: tuple[str, str], title: str
+) -> Iterator[Block]:
+    """Yield the table of the first lines, and where the rest is."""
+    yield _table(caption, lines[:most], names, title)
+    if len(lines) > most:
+        yield f"{fmt.plural(len(lines) - most, f'more {title.lower()}')} in comparison.json."
 
 
 def _origin(found: Comparison, names: tuple[str, str]) -> Section:

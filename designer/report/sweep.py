@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer import __version__
 from designer.arrays import BoolArray, FloatArray
 from designer.io.output import write_whole
 from designer.report import format as fmt
@@ -23,7 +22,7 @@ from designer.report.blocks import (
     Section,
     Statement,
     Table,
-    shown_time,
+    plain_report,
 )
 from designer.report.figures import sweep as figures
 from designer.report.figures.sweep import Axis
@@ -103,16 +102,7 @@ def sweep_report(found: xr.Dataset, name: str, created: datetime) -> Report[None
         _influences(points),
         _reasons(found),
     ]
-    return Report(
-        "sweep",
-        name,
-        "Sweep over a study",
-        f"cdpr-designer {__version__}",
-        shown_time(created),
-        created.isoformat(timespec="seconds"),
-        None,
-        tuple(section for section in sections if section is not None),
-    )
+    return plain_report("sweep", name, "Sweep over a study", created, sections)
 
 
 def write_sweep(found: xr.Dataset, name: str, folder: Path, templates: Path | None = None) -> None:
