@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from report_parts import table
+from report_parts import said, table
+from test_report_qualities import SIX
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.checks import Check, checks_of
@@ -105,3 +106,18 @@ def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
     assert names[-3:] == ["Stiffness", "Excitation", "Drum"]
     assert any(isinstance(block, str) and "Not checked: D/d" in block for block in section.blocks)
     assert not any("excitation" in block for block in section.blocks if isinstance(block, str))
+
+
+def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Analysis]) -> None:
+    selection = """selection:
+  grades: [lg-7x19-wsc-galvanised-2070]
+  sheave_diameter: 400 mm
+  limits: {stiffness: 1 kN/m, excitation: [1 Hz, 2 Hz], drum_capacity: 90 m}
+"""
+    region = "{points: [[0, 0, 3], [1, 1, 4]]}"
+    analysis = solve(SIX.format(region=region, clearance="0.1 m", selection=selection))
+    done = {row["id"] for row in result_dict(analysis)["checks"]}
+    assert {"sheave_ratio", "clearance", "stiffness", "excitation", "drum_capacity"} <= done
+    section = checks.section(source_of(analysis, draws=False))
+    assert section is not None
+    assert "Not checked" not in said(section)

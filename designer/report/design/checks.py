@@ -128,7 +128,7 @@ _LIMITS = {
 
 
 def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
-    """Return what the study does not ask for, or gives no figures for."""
+    """Return what the study does not ask for, or gives no figures for; empty for nothing."""
     done = {one.id for one in checks}
     lacking = []
     if "sheave_ratio" not in done:
@@ -137,7 +137,7 @@ def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
     if "clearance" not in done:
         lacking.append("clearance (none is asked for)")
     lacking += [words for name, words in _LIMITS.items() if name not in done]
-    return f"Not checked: {fmt.listing(lacking)}."
+    return f"Not checked: {fmt.listing(lacking)}." if lacking else ""
 
 
 def _facts(pose: GoverningPose) -> Facts:
