@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from designer.report.blocks import Picture
 
@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from designer.report.figures.stage import Image
 
 
+@overload
+def chart(caption: str, alternative: str, svg: str) -> Picture: ...
+@overload
+def chart(caption: str, alternative: str, svg: None) -> None: ...
 def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
     """Return a chart, its half-transparent parts written so that they stay vector graphics.
 
@@ -24,6 +28,14 @@ def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
     return Picture(caption, alternative, re.sub(r"(?<![-\w])opacity: ([\d.]+)", split, svg))
 
 
+@overload
+def scene(
+    caption: str, alternative: str, image: Image, *, page: str = "", kind: str = ""
+) -> Picture: ...
+@overload
+def scene(
+    caption: str, alternative: str, image: None, *, page: str = "", kind: str = ""
+) -> None: ...
 def scene(
     caption: str, alternative: str, image: Image | None, *, page: str = "", kind: str = ""
 ) -> Picture | None:

@@ -196,7 +196,7 @@ def _chart(slopes: Sensitivities, moves: list[tuple[str, float]]) -> Picture | N
     step = f"{fmt.trimmed(1e3 * _MOVE_M)} mm"
     drawn = carries_chart(shares, [(n, 100.0 * _MOVE_M * slope) for n, slope in moves], step)
     found = chart("The same as bars.", "Bars to the left and right of zero", drawn)
-    return found and replace(found, kind="screen")  # paper has it all in the table
+    return replace(found, kind="screen")  # paper has it all in the table
 
 
 def _sizes(sizes: tuple[SizeBeside, ...]) -> Table | None:

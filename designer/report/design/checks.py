@@ -45,7 +45,7 @@ def section(source: Source) -> Section | None:
     )
 
 
-def _picture(pose: GoverningPose) -> Picture | None:
+def _picture(pose: GoverningPose) -> Picture:
     """Return the robot there, with the cable that governs marked."""
     from designer.report.figures.scenes import robot_scene
 

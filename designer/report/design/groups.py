@@ -42,7 +42,7 @@ def section(source: Source) -> Section | None:
     )
 
 
-def _plan(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Picture | None:
+def _plan(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Picture:
     from designer.report.figures.groups_plan import groups_plan
 
     workspace = analysis.study.workspace

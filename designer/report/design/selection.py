@@ -193,7 +193,7 @@ def _usable(source: Source, selection: SelectionResult, found: Usable) -> tuple[
     return (Box.of("keep", heading, shown),)
 
 
-def _usable_chart(selection: SelectionResult, found: Usable) -> Picture | None:
+def _usable_chart(selection: SelectionResult, found: Usable) -> Picture:
     from designer.report.figures.charts_shares import usable_chart
 
     drawn = usable_chart(found, selection.chosen)

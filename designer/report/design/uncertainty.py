@@ -228,7 +228,7 @@ def _interval(ends: tuple[float, float]) -> str:
     return f"{fmt.fixed(100.0 * low, 1)} to {fmt.fixed(100.0 * high, 1)}\u00a0%"
 
 
-def _bars(found: UncertaintyAnalysis) -> Picture | None:
+def _bars(found: UncertaintyAnalysis) -> Picture:
     from designer.report.figures.charts_uncertainty import shares_chart
 
     drawn = shares_chart([(_NAMES[one.input], one) for one in found.shares])

@@ -24,11 +24,6 @@ _IN_SPACE = "The region in space, coloured by diameter"
 
 def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box]:
     """Yield maps and charts of the workspace, in the order in which they are shown."""
-    drawn = _figures(maps, draws_scenes=draws_scenes)
-    yield from (picture for picture in drawn if picture is not None)
-
-
-def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | Box | None]:
     from designer.report.figures.charts_edge import edge_chart
     from designer.report.figures.charts_shares import served_chart
     from designer.report.figures.interactive import workspace_scene_html
@@ -54,7 +49,7 @@ def _figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Picture | B
     share = chart(served_caption(maps.served), "Two staircases, with sag and without", drawn)
     if edge is not None:
         yield Box.of("pair keep", edge, share)
-    elif share is not None:
+    else:
         yield replace(share, kind="half")
 
 
@@ -72,12 +67,10 @@ def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
         f"{rope.name}: utilisation (largest over allowable tension), and {what}, {loads}. The "
         f"effect of rope weight on the tension is {fmt.percent(change, 2)} there at most."
     )
-    found = chart(caption, f"Two maps in {view}", drawn)
-    if found is not None:
-        yield found
+    yield chart(caption, f"Two maps in {view}", drawn)
 
 
-def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture | None:
+def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture:
     """Return the region in space for the first page: of the ropes, else of the family."""
     from designer.report.figures.scenes import cover_scene
 

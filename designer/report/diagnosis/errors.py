@@ -29,7 +29,7 @@ def section(diagnosis: Diagnosis) -> Section:
     )
 
 
-def _chart(diagnosis: Diagnosis) -> Picture | None:
+def _chart(diagnosis: Diagnosis) -> Picture:
     from designer.report.figures.diagnosis import errors_chart
 
     return chart(

@@ -29,7 +29,7 @@ def section(diagnosis: Diagnosis) -> Section:
     )
 
 
-def _rows(diagnosis: Diagnosis) -> Picture | None:
+def _rows(diagnosis: Diagnosis) -> Picture:
     from designer.report.figures.diagnosis import rows_chart
 
     stages = (diagnosis.residual_before, diagnosis.residual_after)
