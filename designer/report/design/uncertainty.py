@@ -12,7 +12,6 @@ from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnaly
 from designer.model.uncertainty import Input, Normal, Spread
 from designer.report import format as fmt
 from designer.report.blocks import (
-    Block,
     Column,
     Heads,
     Picture,
@@ -48,7 +47,7 @@ def section(source: Source) -> Section | None:
     if found is None:
         return _nothing_drawn(source.analysis)
     if not found.is_asked:
-        return Section.of("uncertainty", "Uncertainty", _of_modulus(found), _how(found))
+        return Section.of("uncertainty", "Uncertainty", _of_modulus(found), " ".join(_how(found)))
     return Section.of(
         "uncertainty",
         "Uncertainty",
@@ -59,7 +58,7 @@ def section(source: Source) -> Section | None:
         _shares(found),
         _bars(found) if source.draws and len(found.shares) > 1 else None,
         found.why_no_shares and f"No shares: {found.why_no_shares}.",
-        _how(found),
+        " ".join(_how(found)),
     )
 
 
@@ -235,11 +234,7 @@ def _bars(found: UncertaintyAnalysis) -> Picture:
     return chart("The same as bars, with their confidence.", "Bars, one for each input", drawn)
 
 
-def _how(found: UncertaintyAnalysis) -> Block:
-    return " ".join(_how_sentences(found))
-
-
-def _how_sentences(found: UncertaintyAnalysis) -> Iterator[str]:
+def _how(found: UncertaintyAnalysis) -> Iterator[str]:
     yield (
         f"{fmt.count(found.samples)} independent random draws (seed {found.seed}), so that the "
         "interval of Clopper and Pearson is exact."
