@@ -30,7 +30,7 @@ from designer.selection.family_need import CaseNeed, family_needs, most_needed
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
-from designer.selection.result import SelectionResult
+from designer.selection.result import Candidate, SelectionResult
 from designer.selection.select import select
 from designer.sizing.limit import limit_ratio
 from designer.sizing.loop import LoopSizing, size_by_loop
@@ -246,6 +246,11 @@ class Analysis:
         return pose_ok and workspace_ok and self.has_products
 
     @property
+    def chosen(self) -> Candidate | None:
+        """The product chosen for all cables; None without one."""
+        return self.selection.chosen if self.selection is not None else None
+
+    @property
     def has_groups(self) -> bool:
         """Whether products for groups of cables are the answer."""
         return self.groups is not None and self.groups.chosen is not None
@@ -255,7 +260,7 @@ class Analysis:
         """Whether a product was found, or one for each group where the study has groups."""
         if self.groups is not None:
             return self.groups.chosen is not None
-        return self.selection is None or self.selection.chosen is not None
+        return self.selection is None or self.chosen is not None
 
 
 def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis | None:

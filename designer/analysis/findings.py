@@ -133,7 +133,7 @@ def find(analysis: Analysis) -> Findings:
         unserved=_unserved(analysis),
         adrift=_adrift(analysis),
     )
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     if chosen is None or analysis.selection is None:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
@@ -197,7 +197,7 @@ def _hanging(analysis: Analysis) -> float | None:
     workspace, found = analysis.study.workspace, analysis.workspace
     if workspace is None or found is None:
         return None
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     if analysis.qualities is None or not (chosen or analysis.has_groups):
         return found.census.hangs_below / found.census.samples
     robot, cable = analysis.built.robot, analysis.qualities.cable.cable

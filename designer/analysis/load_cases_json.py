@@ -18,7 +18,7 @@ Json = dict[str, Any]
 
 def load_cases_dict(analysis: Analysis) -> Json:
     """Return each load case, each check, and the governing pose; empty where none is chosen."""
-    study, chosen = analysis.study, analysis.selection.chosen if analysis.selection else None
+    study, chosen = analysis.study, analysis.chosen
     if chosen is None or study.selection is None:
         needs = [
             _case(one.found) | finite({"diameter_m": one.diameter_m, "holds": one.is_held})

@@ -108,7 +108,7 @@ def _answer(analysis: Analysis) -> Json | None:
         names = ("name", "cables", "grade", "size_id")
         products = [{name: one[name] for name in names} for one in groups_dict(choice)["groups"]]
         return {"products": products, "total_mass_kg": _number(choice.chosen.total_mass_kg)}
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     if chosen is None:
         return None
     cables = list(range(1, analysis.study.robot.n_cables + 1))

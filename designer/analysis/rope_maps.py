@@ -59,7 +59,7 @@ def rope_of(analysis: Analysis) -> Rope | None:
     of the others; where all do, in the static load of the study, as ropes for groups of cables.
     """
     study, robot, groups = analysis.study, analysis.built.robot, analysis.groups
-    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    chosen = analysis.chosen
     if analysis.qualities is None or study.workspace is None:
         return None
     design = analysis.qualities.cable

@@ -34,10 +34,4 @@ def map_grids(region: Region, slice_share: float, *, fine: bool) -> Mapping[str,
         found["wall"] = np.stack(
             [rim + np.array([0.0, 0.0, z - low]) for z in np.linspace(low, high, _ROWS)]
         )
-    return found if fine else {name: _every_second(grid) for name, grid in found.items()}
-
-
-def _every_second(grid: FloatArray) -> FloatArray:
-    """Return every second row and column of a grid, its rim kept."""
-    rows, columns = (np.unique([*range(0, n, 2), n - 1]) for n in grid.shape[:2])
-    return np.asarray(grid[np.ix_(rows, columns)])
+    return found if fine else {name: grid[grids.every_second(grid)] for name, grid in found.items()}

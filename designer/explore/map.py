@@ -24,7 +24,7 @@ from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.shape import sag_m
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
-from designer.workspace.demand import demand_of, is_left_out, size_worst
+from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
@@ -183,14 +183,13 @@ def _worst_with(
     question: Question, workspace: Workspace, positions_m: FloatArray, cable: Cable | Cables
 ) -> Statics:
     """Solve positions (n, 3) with a rope, each in the orientation in which it is used most."""
-    robot, count = question.robot, workspace.orientations.count
-    places = workspace.space.places(positions_m)
+    robot, space = question.robot, workspace.space
+    places = space.places(positions_m)
     statics = solve_sagging(robot, Poses.at(places), cable)
-    if count == 1:
+    if space.orientations.count == 1:
         return statics
     asked = demand_of(_used(statics, cable).max(axis=-1), statics, workspace.hangs_below)
-    worst = asked.reshape(-1, count).argmax(axis=1)
-    return solve_sagging(robot, Poses.at(places[np.arange(len(worst)) * count + worst]), cable)
+    return solve_sagging(robot, Poses.at(in_worst_turn(space, places, asked)), cable)
 
 
 def _used(statics: Statics, cable: Cable | Cables | None) -> FloatArray:

@@ -55,8 +55,8 @@ def shown(found: UncertaintyAnalysis | None, *, draws: bool = True) -> Section |
 )
 def test_what_was_asked_for_and_not_drawn_is_said(chosen: str | None, why: str) -> None:
     def shown_of(asked: Uncertainty | None) -> Section | None:
-        study, selection = SimpleNamespace(uncertainty=asked), SimpleNamespace(chosen=chosen)
-        analysis = SimpleNamespace(uncertainty=None, study=study, selection=selection)
+        study = SimpleNamespace(uncertainty=asked)
+        analysis = SimpleNamespace(uncertainty=None, study=study, chosen=chosen)
         source: Any = SimpleNamespace(analysis=analysis, draws=True)
         return section(source)
 

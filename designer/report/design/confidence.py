@@ -30,7 +30,7 @@ _NEAR_BOUNDARY = 0.9
 
 def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     """Yield what a reviewer should know before relying on the answer."""
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     found = analysis.groups.chosen if analysis.groups else None
     used = found.products if found is not None else [chosen] if chosen is not None else []
     ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
@@ -116,7 +116,7 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
     if analysis.study.workspace.region.is_discrete:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
         return
-    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    chosen = analysis.chosen
     if chosen is not None and not analysis.has_groups:
         most = chosen.governing
         text = (

@@ -102,7 +102,7 @@ def _picture(source: Source) -> Picture | None:
 
 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     found = analysis.groups if analysis.has_groups else None
     against: list[str] = []
     if analysis.has_cable:
@@ -215,7 +215,7 @@ def _negative(analysis: Analysis) -> str:
 
 
 def _card(analysis: Analysis) -> Card | None:
-    chosen = analysis.selection.chosen if analysis.selection else None
+    chosen = analysis.chosen
     if analysis.groups is not None and analysis.groups.chosen is not None:
         return _groups_card(analysis, analysis.groups, analysis.groups.chosen)
     if chosen is not None:

@@ -65,7 +65,7 @@ def section(source: Source) -> Section | None:
 def _nothing_drawn(analysis: Analysis) -> Section | None:
     if analysis.study.uncertainty is None:
         return None
-    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    chosen = analysis.chosen
     why = "no rope was chosen" if chosen is None else "the study has every input as certain"
     return Section.of("uncertainty", "Uncertainty", f"Nothing was drawn: {why}.")
 

@@ -95,7 +95,7 @@ def _served(rope: Rope, analysis: Analysis) -> Statement:
         f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
         f"'{rope.load_case}' at {fmt.position(rope.place)}."
     )
-    chosen = analysis.selection.chosen if analysis.selection is not None else None
+    chosen = analysis.chosen
     if chosen is not None and chosen.governing.loaded.keeps_lengths:
         text += " That is with winches that hold the pose; on kept lengths, after the loss of a "
         text += "cable or a change of temperature, more is asked for, see the load cases."
