@@ -33,6 +33,8 @@ _LEAST_SHARE = 1.0 / 32.0
 """Of the way to the next tangent point, however it swings."""
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
+_SAME = 1e-7
+"""Relative: what two searches may leave between them that end in the same branch."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
 
@@ -251,8 +253,9 @@ def _try_other_branches(
     was_long, is_long = (
         (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
     )
-    tauter = was_long & ~is_long & (burden <= (1.0 + 1e-7) * before)  # up to rounding
-    better = solved & ((burden < before) | tauter | (solution.verdict[at] != Verdict.SOLVED))
+    tauter = was_long & ~is_long & (burden <= (1.0 + _SAME) * before)
+    lighter = burden < (1.0 - _SAME) * before
+    better = solved & (lighter | tauter | (solution.verdict[at] != Verdict.SOLVED))
     _replace(solution, run, at, again, its_run, better)
     if robot.pulley_radius_m == 0.0:  # a proof is for points that stay where they are
         proved = at[again.verdict == Verdict.NO_FINITE_CABLE]
