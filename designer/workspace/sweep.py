@@ -78,7 +78,6 @@ class _Gathered:
         self.hanging = HangingCables()
         self.starts = Pool(workspace.space)
         self.massless_starts = Pool(workspace.space)
-        self.straight_hold = True
         self.sampled: Extreme | None = None
         self.infeasible_example: FloatArray | None = None
 
@@ -91,10 +90,9 @@ class _Gathered:
         counts = statics.is_solved & ~left_out
         self.hanging = look_at(self.hanging, some, statics, counts, self._workspace.floor_m)
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
-        massless = massless_demand_of(sizing, self._workspace.hangs_below)
-        self.straight_hold &= not np.isposinf(massless).any()
         self.starts.add(some, diameter)
-        self.massless_starts.add(some, massless)
+        straight = massless_demand_of(sizing, self._workspace.hangs_below)
+        self.massless_starts.add(some, straight)
         at = int(np.argmax(diameter))
         most = -np.inf if self.sampled is None else self.sampled.diameter_m
         if diameter[at] > most:
@@ -127,7 +125,7 @@ def _summarise(
         else:
             example = worst.place
     starts = gathered.massless_starts.places
-    if gathered.straight_hold and len(starts):
+    if len(starts):
         demand_with = partial(massless_demand, robot, material, workspace.hangs_below)
         (worst,) = refine_over_branches(workspace.space, demand_with, starts)
         if np.isfinite(worst.demand):
