@@ -151,7 +151,8 @@ def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tupl
             bend(pose)
         unbalanced = _balance(pose, ask, s, scratch)
         gap = _gap(pose, ask, s, scratch)
-        if gap < _OPTIMAL and unbalanced < _BALANCED:
+        is_last = iteration == _MOST_ITERATIONS - 1  # no step without closing the cables again
+        if is_last or (gap < _OPTIMAL and unbalanced < _BALANCED):
             break
         mean = 0.0
         for i in range(n):
