@@ -188,13 +188,11 @@ class FieldRow(QWidget):
         grid.setHorizontalSpacing(4)
         grid.setVerticalSpacing(0)
         grid.setColumnStretch(0, 1)
-        grid.addWidget(self._label, 0, 0, 1, 1 if field.low is None else 3)
-        has_slider = field.low is not None and field.high is not None
-        row = 1 if has_slider else 0  # a name beside a slider would be cut off
-        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), row, 1)
-        grid.addWidget(self._back, row, 2)
-        if has_slider:
+        grid.addWidget(self._label, 0, 0, 1, 3)  # beside an entry a name would be cut off
+        if field.low is not None and field.high is not None:
             grid.addWidget(self._slider(), 1, 0)
+        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), 1, 1)
+        grid.addWidget(self._back, 1, 2)
         grid.addWidget(self._fault, 2, 0, 1, 3)
         self._fault.hide()
 
