@@ -1,9 +1,13 @@
-"""The name that was probably meant."""
+"""The name that was probably meant; row numbers in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+
+import numpy as np
+
+from designer.arrays import IntArray
 
 
 def nearest_name(given: str, names: Iterable[str]) -> str | None:
@@ -25,3 +29,9 @@ def did_you_mean(given: str, names: Iterable[str]) -> str:
     """Return a hint to add to what is expected; empty where no name is near."""
     nearest = nearest_name(given, names)
     return f"; did you mean '{nearest}'?" if nearest else ""
+
+
+def in_runs(numbers: Sequence[int] | IntArray) -> list[str]:
+    """Return numbers with neighbours drawn together: ``12``, ``45 to 48``."""
+    runs = np.split(np.asarray(numbers), np.flatnonzero(np.diff(numbers) > 1) + 1)
+    return [str(run[0]) if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]

@@ -13,6 +13,7 @@ from designer.cli.terminal import bare_table, show
 from designer.grades.grade import TYPICAL_LOAD_FRACTION, Grade
 from designer.grades.listing import facts
 from designer.model.load_case import STATIC
+from designer.spelling import in_runs
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis, PoseAnalysis
@@ -227,7 +228,6 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
 
 def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
-    from designer.diagnosis.trends import in_runs
 
     if not diagnosis.measured.has_poses:
         yield "poses", "estimated from each row's own readings"

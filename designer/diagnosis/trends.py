@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,12 +80,6 @@ def smooth_correction(
 def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:
     """Return the reading of whose variance a parabola in the covariate explains most."""
     return int(np.nanargmax([_explained(column, covariate) for column in residual.T]))
-
-
-def in_runs(rows: Sequence[int]) -> list[str]:
-    """Return row numbers with neighbours drawn together: ``12``, ``45 to 48``."""
-    parts = np.split(np.array(rows), np.flatnonzero(np.diff(rows) > 1) + 1)
-    return [str(p[0]) if len(p) == 1 else f"{p[0]} to {p[-1]}" for p in parts]
 
 
 def _explained(column: FloatArray, covariate: FloatArray) -> float:

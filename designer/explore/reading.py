@@ -9,12 +9,11 @@ from pathlib import Path
 
 from designer.documents.document import Document, decode, document_of, read_bytes
 from designer.effects.known import KnownEffects
-from designer.errors import DesignerError, Fault, InputError, OutputError
+from designer.errors import DesignerError, Fault, InputError
 from designer.explore.fields import Field, study_fields
 from designer.io.config.moved import moved_to
 from designer.io.config.reader import checked, study_of
 from designer.io.config.schema import StudySection
-from designer.io.output import write_whole
 from designer.plugins.find import Plugins
 from designer.study import Study
 
@@ -84,17 +83,3 @@ def text_of(path: Path) -> str:
         If it cannot be read, is too large, or is no text.
     """
     return decode(read_bytes(path, str(path)), str(path))
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written.
-    """
-    try:
-        write_whole(path, text.encode())
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror})") from error

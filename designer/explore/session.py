@@ -17,8 +17,9 @@ from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History
 from designer.explore.question import Assignment, Question, Rope, first_place
-from designer.explore.reading import Context, Reading, digest_of, text_of, write_text
+from designer.explore.reading import Context, Reading, digest_of, text_of
 from designer.explore.state import Rejected, State
+from designer.io.output import write_file
 from designer.plugins.find import Plugins
 from designer.resources import example_file
 from designer.study import Study
@@ -356,7 +357,7 @@ class Session:
         """
         if self.file is None:
             raise OutputError(f"{self.name}: a shipped study is saved under another name")
-        write_text(self.file, self.text)
+        write_file(self.file, self.text)
         self._set_saved(self.state.reading)
 
     def save_as(self, path: Path) -> None:
@@ -370,7 +371,7 @@ class Session:
             If the file cannot be written; then nothing changes.
         """
         text = self.state.reading.moved_to(path.parent)
-        write_text(path, text)
+        write_file(path, text)
         self.file, self._context = path, replace(self._context, path=path)
         self._stay_here()
         self._set_saved(self.state.reading)

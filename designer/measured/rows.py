@@ -14,6 +14,7 @@ from designer.measured.assign import Assigned
 from designer.measured.cells import MOST_ALIKE, is_number
 from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
 from designer.measured.table import RawColumn, Table
+from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
 FEWEST_ROWS = 8
@@ -173,7 +174,6 @@ def _time_faults(
 
 def _row_list(rows: IntArray) -> str:
     """Return row numbers in words, neighbours together: ``row 3``, ``rows 1 to 4, 9``."""
-    spans = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-    shown = [f"{a[0]}" if len(a) == 1 else f"{a[0]} to {a[-1]}" for a in spans[:MOST_ALIKE]]
-    more = ["…"] * (len(spans) > MOST_ALIKE)
-    return f"row{'s' * (len(rows) != 1)} {', '.join(shown + more)}"
+    runs = in_runs(rows)
+    more = ["…"] * (len(runs) > MOST_ALIKE)
+    return f"row{'s' * (len(rows) != 1)} {', '.join(runs[:MOST_ALIKE] + more)}"

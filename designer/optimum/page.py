@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from designer import __version__
 from designer.documents.document import document_of
 from designer.documents.plain import json_text
 from designer.io.config.moved import moved_to
@@ -28,7 +27,7 @@ from designer.report.blocks import (
     Section,
     Statement,
     Table,
-    shown_time,
+    plain_report,
 )
 from designer.report.comparison import change, shown, write_comparison
 from designer.report.figures import optimum as figures
@@ -51,16 +50,8 @@ def optimum_report(found: Optimum, created: datetime) -> Report[None]:
         _differences(found),
         Section.of("trust", "How far to believe it", *_trust(found)),
     )
-    return Report(
-        "optimise",
-        found.given.study.name,
-        "Optimisation of the robot",
-        f"cdpr-designer {__version__}",
-        shown_time(created),
-        created.isoformat(timespec="seconds"),
-        None,
-        tuple(section for section in sections if section is not None),
-    )
+    title = found.given.study.name
+    return plain_report("optimise", title, "Optimisation of the robot", created, sections)
 
 
 def write_optimum(

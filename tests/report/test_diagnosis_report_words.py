@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from designer.diagnosis.result import Estimate
-from designer.diagnosis.trends import in_runs, strongest_channel, whereabouts
+from designer.diagnosis.trends import strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter, Size
 from designer.report.diagnosis import words
 from designer.report.figures.diagnosis import MOST_POINTS, running_median, thinned, window
+from designer.spelling import in_runs
 from designer.units import NUMBER, TIME
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from designer.diagnosis.errors_of import Error
 from designer.diagnosis.result import Diagnosis, Finding, Verdict
-from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
 from designer.report.blocks import Column, Picture, Statement, Table
 from designer.report.diagnosis import words
@@ -15,6 +14,7 @@ from designer.report.diagnosis.carriers import strongest
 from designer.report.diagnosis.design import on_first_page
 from designer.report.diagnosis.quantity import Quantity, quantities
 from designer.report.diagnosis.sureness import sureness
+from designer.spelling import in_runs
 
 _ABOUT_AS_FAR = 0.9
 _MOST_STATEMENTS = 7

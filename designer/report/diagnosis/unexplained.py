@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.trends import in_runs
 from designer.report import format as fmt
 from designer.report.blocks import Block, Box, Fact, Facts, Section, Statement, Subheading
 from designer.report.diagnosis import carriers, words
+from designer.spelling import in_runs
 
 _MOST_CARRIERS = 6
 
