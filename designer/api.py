@@ -14,7 +14,7 @@ from designer.grades.registry import Catalogue, load_catalogue
 from designer.io import config
 from designer.plugins.find import find_plugins
 from designer.report.render import write_report
-from designer.study import Study, require_enough_cables
+from designer.study import Study
 
 __all__ = ["analyse", "catalogue", "diagnose", "read_study", "size", "write_report"]
 
@@ -57,11 +57,7 @@ def size(study: Study) -> PoseAnalysis:
     InputError
         If the study has no pose, or the robot has fewer cables than degrees of freedom.
     """
-    require_enough_cables(study)
-    pose = analyse_pose(study)
-    if pose is None:
-        raise InputError([study.source.fault("pose", "is missing", "a pose to size")])
-    return pose
+    return analyse_pose(study)
 
 
 def diagnose(

@@ -373,6 +373,20 @@ def require_enough_cables(study: Study) -> None:
     raise InputError([study.source.fault("robot.anchors", problem, expected)])
 
 
+def require_answerable(study: Study) -> None:
+    """Refuse a study that asks for nothing, or a robot that nothing holds in a pose of choice.
+
+    Raises
+    ------
+    InputError
+        With one fault.
+    """
+    require_enough_cables(study)
+    if study.pose is None and study.workspace is None:
+        fault = study.source.fault("", "nothing to solve", "a pose, a workspace or both")
+        raise InputError([fault])
+
+
 def declared_settings(study: Study, machine: Machine | None = None) -> tuple[Setting, ...]:
     """Return the declared effects with their values, in the order in which they act.
 

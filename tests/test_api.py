@@ -109,6 +109,8 @@ def test_a_study_without_a_pose_or_measurements_is_refused_in_one_line() -> None
         designer.size(study)
     with pytest.raises(designer.InputError, match="measurements: is missing"):
         designer.diagnose(study)
+    with pytest.raises(designer.InputError, match="nothing to solve"):
+        designer.analyse(replace(study, workspace=None, selection=None))
 
 
 @pytest.mark.slow

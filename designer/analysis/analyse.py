@@ -20,6 +20,7 @@ from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
+from designer.errors import InputError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.cable import Material
 from designer.model.verdict import Verdict
@@ -37,7 +38,7 @@ from designer.sizing.loop import LoopSizing, size_by_loop
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import MasslessStatics, solve_massless
 from designer.statics.rest import RestingPlaces, resting_places
-from designer.study import Study, as_built_by, require_enough_cables
+from designer.study import Study, as_built_by, require_answerable, require_enough_cables
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_pose, section_of_workspace
@@ -263,13 +264,20 @@ class Analysis:
         return self.selection is None or self.chosen is not None
 
 
-def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis | None:
-    """Size the configured pose in every way; None if the study has none.
+def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis:
+    """Size the configured pose in every way.
 
     ``finds_rest`` is whether other places to rest are looked for, which takes most of the time.
+
+    Raises
+    ------
+    InputError
+        If the study has no pose, or the robot has fewer cables than degrees of freedom.
     """
+    require_enough_cables(study)
     if study.pose is None:
-        return None
+        fault = study.source.fault("pose", "is missing", "a pose, such as [250, 200, -50]")
+        raise InputError([fault])
     built = as_built_by(study)
     section_m = section_of_pose(built, study.pose, study.material)
     robot, material = built.robot, built.material(study.material, section_m)
@@ -315,9 +323,10 @@ def analyse(
     Raises
     ------
     InputError
-        If the robot has fewer cables than degrees of freedom, or a grade is not in the catalogue.
+        If the study has neither pose nor workspace, the robot has fewer cables than degrees of
+        freedom, or a grade is not in the catalogue.
     """
-    require_enough_cables(study)
+    require_answerable(study)
     if catalogue is None:
         catalogue = load_catalogue(study.catalogues)
     catalogue.require_grades_of(study)
@@ -325,7 +334,7 @@ def analyse(
     if scratch is not None:
         folder = scratch.folder
     provenance = Provenance.now(study)
-    pose = analyse_pose(study)
+    pose = None if study.pose is None else analyse_pose(study)
     built = as_built_by(study)
     if study.workspace is not None:
         section_m = section_of_workspace(built, study.workspace, study.material)

@@ -136,15 +136,11 @@ def report(
     from designer.io.output import file_names, output_folder
     from designer.plugins.find import find_plugins
     from designer.report.figures.opengl import begin_probe, why_no_scenes
-    from designer.study import require_enough_cables
+    from designer.study import require_answerable
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = study_of(config, plugins)
-    require_enough_cables(study)
-    if study.workspace is None and study.pose is None:
-        raise InputError(
-            [study.source.fault("", "nothing to solve", "a pose, a workspace or both")]
-        )
+    require_answerable(study)
     folder = output or Path(f"{config.stem}-report")
     begin_probe()
     catalogue = catalogue_of(study, plugins)
@@ -180,21 +176,15 @@ def size(
     from designer.cli.terminal import announce_compiling
     from designer.documents.plain import json_text
     from designer.plugins.find import find_plugins
-    from designer.study import require_enough_cables
 
     plugins = find_plugins(with_plugins=not no_plugins)
     study = study_of(config, plugins)
-    require_enough_cables(study)
     if study.selection is not None and study.selection.grades is not None:
         catalogue_of(study, plugins)  # misspelt grades are told here as by `report`
     announce_compiling()
     from designer.analysis.analyse import analyse_pose
 
     pose = analyse_pose(study)
-    if pose is None:
-        raise InputError(
-            [study.source.fault("pose", "is missing", "a pose, such as [250, 200, -50]")]
-        )
     if as_json:
         typer.echo(json_text(size_dict(study, pose)))
     else:

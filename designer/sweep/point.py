@@ -21,7 +21,7 @@ from designer.io.config.reader import checked, study_of
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins, find_plugins
 from designer.spelling import did_you_mean
-from designer.study import Study, require_enough_cables
+from designer.study import Study
 
 Change = tuple[tuple[Key, ...], Node]
 
@@ -67,14 +67,10 @@ class Base:
 
     def result(self, study: Study) -> Json:
         """Return as much of ``result.json`` as what is kept of it asks for."""
-        require_enough_cables(study)
         parts = {name.split(".")[0] for name in self.keep}
         if parts <= {"pose", "name"}:
             finds_rest = any(name.startswith("pose.rest") for name in self.keep)
-            pose = analyse_pose(study, finds_rest=finds_rest)
-            if pose is None:
-                raise InputError([study.source.fault("pose", "is missing", "a pose to size")])
-            return size_dict(study, pose)
+            return size_dict(study, analyse_pose(study, finds_rest=finds_rest))
         if "pose" not in parts:
             study = replace(study, pose=None)
         if parts <= {"pose", "workspace"} and not any(
