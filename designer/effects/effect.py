@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,6 +15,7 @@ from designer.model.measured_data import Measured
 from designer.units import Dimension
 
 Values = Mapping[str, float]
+_UNIT_SUFFIX = re.compile(r"_(N_m2|m_per_N|m2|per_K|per_m|rad|kg|m|N|s)$")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,6 +87,11 @@ class Parameter:
     is_optional: bool = False
     above: float | None = None
     at_least: float | None = None
+
+    @property
+    def label(self) -> str:
+        """Its name without the unit: ``offset_1_m`` is ``offset 1``."""
+        return _UNIT_SUFFIX.sub("", self.name).replace("_", " ")
 
     @property
     def unit(self) -> str:

@@ -18,7 +18,7 @@ from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import field_of, read_effects
 from designer.io.config.entries import field_node
-from designer.io.config.meanings import GROUPS, MEANINGS
+from designer.io.config.meanings import words_of
 from designer.io.config.orientation import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
@@ -171,7 +171,10 @@ class _Kind:
 
 @dataclass(frozen=True, slots=True)
 class _Slot:
-    """A value in the schema, and as the file has it, None where it does not."""
+    """A value in the schema, and as the file has it, None where it does not.
+
+    ``effect`` has label and definition of a parameter of an effect, which the schema has not.
+    """
 
     place: tuple[Key, ...]
     value: Any
@@ -179,6 +182,7 @@ class _Slot:
     reader: QuantityField | WholeNumber | None
     choices: tuple[str, ...] = ()
     is_optional: bool = False
+    effect: tuple[str, str] | None = None
 
     @property
     def plain(self) -> str:
@@ -249,22 +253,31 @@ def _effect_slots(
 ) -> Iterator[_Slot]:
     n_cables = len(section.robot.anchors)
     for place, declared in read_effects(section.effects, n_cables, effects).effects:
-        for one in effects[declared.id].parameters_for(n_cables):
+        effect, of_cable = effects[declared.id], ""
+        if declared.cable is not None:
+            of_cable = f" of cable {declared.cable}"
+        title = f"{declared.id.replace('_', ' ').capitalize()}{of_cable}"
+        summary = effect.summary.format(cable=declared.cable)
+        for one in effect.parameters_for(n_cables):
             at = (*place, one.name)
             node = root.at(at)
             given = None if node is None else node.as_written()
-            yield _Slot(at, declared.parameters[one.name], given, field_of(one))
+            words = f"{title}, {one.label}", f"Effect: {summary}."
+            value = declared.parameters[one.name]
+            yield _Slot(at, value, given, field_of(one), effect=words)
 
 
 @lru_cache(maxsize=4096)
 def _field(slot: _Slot, sizes: Sizes) -> Field:
-    title, definition = MEANINGS.get(slot.plain, (_words_of(slot.plain), ""))
-    group = GROUPS.get(str(slot.place[0]), _words_of(str(slot.place[0])))
+    title, definition = words_of(slot.plain)
+    label = _label(title, slot.place)
+    if slot.effect is not None:
+        label, definition = slot.effect
     given = slot.given or ""
     common: dict[str, Any] = {
         "path": path_text(slot.place),
-        "group": group,
-        "label": _label(title, slot.place),
+        "group": words_of(str(slot.place[0]))[0],
+        "label": label,
         "is_given": slot.given is not None,
         "is_optional": slot.is_optional,
     }
@@ -296,23 +309,18 @@ def _field(slot: _Slot, sizes: Sizes) -> Field:
 def _label(title: str, place: Sequence[Key]) -> str:
     """Return the title with what tells the values of a list from each other."""
     *names, last = place
-    if isinstance(last, str):
-        row = next((key for key in names if isinstance(key, int)), None)
-        return title if row is None else f"{title} {row + 1}"
     plain = ".".join(key for key in place if isinstance(key, str))
-    if plain.endswith(("box", "hull")):
-        return f"{title}, {_AXES[int(names[-1])]} {_ENDS[last]}"
+    is_box = plain.endswith(("box", "hull"))
+    rows = [key + 1 for key in (names[:-1] if is_box else names) if isinstance(key, int)]
+    numbered = f"{title} {rows[0]}" if rows else title
+    if isinstance(last, str):
+        return numbered
+    if is_box:
+        return f"{numbered}, {_AXES[int(names[-1])]} {_ENDS[last]}"
     if plain.endswith((".z", ".rx", ".ry", ".rz")):
-        return f"{title}, {_ENDS[last]}"
-    rows = [key + 1 for key in names if isinstance(key, int)]
-    number = f" {rows[0]}" if rows else ""
+        return f"{numbered}, {_ENDS[last]}"
     part = str(last + 1) if plain.endswith("angles") else _AXES[last] if last < 3 else str(last)
-    return f"{title}{number}, {part}"
-
-
-def _words_of(plain: str) -> str:
-    name = plain.rpartition(".")[2].replace("_", " ")
-    return name[:1].upper() + name[1:]
+    return f"{numbered}, {part}"
 
 
 def _limits(reader: QuantityField) -> str:

@@ -93,7 +93,11 @@ def test_declared_effects_are_fields(tmp_path: Path, no_plugins: Plugins, yard: 
     study.write_text(yard.text + effects, encoding="utf-8")
     session = Session.open(study, no_plugins)
     assert session.faults == ()
-    assert _of(session, "effects.pulley_radius.radius_m").value_SI == pytest.approx(0.09)
+    radius = _of(session, "effects.pulley_radius.radius_m")
+    assert (radius.label, radius.value_SI) == ("Pulley radius, radius", pytest.approx(0.09))
+    offset = _of(session, "effects.anchor_offset[0].z_m")
+    assert offset.label == "Anchor offset of cable 2, z"
+    assert "cable 2 is not where the drawing has it" in offset.definition
     assert session.edit("effects.anchor_offset[0].z_m", "20 mm") == ()
     assert session.edit("effects.anchor_offset[0].x_m", "5 mm") == ()
     assert "[{cable: 2, z_m: 20 mm, x_m: 5 mm}]" in session.text

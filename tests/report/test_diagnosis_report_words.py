@@ -42,10 +42,17 @@ def test_chance(value: float, start: str) -> None:
     assert words.chance(value).startswith(start)
 
 
-def test_label_drops_the_unit() -> None:
-    assert words.label("offset_1_m") == "offset 1"
-    assert words.label("flexural_rigidity_N_m2") == "flexural rigidity"
-    assert words.label("scale") == "scale"
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("offset_1_m", "offset 1"),
+        ("flexural_rigidity_N_m2", "flexural rigidity"),
+        ("compliance_m_per_N", "compliance"),
+        ("scale", "scale"),
+    ],
+)
+def test_the_label_of_a_parameter_drops_the_unit(name: str, label: str) -> None:
+    assert Parameter(name, NUMBER, Size(1.0, (0.0, 1.0), (0.0, 1.0))).label == label
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from designer.explore.ropes import Groups, RopeRow, Ropes
 
 _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
+_NOTHING = "Nothing yet: ropes are compared over the workspace of the study."
 
 
 def _number(title: str, name: str, scale: float, digits: int, definition: str) -> Column:
@@ -196,7 +197,7 @@ class PanelRopes(QWidget):
         if ropes is not None:
             self.material.refill([_ALL_MATERIALS, *ropes.materials])
             self.maker.refill([_ALL_MAKERS, *ropes.makers])
-        self.answer.setText("" if ropes is None else _answer(ropes))
+        self.answer.setText(_NOTHING if ropes is None else _answer(ropes))
         self.answer.setToolTip(self.answer.text())
         groups = None if ropes is None else ropes.groups
         self.groups.setText("" if groups is None else _groups_text(groups))

@@ -279,8 +279,9 @@ class Window(QMainWindow):
         self.answers["ropes"] = ropes
         is_first = "first ropes" not in self.answers
         self.answers["first ropes"] = True
-        if is_first and session.state.rope is None and ropes.best is not None:
-            session.begin_with(ropes.best)
+        best = None if ropes is None else ropes.best
+        if is_first and session.state.rope is None and best is not None:
+            session.begin_with(best)
             self.changed()
         self.ropes.show_ropes(ropes, session.state.rope)
 

@@ -15,7 +15,7 @@ from designer.effects.effect import Effect
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import field_of
 from designer.io.config.loads import MOST_CABLES
-from designer.io.config.meanings import GROUPS, MEANINGS, WORDS
+from designer.io.config.meanings import words_of
 from designer.io.config.orientation import OrientationSection
 from designer.io.config.schema import PoseSection, StudySection
 
@@ -128,13 +128,3 @@ def _explain(node: JsonSchema, path: str) -> None:
         _explain(field, place)
     if isinstance(node.get("additionalProperties"), dict):
         _explain(node["additionalProperties"], path)
-
-
-def words_of(path: str) -> tuple[str, str]:
-    """Return title and meaning of a field; those of a load case's region are the workspace's."""
-    at = path.replace("load_cases.region.", "workspace.region.")
-    if at not in MEANINGS:
-        at = at.replace("orientations.", "orientation.")
-    name = at.rpartition(".")[2].replace("_", " ")
-    title = GROUPS.get(at, name[:1].upper() + name[1:])
-    return MEANINGS.get(at) or (title, WORDS.get(at, ""))

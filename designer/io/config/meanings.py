@@ -49,6 +49,14 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "Moment on the platform",
         "Constant moment about the origin of the platform's frame, along the axes of the world.",
     ),
+    "robot.platform.drag.area": (
+        "Area across the wind",
+        "Of the platform, as the wind of a load case finds it.",
+    ),
+    "robot.platform.drag.coefficient": (
+        "Drag of the platform",
+        "Force of the wind over its pressure times the area.",
+    ),
     "robot.gravity": ("Gravity", "Where things fall; only its direction counts."),
     "robot.planar": ("Planar", "Whether the robot lies in one vertical plane."),
     "robot.tension_min": (
@@ -183,6 +191,10 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "End fittings keep in load case",
         "Share of the breaking load, instead of that of the selection.",
     ),
+    "cable.drag_coefficient": (
+        "Drag of the cables",
+        "Force of a load case's wind over its pressure times the cables' diameter and length.",
+    ),
     "cable.thermal_expansion": (
         "Thermal expansion of the cables",
         "Strain per change of temperature in load cases; left out, that of the rope's table, or "
@@ -280,12 +292,9 @@ WORDS: Mapping[str, str] = {
     "robot.platform.wrench": "Constant load beside the weight, at the origin of the platform's "
     "frame.",
     "robot.platform.drag": "What the wind of a load case finds of the platform.",
-    "robot.platform.drag.area": "Area across the wind.",
-    "robot.platform.drag.coefficient": "Force over pressure times area.",
     "cable": "The family of cables in which the optimum is computed: by its figures, or a grade "
     "as if it were sold in every diameter.",
     "cable.grade": "Id of a grade, from `designer catalog list`.",
-    "cable.drag_coefficient": "Drag of the cables in the wind of a load case, on their diameter.",
     "pose": "One pose that the report shows in detail.",
     "pose.quaternion": "Orientation as a unit quaternion [w, x, y, z] from the platform's frame "
     "to the world.",
@@ -350,3 +359,13 @@ WORDS: Mapping[str, str] = {
     "format": "Format of this file, for later versions of the program.",
 }
 """What all else is: sections, texts and choices."""
+
+
+def words_of(path: str) -> tuple[str, str]:
+    """Return title and meaning of a field; those of a load case's region are the workspace's."""
+    at = path.replace("load_cases.region.", "workspace.region.")
+    if at not in MEANINGS:
+        at = at.replace("orientations.", "orientation.")
+    name = at.rpartition(".")[2].replace("_", " ")
+    title = GROUPS.get(at, name[:1].upper() + name[1:])
+    return MEANINGS.get(at) or (title, WORDS.get(at, ""))

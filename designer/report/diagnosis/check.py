@@ -56,7 +56,7 @@ def _tables(check: Check) -> Iterator[Table]:
     caption = "What each model leaves, outliers and all, with 95 % intervals by block bootstrap."
     yield Table.of(caption, heads, *_errors(check))
     values = [
-        (setting.effect.key, words.label(p.name), f"{setting.values[p.name]:.6g} {p.unit}".strip())
+        (setting.effect.key, p.label, f"{setting.values[p.name]:.6g} {p.unit}".strip())
         for setting in check.declared.settings
         for p in setting.effect.parameters
     ]

@@ -71,7 +71,7 @@ def _facts(diagnosis: Diagnosis) -> Facts:
 
 def _unknown(diagnosis: Diagnosis) -> Table:
     rows = (
-        (setting.effect.key, words.label(p.name), words.estimate(value, p.unit))
+        (setting.effect.key, p.label, words.estimate(value, p.unit))
         for setting in diagnosis.given
         for p in setting.effect.parameters
         for value in [Estimate(setting.values[p.name], float("nan"))]

@@ -65,7 +65,7 @@ def _parameter(parameter: Parameter, finding: Finding) -> Row:
     is_believable = parameter.plausible[0] <= item.value <= parameter.plausible[1]
     return Row(
         (
-            words.label(parameter.name),
+            parameter.label,
             words.estimate(item, parameter.unit),
             words.interval(item, parameter.unit, _TO_95),
             words.estimate(Estimate(parameter.neutral, float("nan")), parameter.unit),

@@ -11,7 +11,6 @@ from designer.effects.effect import Effect, Parameter
 from designer.report import format as fmt
 
 NO_BREAK = "\u00a0"
-_UNIT_SUFFIX = re.compile(r"_(N_m2|m_per_N|m2|per_K|per_m|rad|kg|m|N|s)$")
 _OF_A_CABLE = re.compile(r"(length|tension|direction|speed)_(\d+)(?:_(m|N|m_per_s))?")
 _OURS = {
     **{f"{axis}_m": (axis, "m") for axis in "xyz"},
@@ -94,13 +93,8 @@ def plain_finding(finding: Finding) -> str:
 
 def values(effect: Effect, estimates: Mapping[str, Estimate]) -> str:
     """Return all fitted values such as ``radius = 119.8 ± 0.4 mm``."""
-    shown = (f"{label(p.name)} = {estimate(estimates[p.name], p.unit)}" for p in effect.parameters)
+    shown = (f"{p.label} = {estimate(estimates[p.name], p.unit)}" for p in effect.parameters)
     return ", ".join(text.replace(" ", NO_BREAK) for text in shown)
-
-
-def label(name: str) -> str:
-    """Return the name of a parameter without its unit: ``offset_1_m`` is ``offset 1``."""
-    return _UNIT_SUFFIX.sub("", name).replace("_", " ")
 
 
 def covariate(name: str) -> str:

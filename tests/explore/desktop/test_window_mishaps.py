@@ -101,3 +101,18 @@ def test_closing_in_the_middle_of_long_work_loses_nothing(
     assert process.wait(20.0) is not None
     assert "mass: 190 kg" in file.read_text(encoding="utf-8")
     assert not (tmp_path / "r").exists() or not list((tmp_path / "r").iterdir())
+
+
+def test_a_study_without_a_workspace_is_explored_pose_by_pose(yard: Driver, tmp_path: Path) -> None:
+    text = yard.session.text
+    bare = tmp_path / "bare.yaml"
+    bare.write_text(text[: text.index("workspace:")], encoding="utf-8")
+    yard.open(bare)
+    assert yard.window.answers["here"].cables
+    assert yard.window.answers["ropes"] is None
+    assert "over the workspace" in yard.window.ropes.answer.text()
+    yard.window.begin_long("select")
+    yard.rest()
+    yard.type_into("entry robot.platform.mass", "240 kg")
+    yard.rest()
+    assert "over the workspace" in yard.window.ropes.answer.text()
