@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from designer.explore.state import Rejected
 
 _STEPS = 1000
+_BESIDE = 75
+"""Width of a name that has room beside its entry in a narrow panel, also in bold [px]."""
 _OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}
 """Lists that are sections of their own here, folded: they rarely vary."""
 _FOLDED = frozenset(_OF_MANY.values())
@@ -188,11 +190,14 @@ class FieldRow(QWidget):
         grid.setHorizontalSpacing(4)
         grid.setVerticalSpacing(0)
         grid.setColumnStretch(0, 1)
-        grid.addWidget(self._label, 0, 0, 1, 3)  # beside an entry a name would be cut off
-        if field.low is not None and field.high is not None:
+        has_slider = field.low is not None and field.high is not None
+        width = self._label.fontMetrics().horizontalAdvance(field.label)
+        row = 0 if width <= _BESIDE and not has_slider else 1
+        grid.addWidget(self._label, 0, 0, 1, 1 if row == 0 else 3)
+        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), row, 1)
+        grid.addWidget(self._back, row, 2)
+        if has_slider:
             grid.addWidget(self._slider(), 1, 0)
-        grid.addWidget(self._choices() if field.kind == "choice" else self._entry(), 1, 1)
-        grid.addWidget(self._back, 1, 2)
         grid.addWidget(self._fault, 2, 0, 1, 3)
         self._fault.hide()
 
