@@ -15,7 +15,7 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import TOLERANCE
 from designer.kernel.calling import Meets, Situation
-from designer.kernel.compiling import kernel
+from designer.kernel.compiling import element, kernel
 from designer.kernel.lanes import (
     OVERLOAD,
     POSE_ROWS,
@@ -63,6 +63,10 @@ def sweep_sizes(
         Whether poses in which a cable hangs below the platform do not count.
     """
     n, count, rows = situation.attachments.shape[0], cells.size, situation.rows
+    # Taken out of the tuple once: looked up for every pose they take half of the time.
+    utilisation, pose, longest_m = found.utilisation, found.pose, found.longest_m
+    counted, overloaded = found.counted, found.overloaded
+    left_out, failed = found.left_out, found.failed
     cables = np.empty((n, LANE_ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))
@@ -89,38 +93,29 @@ def sweep_sizes(
             evaluate(cables, kappa[size] * ones)
             check(poses, cables, ones, strength[size] * ones, rows)
             for j in range(min(LANES, count - start)):
-                _keep(found, size, cables, poses, j, lane[j], cells[lane[j]], leaves_out_hanging)
+                at, cell, overload = lane[j], cells[lane[j]], poses[OVERLOAD, j]
+                # Negated, so that NaN counts as failed.
+                if not (poses[RESIDUAL, j] <= TOLERANCE and overload < np.inf):
+                    failed[size, at] = True
+                elif leaves_out_hanging and _hangs_below(cables, j):
+                    left_out[size] += 1
+                else:
+                    counted[size] += 1
+                    overloaded[size] += overload > 1.0
+                    for i in range(n):
+                        longest_m[size, i] = max(longest_m[size, i], cables[i, L, j])
+                    if overload > utilisation[size, cell]:
+                        utilisation[size, cell] = overload
+                        pose[size, cell] = at
             _restart_failed(cables, poses, guess)
 
 
-@kernel
-def _keep(
-    found: Meets,
-    size: int,
-    cables: FloatArray,
-    poses: FloatArray,
-    j: int,
-    at: int,
-    cell: int,
-    leaves_out_hanging: bool,
-) -> None:
+@element
+def _hangs_below(cables: FloatArray, j: int) -> bool:
     hangs = False
     for i in range(cables.shape[0]):
         hangs = hangs or (cables[i, V, j] < 0.0 and cables[i, D, j] >= 0.0)
-    overload = poses[OVERLOAD, j]
-    # Negated, so that NaN counts as failed.
-    if not (poses[RESIDUAL, j] <= TOLERANCE and overload < np.inf):
-        found.failed[size, at] = True
-    elif leaves_out_hanging and hangs:
-        found.left_out[size] += 1
-    else:
-        found.counted[size] += 1
-        found.overloaded[size] += overload > 1.0
-        for i in range(cables.shape[0]):
-            found.longest_m[size, i] = max(found.longest_m[size, i], cables[i, L, j])
-        if overload > found.utilisation[size, cell]:
-            found.utilisation[size, cell] = overload
-            found.pose[size, cell] = at
+    return hangs
 
 
 @kernel
