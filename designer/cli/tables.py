@@ -228,7 +228,6 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
 
 def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
-
     if not diagnosis.measured.has_poses:
         yield "poses", "estimated from each row's own readings"
     for finding in diagnosis.findings:

@@ -71,7 +71,7 @@ class Base:
         if parts <= {"pose", "name"}:
             finds_rest = any(name.startswith("pose.rest") for name in self.keep)
             return size_dict(study, analyse_pose(study, finds_rest=finds_rest))
-        if "pose" not in parts:
+        if "pose" not in parts and study.workspace is not None:
             study = replace(study, pose=None)
         if parts <= {"pose", "workspace"} and not any(
             name.split(".")[1:2] == [quality] for name in self.keep for quality in _OF_THE_CHOICE

@@ -75,6 +75,15 @@ keep: [pose.optimum.diameter_m, pose.sagging.lengths_m.3]
     assert found.reason.values.tolist() == ["there is no pose.sagging.lengths_m.3 here", ""]
 
 
+def test_what_a_study_of_one_pose_has_not_is_left_empty(tmp_path: Path) -> None:
+    sweep = SWEEP[: SWEEP.index("keep:")] + "keep: [workspace.sagging.diameter_m]\n"
+    swept(written(tmp_path, sweep), tmp_path / "out.zarr")
+    found = read_store(tmp_path / "out.zarr")
+    assert found.done.all()
+    assert found["workspace.sagging.diameter_m"].isnull().all()
+    assert not found.reason.str.contains("nothing to solve").any()
+
+
 def test_a_point_that_is_no_study_is_kept_with_its_reason(tmp_path: Path) -> None:
     sweep = SWEEP.replace("from: 100 kg", "from: -100 kg")
     swept(written(tmp_path, sweep), tmp_path / "out.zarr")
