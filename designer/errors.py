@@ -19,6 +19,21 @@ class DesignerError(Exception):
     """Base of all errors whose message is meant for the user as it stands."""
 
 
+def one_line(text: object) -> str:
+    """Return a text on one line, without control characters, cut short."""
+    try:
+        words = " ".join(str(text).split())
+    except Exception:  # a stranger's exception may fail at telling what it is
+        words = "an error without a readable message"
+    shown = "".join(letter if letter.isprintable() else "?" for letter in words)
+    return shown if len(shown) <= 300 else shown[:300] + "…"
+
+
+def described(error: BaseException) -> str:
+    """Return the kind of an error and what it says, on one line; a stranger's may be any text."""
+    return ": ".join(filter(None, (one_line(type(error).__name__), one_line(error))))
+
+
 @dataclass(frozen=True, slots=True)
 class Fault:
     """One thing that is wrong in an input file.

@@ -28,6 +28,8 @@ from designer.model.uncertainty import Uncertainty
 
 _LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
+SAG_MAX = 0.2
+"""Largest sag over chord of products, where the study gives none: a slacker one hangs."""
 HangsBelow = Literal["include", "exclude"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
 
@@ -52,6 +54,9 @@ class Workspace:
         How the platform shall be turned at every position.
     floor_m : float or None
         Height along the vertical that no cable shall hang below [m]; None for no floor.
+    sag_max, family_sag_max : float or None
+        Largest sag over chord of products, and of the configured cable; None for any. Internal
+        forces are chosen to keep it, see `Robot.sag_max`.
     proof_s : float
         Time for a proof that the chosen rope holds in all poses [s]; zero for none.
     """
@@ -64,6 +69,8 @@ class Workspace:
     clearance_m: float | None = None
     orientations: Orientations = field(default_factory=Orientations)
     floor_m: float | None = None
+    sag_max: float | None = SAG_MAX
+    family_sag_max: float | None = None
     proof_s: float = 0.0
 
     def __post_init__(self) -> None:
@@ -71,6 +78,8 @@ class Workspace:
         require_number("seed", self.seed, least=0)
         require_number("clearance_m", self.clearance_m, least=0.0)
         require_number("floor_m", self.floor_m)
+        require_number("sag_max", self.sag_max, above=0.0)
+        require_number("family_sag_max", self.family_sag_max, above=0.0)
         require_number("proof_s", self.proof_s, least=0.0)
         require_one_of("sampling", [self.sampling], get_args(Sampling))
         require_one_of("hangs_below", [self.hangs_below], get_args(HangsBelow))
@@ -79,6 +88,10 @@ class Workspace:
     def space(self) -> Space:
         """All poses, as places: positions in every orientation."""
         return Space(self.region, self.orientations)
+
+    def of_case(self, case: LoadCase) -> Workspace:
+        """Return the workspace of a load case, which may have a region of its own."""
+        return self if case.region is None else replace(self, region=case.region)
 
     def positions_m(self) -> Iterator[FloatArray]:
         """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m].
@@ -420,10 +433,33 @@ def declared_machine(study: Study) -> Machine:
     return Machine(study.robot, cable, surroundings=study.surroundings)
 
 
-def as_built_by(study: Study, section_m: float | None = None) -> AsBuilt:
-    """Return the robot and its cables as the declared effects have them.
+def as_built_by(study: Study, section_m: float | None = None, *, mounted: bool = False) -> AsBuilt:
+    """Return the robot and its cables as the declared effects have them, and how far they may sag.
 
-    ``section_m`` is the diameter at which they are applied to a family that does not stay one [m].
+    Effects that are properties of a rope (`Effect.of_rope`) belong to the rope that they are of.
+    With measurements that is the rope on the machine, which ``mounted`` asks for, and no other rope
+    has them; without, it is that of the configured family. A product of the catalogue never has
+    them: its data sheet counts. ``section_m`` is the diameter at which effects are applied to a
+    family that does not stay one [m].
     """
-    built = built_with(declared_machine(study), lambda machine: declared_settings(study, machine))
-    return replace(built, section_m=section_m)
+
+    def built(*, has_rope_effects: bool) -> AsBuilt:
+        def settings_of(machine: Machine) -> tuple[Setting, ...]:
+            every = declared_settings(study, machine)
+            return tuple(one for one in every if has_rope_effects or not one.effect.of_rope)
+
+        return built_with(declared_machine(study), settings_of)
+
+    found = built(has_rope_effects=mounted or study.measurements is None)
+    product = built(has_rope_effects=False)
+    robot = found.robot
+    if study.workspace is not None:
+        of_family = study.workspace.family_sag_max
+        of_cables = of_family if study.selection is None else study.workspace.sag_max
+        robot = replace(robot, sag_max=of_cables, family_sag_max=of_family)
+    return replace(found, robot=robot, section_m=section_m, change_of_product=product.change)
+
+
+def rope_effects(study: Study) -> tuple[str, ...]:
+    """Return the declared effects that belong to a rope, by their ids."""
+    return tuple(one.effect.id for one in declared_settings(study) if one.effect.of_rope)

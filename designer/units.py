@@ -21,13 +21,15 @@ if TYPE_CHECKING:
 _LONGEST_TEXT = 64
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?(?![\d.])")
 _FACTOR = re.compile(
-    r"\s*(?:(?P<divided>/)|[*·])?\s*(?P<name>[^\W\d]{1,40}|°[CF]?|%)"
+    r"\s*(?:(?P<divided>/)(?:\s*(?P<of>1000?))?|[*·])?\s*(?P<name>[^\W\d]{1,40}|°[CF]?|%)"
     r"(?:(?:\s*(?:\^|\*\*)\s*)?(?P<power>[-+]?[1-9]))?(?!\d)"
 )
+_MANY = {"100": "hecto", "1000": "kilo", None: ""}
+"""Rope tables give the mass of so many feet or metres."""
 _COMMON_UNITS = (
     *("m", "mm", "cm", "km", "in", "ft", "metre", "meter", "millimetre", "inch", "foot", "feet"),
     *("kg", "g", "t", "lb", "kilogram", "gram", "tonne", "pound"),
-    *("N", "kN", "MN", "kgf", "lbf", "newton", "kilonewton", "meganewton"),
+    *("N", "kN", "MN", "kgf", "lbf", "kip", "tonf", "newton", "kilonewton", "meganewton"),
     *("Pa", "kPa", "MPa", "GPa", "bar", "psi", "ksi", "pascal", "megapascal", "gigapascal"),
     *("rad", "deg", "radian", "degree", "K", "degC", "kelvin", "s", "min", "h", "second", "Hz"),
 )
@@ -229,9 +231,10 @@ def _unit(text: str) -> Unit:
         factor = _FACTOR.match(rest)
         if factor is None:
             raise _MisreadError(f"has the unreadable unit {text!r}")
-        _check_unit(factor["name"])
+        name = _MANY[factor["of"]] + factor["name"]
+        _check_unit(name)
         power = int(factor["power"] or 1) * (-1 if factor["divided"] else 1)
-        factors.append(f"{factor['name']}**{power}" if power != 1 else factor["name"])
+        factors.append(f"{name}**{power}" if power != 1 else name)
         rest = rest[factor.end() :]
     return _registry().parse_units("*".join(factors))
 
@@ -258,6 +261,9 @@ def _registry() -> UnitRegistry[float]:
     from pint import UnitRegistry
 
     try:  # as pint has once read its definitions on this machine, which takes a quarter second
-        return UnitRegistry(cache_folder=":auto:")
+        registry: UnitRegistry[float] = UnitRegistry(cache_folder=":auto:")
     except Exception:  # there is no folder for that, or another process is just writing there
-        return UnitRegistry()
+        registry = UnitRegistry()
+    # As in tables that have kgf; tons of 2000 and 2240 lb have names of their own.
+    registry.define("tonf = 1000 * kilogram_force")
+    return registry

@@ -15,6 +15,7 @@ from designer.io.config import build
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
 from designer.model.robot import Platform, Robot
+from designer.plugins import examine
 from designer.study import Workspace
 
 
@@ -67,6 +68,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     folder = tmp_path / "site"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
+    monkeypatch.setattr(examine, "kept_folder", lambda: tmp_path / "kept")
     yield folder
     for name, module in list(sys.modules.items()):
         if (getattr(module, "__file__", None) or "").startswith(str(folder)):

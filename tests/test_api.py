@@ -71,7 +71,7 @@ def test_the_readme_does_what_it_shows(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     text = example_file("yard").read_text(encoding="utf-8")
     (tmp_path / "my-crane.yaml").write_text(text.replace("samples: 20000", "samples: 200"))
-    readme = Path(designer.__file__).parents[1] / "README.md"
+    readme = Path(__file__).parents[1] / "README.md"
     (snippet,) = re.findall(r"```python\n(.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)
     exec(snippet, {})
     assert " mm at [" in capsys.readouterr().out

@@ -283,6 +283,42 @@ def test_catalog_list_show_check(designer) -> None:
     assert checked.err.startswith("rope.yaml:")
 
 
+def test_catalog_list_as_json(designer) -> None:
+    listed = json.loads(designer("catalog", "list", "--json", "--maker", "unirope").out)
+    (grade,) = [one for one in listed if one["id"] == "unirope-7x19-galvanised"]
+    assert (grade["construction"], grade["origin"]) == ("7x19", "builtin")
+    assert grade["diameter_m"] == pytest.approx([0.00238125, 0.009525])
+    assert len(grade["sizes"]) > 2
+    none = designer("catalog", "list", "--json", "--construction", "none of these")
+    assert (none.status, json.loads(none.out)) == (1, [])
+
+
+def test_a_narrow_terminal_cuts_no_id() -> None:
+    code = (
+        "from designer.cli import tables, terminal\nfrom designer.grades.registry import *\n"
+        "terminal._out.width = 80\n"
+        "grades = load_catalogue(with_plugins=False).grades\ntables.print_grades(grades)\n"
+        "print('IDS', *(grade.id for grade in grades))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    table, _, ids = done.stdout.rpartition("IDS ")
+    assert len(ids.split()) > 100
+    words = set(table.split())
+    assert [one for one in ids.split() if one not in words] == []
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("explore",), "pip install 'cdpr-designer[desktop]'"),
+        (("sweep",), "keep: [selection.chosen.utilisation, selection.chosen.total_mass_kg]"),
+    ],
+)
+def test_brackets_in_a_help_text_are_shown(designer, monkeypatch, command, words) -> None:
+    monkeypatch.setenv("COLUMNS", "120")
+    assert words in designer(*command, "--help").out
+
+
 @pytest.mark.slow
 def test_report_end_to_end(designer) -> None:
     Path("study.yaml").write_text(STUDY + WORKSPACE)
@@ -316,7 +352,7 @@ def test_a_workspace_that_no_cable_serves(designer) -> None:
     Path("a.yaml").write_text(STUDY + workspace)
     outcome = designer("report", "a.yaml")
     assert outcome.status == 1
-    assert "none: no cable serves any of it" in outcome.out
+    assert "none: no cable was found that serves any of it" in outcome.out
     assert outcome.out.index("worst pose") < outcome.out.index("outside hull")
 
 

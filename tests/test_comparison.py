@@ -66,6 +66,24 @@ def test_a_change_beyond_rounding_is_told_and_rounding_is_not(results, path) -> 
         assert compare(results[0], other).is_same is not told
 
 
+def test_the_verdict_and_what_is_not_met_stand_side_by_side(results) -> None:
+    assert compare(*results).unmet == ()
+    worse = deepcopy(results[1])
+    worse["answer"]["verdict"] = "no"
+    check = worse["checks"][-1]
+    check |= {"state": "fails", "demand": 28.0, "capacity": 25.2, "unit": "N"}
+    found = compare(results[0], worse)
+    (line,) = found.unmet
+    assert line.path == f"{check['id']} in {check['load_case']}"
+    assert line.a.startswith("holds")
+    assert line.b == "fails: demand 28 N, capacity 25.2 N"
+    verdict = next(line for line in found.answers if line.path == "answer.verdict")
+    assert (verdict.a, verdict.b) == (results[0]["answer"]["verdict"], "no")
+    assert found.to_dict()["unmet"][0]["b"] == line.b
+    created = moment()
+    assert line.b in render_html(comparison_report(found, ("a", "b"), created))
+
+
 def test_sizes_that_hold_in_one_only(results) -> None:
     found = compare(*results)
     for line in found.products:

@@ -68,7 +68,7 @@ def test_at_the_worst_pose_it_is_the_reports_tension(tmp_path) -> None:
     assert analysis.selection is not None
     assert analysis.selection.chosen is not None
     met = analysis.selection.chosen.verification
-    lengths = lengths_of(analysis, door.Poses.at(met.worst_position_m[None]))
+    lengths = lengths_of(analysis, door.Poses.at(met.worst_place[None]))
     assert lengths is not None
     assert lengths.statics.cable_tension_N.max() == pytest.approx(met.max_tension_N, rel=1e-9)
     assert lengths.utilisation.max() == pytest.approx(met.utilisation, rel=1e-9)

@@ -216,3 +216,63 @@ def test_a_run_that_lives_is_left_alone(tmp_path: Path) -> None:
         with output_folder(tmp_path) as building:
             (building / "c.txt").write_text("new")
         assert everything(tmp_path) == sorted([*before, "c.txt"])
+
+
+def test_a_hidden_folder_whose_lock_a_kill_prevented_is_cleared(tmp_path: Path) -> None:
+    hidden = tmp_path / ".designer-0123abcd"
+    (hidden / "new").mkdir(parents=True)
+    with output_folder(tmp_path):
+        pass
+    assert hidden.exists()  # of a run that may be about to lock it
+    os.utime(hidden, (0.0, 0.0))
+    with output_folder(tmp_path):
+        pass
+    assert everything(tmp_path) == []
+
+
+def test_a_new_file_is_whole_where_a_kill_comes_between(tmp_path: Path) -> None:
+    code = (
+        "import os, pathlib, sys\n"
+        "pathlib.Path.hardlink_to = lambda *_: os._exit(9)\n"
+        "from designer.io.output import write_new_file\n"
+        "write_new_file(pathlib.Path('a'), 'text')\n"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=False)
+    assert not (tmp_path / "a").exists()
+    write_new_file(tmp_path / "a", "text")
+    assert everything(tmp_path) == ["a"]
+
+
+def test_a_new_file_on_a_file_system_without_links(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(Path, "hardlink_to", refuse)
+    write_new_file(tmp_path / "a", "1")
+    with pytest.raises(OutputError, match="exists already"):
+        write_new_file(tmp_path / "a", "2")
+    assert (tmp_path / "a").read_text() == "1"
+    assert everything(tmp_path) == ["a"]
+
+
+INIT_WITH_LITTLE_ROOM = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
+from designer.__main__ import main
+main()
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+@pytest.mark.parametrize("room", [0, 4000, 30_000], ids=["none", "half a study", "no schema"])
+def test_init_on_a_full_disk_leaves_no_file(tmp_path: Path, room: int) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", INIT_WITH_LITTLE_ROOM, str(room), "init", "a.yaml"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "cannot be written (File too large)" in done.stderr
+    assert everything(tmp_path) == []

@@ -172,3 +172,91 @@ def test_notes_that_nobody_reads_are_no_negative_answer(
     finally:
         os.close(write_end)
     assert done.returncode == 128 + signal.SIGPIPE
+
+
+FAILING = """
+import sys
+from designer import __main__
+from designer.cli import commands
+
+@commands.app.command("fail")
+def fail() -> None:
+    raise {error}
+
+sys.argv = ["designer", "fail"]
+__main__.main()
+"""
+
+
+@pytest.mark.parametrize("error", ["ValueError('of ours')", "EOFError('of ours')", "MemoryError()"])
+def test_a_fault_of_the_program_is_one_line_and_no_answer(tmp_path: Path, error: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", FAILING.format(error=error)],
+        env={**os.environ, "XDG_STATE_HOME": str(tmp_path), "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 70
+    assert error.partition("(")[0] in line
+    assert "Please report it as an issue of its repository, with " in line
+    kept = Path(line.rpartition(", with ")[2])
+    assert kept.is_relative_to(tmp_path)
+    assert "Traceback" in kept.read_text()
+
+
+@posix
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+@pytest.mark.parametrize("command", [("size", "none.yaml"), ("siez",), ("catalog", "show", "none")])
+def test_a_standard_error_that_is_full_is_no_answer(command: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [*DESIGNER, *command], stdout=subprocess.PIPE, stderr=full, timeout=300, check=False
+        )
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+@posix
+@pytest.mark.parametrize("library", ["typer", "designer.cli.commands", "designer.errors"])
+def test_ctrl_c_while_libraries_are_loaded(library: str) -> None:
+    asks = (
+        "import os, signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "class Ask:\n    def find_spec(self, name, path=None, target=None):\n"
+        f"        if name == {library!r}: os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Ask())\n"
+        "from designer.__main__ import main; sys.argv = ['designer', '--version']; main()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", asks], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+
+
+LIMITED = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
+from designer.__main__ import main
+sys.argv = ["designer", *sys.argv[1:]]
+main()
+"""
+
+
+@posix
+@pytest.mark.slow
+def test_a_disk_that_is_full_is_told_in_one_line_and_leaves_nothing(tmp_path: Path) -> None:
+    """NetCDF has an error of its own for that."""
+    (tmp_path / "study.yaml").write_text(
+        "robot:\n  anchors: [[0, 0, 10], [20, 0, 10], [10, 17, 10]]\n  platform: {mass: 100 kg}\n"
+        "cable: {density: 5290 kg/m^3, youngs_modulus: 60 GPa, allowable_stress: 200 MPa}\n"
+        "workspace: {region: {prism: anchors, z: [1 m, 4 m], inset: 2 m}, samples: 2000}\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", LIMITED, "report", "study.yaml", "--no-plugins"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False,
+    )  # fmt: skip
+    lines = [line for line in done.stderr.splitlines() if "cannot be written" in line]
+    assert done.returncode == 2, done.stderr
+    assert len(lines) == 1
+    assert "Traceback" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["study.yaml"]

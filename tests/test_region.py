@@ -9,6 +9,7 @@ from scipy.stats import qmc
 from designer.arrays import frozen_array
 from designer.model.region import PointList, Prism, Rectangle
 from designer.model.sobol import sobol
+from designer.model.space import Orientations, Space
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 
@@ -89,6 +90,20 @@ def test_what_a_region_hands_out_lies_in_it(region, sampling) -> None:
         assert region.contains(region.nearest(points)).all()
         assert region.nearest(points) == pytest.approx(points, abs=1e-9)
     assert (len(sampled) == 300) == region.is_discrete or sampling == "grid"
+
+
+@pytest.mark.parametrize("at_m", [-1e3, 0.0, 1e3])
+def test_a_place_is_inside_wherever_its_region_lies(at_m: float) -> None:
+    """Coordinates that are all negative, all positive, or both."""
+    z_m = at_m - 1.0, at_m + 1.0
+    points = np.random.default_rng(2).uniform(at_m - 1.0, at_m + 1.0, (9, 3))
+    wall = Rectangle(np.array([[at_m - 1.0, at_m], [at_m + 2.0, at_m + 4.0]]), z_m)
+    for region in (Prism.box(z_m, z_m, z_m), wall, PointList(frozen_array(points))):
+        space = Space(region, Orientations())
+        for x, y, z in np.concatenate(list(region.samples_m(20, "low_discrepancy", 0))):
+            assert space.outside(np.array([x, y, z, 0.0, 0.0, 0.0])) == (False, False)
+            assert space.outside(np.array([x, y, z, 0.0, 0.0, 0.1])) == (False, True)
+            assert space.outside(np.array([x, y, z + 3.0, 0.0, 0.0, 0.0])) == (True, False)
 
 
 def test_a_region_measures_and_describes_itself() -> None:

@@ -52,7 +52,7 @@ def adrift_in(
     for case in cases:
         if case.wind is None and case.acceleration_m_per_s2 == 0.0:
             continue
-        space = replace(workspace, region=case.region or workspace.region)
+        space = workspace.of_case(case)
         places = np.concatenate([space.space.landmarks(), space.thinned(samples)])
         places = places[_holds(robot, places)]
         found = [

@@ -8,6 +8,7 @@ import weakref
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -17,12 +18,14 @@ import numpy as np
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
+from designer.analysis.requirements import requirements_of
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
 from designer.errors import InputError
 from designer.grades.registry import Catalogue, load_catalogue
 from designer.model.cable import Material
+from designer.model.requirement import Answer, Requirement, State, answer_of
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
@@ -120,7 +123,7 @@ class Provenance:
                 names += ["cvxpy", "highspy"]
         return cls(
             version=__version__,
-            libraries=tuple((name, version(name)) for name in names),
+            libraries=tuple((name, version(name)) for name in names if find_spec(name)),
             system=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
             created=datetime.now().astimezone(),
         )
@@ -154,6 +157,8 @@ class Analysis:
         If the study has a workspace and a selection.
     groups : GroupChoice or None
         If the selection has groups of cables.
+    requirements : tuple of Requirement
+        All that the study asks for, in every load case; the answer follows from these alone.
     qualities : Qualities or None
         Stiffness and clearances, if the study has a workspace and a cable holds in all of it.
     section_m : float or None
@@ -182,6 +187,7 @@ class Analysis:
     workspace: WorkspaceMap | None
     selection: SelectionResult | None
     groups: GroupChoice | None = None
+    requirements: tuple[Requirement, ...] = ()
     qualities: Qualities | None = None
     section_m: float | None = None
     verification: tuple[SecondAnswer, ...] = ()
@@ -228,23 +234,25 @@ class Analysis:
         return HangingCables() if self.workspace is None else self.workspace.census.hanging
 
     @property
+    def answer(self) -> Answer:
+        """Yes if all requirements hold, no if one fails, else open."""
+        return answer_of(self.requirements)
+
+    @property
     def is_positive(self) -> bool:
-        """Whether the answer is yes: cables hold as asked, and keep the clearance asked for."""
-        clear = None if self.qualities is None else self.qualities.interference
-        return self.has_cable and (clear is None or not clear.is_violated)
+        """Whether the answer is yes."""
+        return self.answer is Answer.YES
+
+    @property
+    def unmet(self) -> tuple[Requirement, ...]:
+        """Requirements that fail, then those of which it is not known."""
+        unmet = [requirement for requirement in self.requirements if not requirement.holds]
+        return tuple(sorted(unmet, key=lambda requirement: requirement.state is State.OPEN))
 
     @property
     def most_needed(self) -> CaseNeed | None:
         """The load case that needs the thickest cable of the family, or one that none holds."""
         return most_needed(self.needs)
-
-    @property
-    def has_cable(self) -> bool:
-        """Whether the pose is solved, the workspace served in all load cases, a product found."""
-        pose_ok = self.pose is None or bool(self.pose.sizing.statics.is_solved)
-        workspace_ok = self.workspace is None or self.workspace.is_feasible
-        workspace_ok = self.most_needed.is_held if self.most_needed else workspace_ok
-        return pose_ok and workspace_ok and self.has_products
 
     @property
     def chosen(self) -> Candidate | None:
@@ -334,7 +342,7 @@ def analyse(
     if scratch is not None:
         folder = scratch.folder
     provenance = Provenance.now(study)
-    pose = None if study.pose is None else analyse_pose(study)
+    pose = None if study.pose is None else analyse_pose(study, finds_rest=explains)
     built = as_built_by(study)
     if study.workspace is not None:
         section_m = section_of_workspace(built, study.workspace, study.material)
@@ -372,6 +380,10 @@ def analyse(
         qualities = qualities_of(
             study.workspace, workspace, chosen, groups, built, study.material, needs
         )
+    design = None if qualities is None else qualities.cable
+    requirements = requirements_of(
+        study, built, pose, workspace, chosen, groups, needs, design, reporter
+    )
     return Analysis(
         study,
         catalogue,
@@ -380,6 +392,7 @@ def analyse(
         workspace,
         chosen,
         groups,
+        requirements,
         qualities,
         built.section_m,
         second_answers(study, built, pose, workspace, chosen) if explains else (),

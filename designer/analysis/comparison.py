@@ -12,7 +12,8 @@ from designer.analysis.result_json import Json
 _TOLD = 1e-9
 """Relative difference below which numbers are the same: what a search at a flat optimum leaves."""
 _ANSWERS = {
-    "positive": "answer",
+    "positive": "all holds as asked",
+    "answer.verdict": "answer",
     "selection.chosen.grade": "chosen grade",
     "selection.chosen.size_id": "chosen size",
     "selection.chosen.utilisation": "utilisation",
@@ -38,7 +39,9 @@ _ANSWERS = {
     "workspace.interference.min_distance_m": "smallest clearance",
 }
 """Values of ``result.json`` that a reader compares first, and what they are called."""
-_APART = ("inputs", "provenance", "verification", "name", "format", "pose.loop")
+_APART = (
+    "inputs", "provenance", "verification", "name", "format", "pose.loop", "answer.reasons"
+)  # fmt: skip
 """What is compared by itself, or tells only how and when."""
 _LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried")
 """Of ``selection``: told by the products."""
@@ -91,6 +94,8 @@ class Comparison:
         Whether both results tell their inputs; older ones do not.
     answers : tuple of Line
         What a reader compares first, whether it differs or not.
+    unmet : tuple of Line
+        Requirements that do not hold in both, whether they differ or not; in words.
     products : tuple of Line
         Sizes of grades that hold in one of the two only, or were tried in one only.
     others : tuple of Line
@@ -102,13 +107,14 @@ class Comparison:
     inputs: tuple[Line, ...]
     has_inputs: bool
     answers: tuple[Line, ...]
+    unmet: tuple[Line, ...]
     products: tuple[Line, ...]
     others: tuple[Line, ...]
 
     @property
     def is_same(self) -> bool:
         """Whether nothing differs but when and where they were computed."""
-        lines = (*self.inputs, *self.answers, *self.products, *self.others)
+        lines = (*self.inputs, *self.answers, *self.unmet, *self.products, *self.others)
         return not any(line.differs for line in lines)
 
     def to_dict(self) -> Json:
@@ -123,6 +129,7 @@ class Comparison:
             "same": self.is_same,
             "inputs": plain(self.inputs) if self.has_inputs else None,
             "answers": plain(self.answers),
+            "unmet": plain(self.unmet),
             "products": plain(self.products),
             "others": plain(self.others),
             "provenance": [self.a["provenance"], self.b["provenance"]],
@@ -146,6 +153,7 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
         tuple(line for line in inputs if line.differs),
         has_inputs,
         answers,
+        tuple(_unmet(a, b)),
         tuple(line for line in _lines(_products(a), _products(b)) if line.differs),
         tuple(line for line in others if line.differs),
     )
@@ -154,6 +162,30 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
 def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
     for path in dict.fromkeys([*a, *b]):
         yield Line(path, "", a.get(path), b.get(path))
+
+
+def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
+    """Yield each requirement that one of the two does not meet; None where it is not asked."""
+    # Of groups of cables several have one name: the one that does not hold counts.
+    each = (sorted(one.get("checks", []), key=lambda c: c["state"] != "holds") for one in (a, b))
+    checks_a, checks_b = ({_key(check): check for check in checks} for checks in each)
+    for key in dict.fromkeys([*checks_a, *checks_b]):
+        checks = checks_a.get(key), checks_b.get(key)
+        if any(check is not None and check["state"] != "holds" for check in checks):
+            yield Line(key, key.replace("_", " "), *map(_check_words, checks))
+
+
+def _key(check: Mapping[str, Any]) -> str:
+    return f"{check['id']} in {check['load_case']}"
+
+
+def _check_words(check: Mapping[str, Any] | None) -> str | None:
+    """Return state and figures in a line, such as ``fails: demand 28, capacity 25.2``."""
+    if check is None:
+        return None
+    figures = ((name, check.get(name)) for name in ("demand", "capacity"))
+    said = [f"{n} {x:.4g} {check.get('unit', '')}".rstrip() for n, x in figures if x is not None]
+    return f"{check['state']}: {', '.join(said)}" if said else str(check["state"])
 
 
 def _flat(value: Mapping[str, Any], lead: str = "") -> Iterator[tuple[str, Any]]:

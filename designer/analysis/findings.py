@@ -138,7 +138,7 @@ def find(analysis: Analysis) -> Findings:
         return findings
     outcome = next(o for o in analysis.selection.outcomes if o.best is chosen)
     robot = analysis.built.robot
-    worst = Poses.at(chosen.verification.worst_position_m)
+    worst = Poses.at(chosen.verification.worst_place)
     return replace(
         findings,
         chosen_outcome=outcome,

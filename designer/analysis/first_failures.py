@@ -58,7 +58,7 @@ def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:
     region, one = found.workspace.region, found.loaded
     if isinstance(region, PointList) or one.keeps_lengths:
         return ()
-    turn = found.verification.worst_position_m[3:]
+    turn = found.verification.worst_place[3:]
     return tuple(_along(region, one, turn, name, way) for name, way in _directions(region, one))
 
 

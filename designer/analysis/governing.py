@@ -12,7 +12,7 @@ from designer.model.robot import Poses
 from designer.selection.cases import CaseFound
 from designer.selection.result import Candidate
 from designer.statics.inverse import Statics
-from designer.statics.shape import sag_m, stretch_m
+from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 from designer.statics.task import PulleyRun
 
 
@@ -140,18 +140,6 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
 
 def _up(one: Loaded) -> FloatArray:
     return np.asarray(one.bare[0].level[2])
-
-
-def string_frequency_Hz(one: Loaded, statics: Statics) -> FloatArray:
-    """Return the lowest frequency of each cable as a string (..., n_cables), with ice [Hz].
-
-    sqrt(T / m) / (2 l), of the mean T of its end tensions and its free length l.
-    """
-    cable, ice = one.bare[1], one.case.ice
-    around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
-    mass = cable.linear_density_kg_per_m + around
-    mean = 0.5 * (statics.exit_tension_N + statics.platform_tension_N)
-    return np.asarray(np.sqrt(mean / mass) / (2.0 * statics.free_length_m))
 
 
 def _pulls_N(statics: Statics) -> FloatArray:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
+from designer.documents.csv_text import csv_text
 from designer.measured.names import length_names, tension_names
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
@@ -62,15 +61,13 @@ class Lengths:
         where a pose is not solved.
         """
         n_cables = self.statics.robot.n_cables
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow([*names, *length_names(n_cables), *tension_names(n_cables), "verdict"])
+        rows = [[*names, *length_names(n_cables), *tension_names(n_cables), "verdict"]]
         found = np.hstack([self.statics.length_m, self.statics.exit_tension_N])
         for given, row, verdict in zip(values, found, self.statics.verdict, strict=True):
             exactly = ["" if np.isnan(x) else repr(float(x)) for x in given]
             solved = ["" if np.isnan(x) else f"{x:.10g}" for x in row]
-            writer.writerow([*exactly, *solved, Verdict(int(verdict)).label])
-        return text.getvalue()
+            rows.append([*exactly, *solved, Verdict(int(verdict)).label])
+        return csv_text(rows)
 
 
 def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
@@ -81,7 +78,7 @@ def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
     """
     if analysis.qualities is not None:
         cable = analysis.qualities.cable
-    elif analysis.workspace is None and analysis.pose is not None and analysis.has_cable:
+    elif analysis.workspace is None and analysis.pose is not None and analysis.is_positive:
         diameter_m = float(analysis.pose.sizing.diameter_m)
         name = f"{1e3 * diameter_m:.4g} mm of the configured family"
         cable = DesignCable(analysis.pose.material.cable(diameter_m), name)

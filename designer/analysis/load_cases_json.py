@@ -6,9 +6,9 @@ from dataclasses import asdict
 from typing import Any
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.checks import Check, checks_of
 from designer.analysis.governing import GoverningPose, governing_pose
 from designer.documents.plain import finite
+from designer.model.requirement import Requirement
 from designer.model.space import turn_of
 from designer.selection.cases import CaseFound
 from designer.statics.cable_loss import Fate
@@ -17,35 +17,42 @@ Json = dict[str, Any]
 
 
 def load_cases_dict(analysis: Analysis) -> Json:
-    """Return each load case, each check, and the governing pose; empty where none is chosen."""
+    """Return each load case, each requirement, and the governing pose, None where no rope is."""
     study, chosen = analysis.study, analysis.chosen
+    checks = [_check(requirement) for requirement in analysis.requirements]
     if chosen is None or study.selection is None:
         needs = [
             _case(one.found) | finite({"diameter_m": one.diameter_m, "holds": one.is_held})
             for one in analysis.needs
         ]
-        return {"load_cases": needs, "checks": [], "governing": None}
-    least_N = study.robot.tension_min_N
-    checks = checks_of(chosen, study.selection, least_N, analysis.qualities)
+        return {"load_cases": needs, "checks": checks, "governing": None}
     pose = governing_pose(chosen, study.selection.safety_factor)
     return {
         "load_cases": [_case(one) for one in chosen.cases],
-        "checks": [_check(one) for one in checks],
+        "checks": checks,
         "governing": None if pose is None else _governing(pose),
     }
 
 
-def _check(one: Check) -> Json:
+def _check(requirement: Requirement) -> Json:
     names = ("id", "load_case", "cable", "demand", "capacity", "unit", "utilisation", "holds")
-    values = {name: getattr(one, name) for name in (*names, "formula", "source")}
-    pose = None if one.place is None else one.place[:3]
-    plain: Json = finite(values | {"pose": pose})
+    values = {name: getattr(requirement, name) for name in (*names, "formula", "source", "remark")}
+    place = requirement.place
+    plain: Json = finite(
+        values
+        | {
+            "state": requirement.state.value,
+            "direction": requirement.direction or None,
+            "pose": None if place is None else place[:3],
+            "rotation_vector": None if place is None else turn_of(place),
+        }
+    )
     return plain
 
 
 def _governing(pose: GoverningPose) -> Json:
     found = pose.found
-    place = found.verification.worst_position_m
+    place = found.verification.worst_place
     plain: Json = finite(
         {
             "load_case": found.case.name,
@@ -66,7 +73,7 @@ def _governing(pose: GoverningPose) -> Json:
 
 def _case(found: CaseFound) -> Json:
     met, loaded, loss = found.verification, found.loaded, found.loss()
-    place = met.worst_position_m
+    place = met.worst_place
     after = {
         "fate": None if loss is None else Fate(int(loss.fate[0])).label,
         "rest": None if loss is None else loss.rest.position_m[0],
@@ -78,6 +85,7 @@ def _case(found: CaseFound) -> Json:
         "utilisation": met.utilisation,
         "max_tension_N": met.max_tension_N,
         "allowable_tension_N": loaded.cable.allowable_tension_N,
+        "axial_stiffness_N": loaded.cable.axial_stiffness_N,
         "cable": found.most_used(),
         "pose": place[:3],
         "rotation_vector": turn_of(place),

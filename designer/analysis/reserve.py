@@ -128,7 +128,7 @@ def _end(
         demand = _tension(loaded, workspace.hangs_below)(one.place_at(value)[None])
         return float(demand[0]) / loaded.cable.allowable_tension_N
 
-    known = [carried(one, one.verification.worst_position_m, span[0]) for one in cases]
+    known = [carried(one, one.verification.worst_place, span[0]) for one in cases]
 
     def worst(value: float) -> float:
         return max(used(one, value) for one in known)

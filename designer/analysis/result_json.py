@@ -29,6 +29,8 @@ from designer.workspace.result import Extreme, WorkspaceMap
 from designer.workspace.stiffness import StiffnessSurvey
 
 Json = dict[str, Any]
+_OF_THE_CHOICE = ("stiffness", "interference", "hanging")
+"""Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
 
 
 def result_dict(analysis: Analysis) -> Json:
@@ -89,6 +91,13 @@ def result_dict(analysis: Analysis) -> Json:
     }
 
 
+def evaluates_answer(keep: Iterable[str]) -> bool:
+    """Tell whether what is kept takes the answer of a study, and not a part of it alone."""
+    paths = [name.split(".") for name in keep]
+    of_the_choice = any(path[1:2] == [each] for path in paths for each in _OF_THE_CHOICE)
+    return of_the_choice or not {path[0] for path in paths} <= {"pose", "workspace", "name"}
+
+
 def size_dict(study: Study, pose: PoseAnalysis) -> Json:
     """Return what ``designer size --json`` prints: the pose alone, under the same names."""
     pose_alone = {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
@@ -99,18 +108,27 @@ def _origin(study: Study) -> Json:
     return {"version": __version__, "config_sha256": study.source.sha256}
 
 
-def _answer(analysis: Analysis) -> Json | None:
+def _answer(analysis: Analysis) -> Json:
+    """Return the verdict, what it rests on where it is not yes, and the products to use."""
+    reasons = [
+        {"id": one.id, "load_case": one.load_case, "state": one.state.value}
+        for one in analysis.unmet
+    ]
+    return {"verdict": analysis.answer.value, "reasons": reasons, **_products(analysis)}
+
+
+def _products(analysis: Analysis) -> Json:
     """Return what to put on each cable: the products of groups where there are any."""
     choice = analysis.groups
     if choice is not None:
         if choice.chosen is None:
-            return None
+            return {"products": [], "total_mass_kg": None}
         names = ("name", "cables", "grade", "size_id")
         products = [{name: one[name] for name in names} for one in groups_dict(choice)["groups"]]
         return {"products": products, "total_mass_kg": _number(choice.chosen.total_mass_kg)}
     chosen = analysis.chosen
     if chosen is None:
-        return None
+        return {"products": [], "total_mass_kg": None}
     cables = list(range(1, analysis.study.robot.n_cables + 1))
     product = {"cables": cables, "grade": chosen.grade.id, "size_id": chosen.size.id}
     return {"products": [{"name": None, **product}], "total_mass_kg": _number(chosen.total_mass_kg)}

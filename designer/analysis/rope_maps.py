@@ -71,10 +71,10 @@ def rope_of(analysis: Analysis) -> Rope | None:
         return None
     whole = [one for one in chosen.cases if not one.loaded.keeps_lengths]
     if not whole:
-        place = chosen.verification.worst_position_m
+        place = chosen.verification.worst_place
         return Rope(robot, chosen.cable, study.workspace, design.name, "static", place)
     most: CaseFound = max(whole, key=lambda one: one.utilisation)
-    place = most.verification.worst_position_m
+    place = most.verification.worst_place
     one = most.loaded
     return Rope(one.robot, one.cable, most.workspace, design.name, most.case.name, place)
 

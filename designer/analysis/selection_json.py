@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite
 from designer.model.space import turn_of
 from designer.selection.groups.result import GroupChoice
@@ -40,8 +39,8 @@ _CANDIDATE = {
     "stiffness_N_per_m": "figures.stiffness_N_per_m",
     "longest_m": "verification.longest_m",
     "shortest_m": "verification.shortest_m",
-    "worst_pose": "verification.worst_position_m",
-    "worst_rotation_vector": "verification.worst_position_m",
+    "worst_pose": "verification.worst_place",
+    "worst_rotation_vector": "verification.worst_place",
     "verified": "verified",
     "refined": "verification.is_refined",
     "standing": "standing",
@@ -113,7 +112,7 @@ def selection_dict(selection: SelectionResult) -> Json:
 
 def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     """Return one candidate under the names that scripts rely on."""
-    found = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_position_m)
+    found = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_place)
     trust = {"trust": candidate.grade.trust, "doubt": candidate.size.doubt}
     return {**found, "outcome": outcome.outcome, **trust}
 
@@ -172,8 +171,5 @@ def candidates_csv(selection: SelectionResult) -> str:
             each = enumerate(value, start=1) if name in _LISTS else [(0, value)]
             row |= {_LISTS.get(name, name).format(k): one for k, one in each}
         rows.append(row)
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, fieldnames=list(rows[0]) if rows else ["grade", "size_id"])
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
+    names = list(rows[0]) if rows else ["grade", "size_id"]
+    return csv_text([names, *([row[name] for name in names] for row in rows)])

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.model.load_case import LoadCase, Loaded
+from designer.model.load_case import Loaded
 from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.statics.geometry import load_wrench_N
@@ -125,7 +125,7 @@ def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
 
 
 def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
-    one, place = found.loaded, found.verification.worst_position_m
+    one, place = found.loaded, found.verification.worst_place
     side = np.zeros_like(place)
     side[:3] = outward(found.workspace.region, place[:3])
 
@@ -134,7 +134,7 @@ def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float)
         return (ends[0] - ends[1]) / (2.0 * _STEP * one.cable.allowable_tension_N)
 
     def shifted(by: float) -> float:
-        met = replace(found.verification, worst_position_m=place + by * side)
+        met = replace(found.verification, worst_place=place + by * side)
         return replace(found, verification=met).tension_N(one) / one.cable.allowable_tension_N
 
     own = {
@@ -186,15 +186,18 @@ def with_payload(one: Loaded, factor: float) -> Loaded:
 
     Wind on the platform stays.
     """
-    return replace(one, case=payload_case(one, factor)).on(*one.bare)
+    scaled = payload_scaled(one, factor)
+    return scaled.on(*scaled.bare)
 
 
-def payload_case(one: Loaded, factor: float) -> LoadCase:
-    """Return its load case with that."""
-    body, case = one.bare[0].platform, one.case
-    mass = body.mass_kg if case.mass_kg is None else case.mass_kg
+def payload_scaled(one: Loaded, factor: float) -> Loaded:
+    """Return its load case with that, and what it is put on, to be put on."""
+    (robot, cable), case = one.bare, one.case
+    body = robot.platform
     wrench = body.wrench_N if case.wrench_N is None else case.wrench_N
-    return replace(case, mass_kg=factor * mass or None, wrench_N=factor * wrench)
+    robot = replace(robot, platform=replace(body, mass_kg=factor * case.mass_on(body)))
+    case = replace(case, mass_kg=None, wrench_N=factor * wrench)
+    return replace(one, case=case, bare=(robot, cable))
 
 
 def with_density(one: Loaded, factor: float) -> Loaded:

@@ -22,6 +22,7 @@ def uncertainty_dict(found: UncertaintyAnalysis | None) -> Json | None:
     plain: Json = finite(
         {
             "asked": found.is_asked,
+            "requirements": ["breaking_load"],  # of all that the study asks for, these are drawn
             "probability": found.chosen.probability,
             "confidence": _confidence(found.chosen),
             "not_held": found.chosen.not_held,

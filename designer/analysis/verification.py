@@ -89,7 +89,7 @@ def second_answers(
         found += verify("worst pose", material, sizing)
     if chosen is not None and chosen.chosen is not None:
         most = chosen.chosen.governing
-        place = chosen.chosen.verification.worst_position_m
+        place = chosen.chosen.verification.worst_place
         statics = solve_sagging(most.loaded.robot, Poses.at(place), most.loaded.cable)
         if statics.is_solved:
             found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))

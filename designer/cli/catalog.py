@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -35,22 +36,29 @@ def catalog_list(
     nominal: Annotated[
         bool, typer.Option("--nominal", help="Those computed by a standard's factors instead.")
     ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     no_plugins: NoPlugins = False,
 ) -> None:
     """List the grades with their source.
 
+    With --json it is a list with what the table has of each, in SI: id, manufacturer, product,
+    construction, core, finish, material, trust, source, origin, the ids of its sizes, and the least
+    and largest diameter_m and minimum_breaking_load_N.
+
     Example:  designer catalog list --construction 7x19 --diameter 6mm
     """
     from designer.cli.tables import print_grades
-    from designer.grades.listing import Wanted, split_nominal
+    from designer.grades.listing import Wanted, listed, split_nominal
 
     catalogue = _loaded(no_plugins)
     wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
     products, computed = split_nominal(wanted.among(catalogue.grades))
     shown, others = (computed, products) if nominal else (products, computed)
-    if shown:
+    if as_json:
+        typer.echo(json.dumps([listed(grade) for grade in shown], indent=2, ensure_ascii=False))
+    elif shown:
         print_grades(shown)
-    if others and not nominal:
+    if others and not nominal and not as_json:
         typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
     if not shown:
         typer.echo("no grade is like that", err=True)

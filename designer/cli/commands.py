@@ -9,11 +9,13 @@ import atexit
 import gc
 import shlex
 import sys
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.markup import escape
 from typer.core import TyperGroup
 
 from designer import __version__
@@ -35,7 +37,14 @@ from designer.cli.schema import schema, write_with_schema
 from designer.cli.studies import catalogue_of, study_of
 from designer.cli.sweep import sweep
 from designer.cli.verify import verify
-from designer.errors import DesignerError, Fault, InputError, MissingLibraryError
+from designer.errors import (
+    DesignerError,
+    Fault,
+    InputError,
+    MissingLibraryError,
+    OutputError,
+    described,
+)
 from designer.io.process import readable_output, settle_in
 from designer.resources import example_names
 
@@ -47,6 +56,13 @@ if TYPE_CHECKING:
 class Commands(TyperGroup):
     """All commands; typer itself would give a closed pipe the status of a negative answer."""
 
+    def get_command(self, ctx: Any, name: str) -> Any:
+        """Return a command; what its help has in brackets is no markup, but meant as it stands."""
+        command = copy(super().get_command(ctx, name))
+        if command is not None and command.help:
+            command.help = escape(command.help)
+        return command
+
     def make_context(self, *arguments: Any, **named: Any) -> Any:
         """Read the arguments; those that ask for help are answered here."""
         with readable_output():
@@ -55,7 +71,10 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command that is asked for."""
         with readable_output():
-            return super().invoke(ctx)
+            try:
+                return super().invoke(ctx)
+            except EOFError as error:  # typer would call it aborted, with the status of an answer
+                raise RuntimeError(described(error)) from error
 
 
 app = typer.Typer(
@@ -85,12 +104,15 @@ def main() -> None:
     gc.set_threshold(_OBJECTS_BEFORE_SEARCH)
     atexit.register(gc.freeze)  # what is left goes with the process: to search it takes a second
     settle_in()
-    with readable_output():
-        try:
-            app()
-        except DesignerError as error:
-            print(error, file=sys.stderr)
-            sys.exit(WRONG_INPUT)
+    try:
+        with readable_output():
+            try:
+                app()
+            except DesignerError as error:
+                print(error, file=sys.stderr)
+                sys.exit(WRONG_INPUT)
+    except OutputError:  # of standard error itself: nobody can be told
+        sys.exit(WRONG_INPUT)
 
 
 @app.callback(invoke_without_command=True)
@@ -128,8 +150,8 @@ def report(
 
     Example:  designer report fast.yaml -o fast-report
 
-    Exit status 0: there is a cable, and it keeps the clearance asked for. 1: there is none or it
-    does not, and the report says why. 2: the input is wrong, and nothing is written.
+    Exit status 0: the answer is yes, every requirement holds. 1: it is no, or open, and the report
+    says why. 2: the input is wrong, and nothing is written.
     """
     from designer.cli.tables import print_summary
     from designer.cli.terminal import ProgressBars, announce_compiling, print_left_out

@@ -70,7 +70,7 @@ def _print_comparison(
     if found.is_same:
         show("Nothing differs.")
     table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
-    for line in (*found.inputs, *found.answers):
+    for line in (*found.inputs, *found.answers, *found.unmet):
         if line.differs:
             values = (shown(line.path, one) for one in (line.a, line.b))
             table.add_row(*map(escape, (line.label or line.path, *values, change(line))))

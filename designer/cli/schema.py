@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -44,9 +45,14 @@ def write_with_schema(study: Path, text: str) -> None:
     """Write a new study, and beside it the schema that its head names."""
     from designer.documents.modeline import SCHEMA_FILE, with_modeline
     from designer.io.output import write_file, write_new_file
+    from designer.io.process import undone_at_end
 
+    schema = _text(no_plugins=False)
     write_new_file(study, with_modeline(text))
-    write_file(study.with_name(SCHEMA_FILE), _text(no_plugins=False))
+    with undone_at_end() as undo:
+        undo.add(partial(study.unlink, missing_ok=True))
+        write_file(study.with_name(SCHEMA_FILE), schema)
+        undo.forget()
 
 
 def _text(no_plugins: bool) -> str:

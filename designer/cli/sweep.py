@@ -61,7 +61,9 @@ def sweep(
     print_left_out(base.catalogue().problems)
     path = output or Path(f"{plan.stem}.zarr")
     count = workers or len(os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else "1")
-    make = running.cluster(cluster) if cluster else running.processes(count)
+    make = running.processes(count)
+    if cluster:
+        make, count = running.cluster(cluster)
     folder = path.with_name(f"{path.stem}-report")
     with output_folder(folder) as building:  # made first: what is in its way shows before the work
         with opened(path, laid_out) as store, ProgressBars() as bars:
@@ -88,7 +90,9 @@ def _print_summary(found: xr.Dataset) -> None:
     import numpy as np
     from rich.markup import escape
 
+    from designer.analysis.result_json import evaluates_answer
     from designer.cli.terminal import bare_table, show
+    from designer.report.sweep import NOT_EVALUATED
 
     table = bare_table("", "least", "median", "most", "points", title=_points(found.sizes["point"]))
     for name, kept in found.filter_by_attrs(role="kept").items():
@@ -98,6 +102,8 @@ def _print_summary(found: xr.Dataset) -> None:
             table.add_row(escape(str(name)), *(f"{x:.5g}" for x in figures), str(len(values)))
     if table.row_count:
         show(table)
+    if not evaluates_answer(str(name) for name in found.filter_by_attrs(role="kept")):
+        show(NOT_EVALUATED, markup=False)
     reasons, counts = np.unique([why for why in found.reason.values if why], return_counts=True)
     for count, why in sorted(zip(counts, reasons, strict=True), reverse=True)[:10]:
         show(f"{_points(count)}: {why}", markup=False)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from designer.selection.groups.result import GroupChoice
     from designer.selection.result import SelectionResult
     from designer.study import Selection, Study
-    from designer.workspace.interference import Interference
     from designer.workspace.result import WorkspaceMap
 
 
@@ -43,7 +42,11 @@ def _print_rows(title: str, rows: Iterable[Row], *headings: str) -> None:
 
 
 def _print_written(folder: Path, written: Sequence[str]) -> None:
+    from designer.report.paper import why_no_pdf
+
     show(f"{folder}: {', '.join(written)}", markup=False)
+    if why_no_pdf():
+        show(why_no_pdf(), markup=False)
 
 
 def print_summary(analysis: Analysis, folder: Path, written: Sequence[str]) -> None:
@@ -76,9 +79,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
         from designer.report.design.uncertainty import in_a_sentence
 
         yield "  probability", in_a_sentence(analysis.uncertainty).replace("\u00a0", " ")
-    interference = None if analysis.qualities is None else analysis.qualities.interference
-    if interference is not None:
-        yield "clearance", _clearance(interference)
+    yield from _summary_of_requirements(analysis)
 
 
 def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
@@ -87,7 +88,7 @@ def _summary_of_workspace(workspace: WorkspaceMap) -> Iterator[Row]:
         yield "worst pose", bad("none: every pose is left out")
     elif not workspace.is_feasible:
         part = "all" if census.statuses["solved"] else "any"
-        yield "worst pose", bad(f"none: no cable serves {part} of it")
+        yield "worst pose", bad(f"none: no cable was found that serves {part} of it")
     for label, extreme in (("worst pose", workspace.sagging), ("  massless", workspace.massless)):
         if extreme is not None:
             at = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in extreme.position_m)
@@ -128,7 +129,7 @@ def _summary_of_selection(
     for one in chosen.cases:
         if one.case is not STATIC:
             met, cable = one.verification, one.most_used()
-            at = ", ".join(f"{x:.4g}" for x in met.worst_position_m[:3])
+            at = ", ".join(f"{x:.4g}" for x in met.worst_place[:3])
             more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
             used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"
             yield f"  {escape(one.case.name)}", f"{used}, at ({at}) m{more}"
@@ -136,16 +137,23 @@ def _summary_of_selection(
     yield "  mass", mass
 
 
-def _clearance(found: Interference) -> str:
-    worst = found.worst
-    if worst is None:
-        return "nothing to compare: " + (
-            "all cables meet at the platform" if found.samples else "no pose is solved"
-        )
-    nearest = f"{1e3 * worst.distance_m:.4g} mm between {escape(' and '.join(worst.names))}"
-    if not found.is_violated:
-        return f"kept, {nearest}"
-    return f"{bad('not kept')}: {nearest}, {1e3 * found.clearance_m:.4g} mm asked for"
+def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
+    """Yield the answer, and each requirement that is not known to hold."""
+    interference = None if analysis.qualities is None else analysis.qualities.interference
+    if interference is not None and interference.worst is None:
+        yield "clearance", "nothing to compare: all cables meet at the platform"
+    answer = analysis.answer.value
+    count = len(analysis.requirements)
+    yield "[bold]answer[/]", f"[bold]{answer}[/], {count - len(analysis.unmet)} of {count} hold"
+    for requirement in analysis.unmet:
+        where = [] if requirement.cable is None else [f"cable {requirement.cable}"]
+        if requirement.load_case != "all":
+            where.insert(0, f"'{requirement.load_case}'")
+        if requirement.place is not None:
+            at = ", ".join(f"{x:.4g}" for x in requirement.place[:3])
+            where.append(f"at ({at}) m")
+        words = f"{requirement.words}; {', '.join(where)}" if where else requirement.words
+        yield f"  {requirement.title.lower()}", bad(escape(words))
 
 
 def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
@@ -228,6 +236,8 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, written: Sequence[str]) 
 
 def _found(diagnosis: Diagnosis) -> Iterator[Row]:
     """Yield the effects, what speaks against the model, and what was withdrawn."""
+    if diagnosis.measured.thinned:
+        yield "a long log", diagnosis.measured.thinned
     if not diagnosis.measured.has_poses:
         yield "poses", "estimated from each row's own readings"
     for finding in diagnosis.findings:
@@ -307,6 +317,7 @@ def print_grades(grades: Sequence[Grade]) -> None:
     table = bare_table(
         "grade", "construction", "material", "sizes", "d [mm]", "MBL [kN]", "trust", "from"
     )
+    table.columns[0].no_wrap = True  # an id that is cut is none
     for publisher in sorted({grade.source.publisher for grade in grades}, key=str.casefold):
         table.add_section()
         table.add_row(f"[bold]{escape(publisher)}[/]")

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
@@ -30,6 +39,36 @@ _out = _Console(highlight=False, emoji=False, width=None if is_terminal(sys.stdo
 _notes = _Console(stderr=True, highlight=False, emoji=False)
 _TOLD_EVERY_S = 5.0
 """Time between lines of progress where output goes to a file."""
+_MOST_SEEN = 1000
+"""Steps whose time is kept."""
+
+
+class _Teller:
+    """Writes a line from time to time, also while nothing is heard of the work, in a thread."""
+
+    def __init__(self) -> None:
+        self._began_s = self._told_s = time.monotonic()
+        self._text = ""
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def begin(self) -> None:
+        self._thread.start()
+
+    def end(self) -> None:
+        self._ends.set()
+
+    def __call__(self, text: str) -> None:
+        """Take in a new text, and write it unless something was written a moment ago."""
+        self._text = text
+        now_s = time.monotonic()
+        if text and now_s - self._told_s >= _TOLD_EVERY_S:
+            self._told_s = now_s
+            _notes.print(f"{now_s - self._began_s:.0f} s: {text}", markup=False, soft_wrap=True)
+
+    def _run(self) -> None:
+        while not self._ends.wait(_TOLD_EVERY_S / 4.0):
+            self(self._text)
 
 
 class ProgressBars:
@@ -39,11 +78,13 @@ class ProgressBars:
     """
 
     def __init__(self) -> None:
-        self._began_s = self._told_s = time.monotonic()
+        self._teller = None if _notes.is_terminal else _Teller()
         self._progress = Progress(
+            SpinnerColumn(),
             TextColumn("{task.description:<10}", markup=False),
             BarColumn(),
             MofNCompleteColumn(),
+            TimeElapsedColumn(),
             TimeRemainingColumn(),
             console=_notes,
             disable=not _notes.is_terminal,
@@ -51,41 +92,59 @@ class ProgressBars:
 
     def __enter__(self) -> ProgressBars:
         self._progress.start()
+        if self._teller is not None:
+            self._teller.begin()
         return self
 
     def __exit__(self, *_: object) -> None:
         self._progress.stop()
+        if self._teller is not None:
+            self._teller.end()
 
     @contextmanager
     def task(self, name: str, total: int) -> Iterator[Callable[[int], None]]:
         """Open a task of ``total`` steps; yields the function that advances it."""
         bar = self._progress.add_task(name, total=total)
-        done, first = 0, (0.0, 0.0)
+        done, pace = 0, _Pace()
 
         def advance(steps: int) -> None:
-            nonlocal done, first
+            nonlocal done
             done += steps
             self._progress.advance(bar, steps)
             share = min(done / max(total, 1), 1.0)
-            if first[1] == 0.0:  # what is compiled before the first step says nothing of the others
-                first = time.monotonic(), share
-            if not _notes.is_terminal:
-                self._tell(name, share, *first)
+            left_s = pace.left_s(share)
+            if self._teller is not None:
+                left = "" if left_s is None else f", {left_s:.0f} s left"
+                self._teller(f"{name}, {share:.0%}{left}")
 
+        if self._teller is not None:
+            self._teller(name)
         yield advance
         self._progress.update(bar, completed=total, total=total)
+        if self._teller is not None:
+            self._teller("")
 
-    def _tell(self, name: str, share: float, first_s: float, first_share: float) -> None:
-        """Write how far a task is, unless that was told a moment ago."""
+
+class _Pace:
+    """How long a task may still take, by the later half of the time since its first step.
+
+    What is compiled before that step says nothing of the others, and early steps less than late
+    ones: what was tried first may have taken longest.
+    """
+
+    def __init__(self) -> None:
+        self._seen: list[tuple[float, float]] = []
+
+    def left_s(self, share: float) -> float | None:
+        """Return the time left at a share that is done; None where nothing tells it yet."""
         now_s = time.monotonic()
-        if now_s - self._told_s < _TOLD_EVERY_S or share == 0.0:
-            return
-        self._told_s = now_s
-        text = f"{now_s - self._began_s:.0f} s: {name}, {share:.0%}"
-        if share > first_share:
-            left_s = (now_s - first_s) * (1.0 - share) / (share - first_share)
-            text += f", {left_s:.0f} s left"
-        _notes.print(text, markup=False, soft_wrap=True)
+        self._seen.append((now_s, share))
+        if len(self._seen) > _MOST_SEEN:
+            del self._seen[1:-1:2]
+        middle_s = 0.5 * (self._seen[0][0] + now_s)
+        earlier = [one for one in self._seen if one[0] <= middle_s]
+        then_s, then = earlier[-1]
+        return (now_s - then_s) * (1.0 - share) / (share - then) if share > then else None
 
 
 class Spinner:
@@ -96,25 +155,28 @@ class Spinner:
 
     def __init__(self, text: str) -> None:
         self._status = _notes.status(Text(text)) if _notes.is_terminal else None
-        self._began_s = self._told_s = time.monotonic()
+        self._teller = _Teller()
+        self._text = text
 
     def __enter__(self) -> Spinner:
         if self._status is not None:
             self._status.start()
+        else:
+            self._teller(self._text)
+            self._teller.begin()
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._status is not None:
             self._status.stop()
+        self._teller.end()
 
     def __call__(self, text: str) -> None:
         """Show another text."""
-        now_s = time.monotonic()
         if self._status is not None:
             self._status.update(Text(text))
-        elif now_s - self._told_s >= _TOLD_EVERY_S:
-            self._told_s = now_s
-            _notes.print(f"{now_s - self._began_s:.0f} s: {text}", markup=False, soft_wrap=True)
+        else:
+            self._teller(text)
 
 
 def bare_table(*headings: str, title: str | None = None) -> Table:
@@ -138,7 +200,10 @@ def announce_compiling() -> None:
     from designer.kernel.compiling import tell_of_compiling
 
     tell_of_compiling(
-        lambda: _notes.print("Compiling what this needs of the solver: once, up to a minute …")
+        lambda: _notes.print("Compiling what this needs of the solver: once, a minute or two …"),
+        lambda file: _notes.print(
+            f"{file} cannot be read: compiled again", markup=False, soft_wrap=True
+        ),
     )
 
 

@@ -133,6 +133,8 @@ class Check:
     def remarks(self) -> Iterator[str]:
         """Yield what to make of it, in sentences."""
         yield f"{self.n_compared} of {self.measured.n_rows} rows compared, outliers and all."
+        if self.measured.thinned:
+            yield f"{self.measured.thinned}."
         if not self.measured.has_poses:
             yield "No pose was measured: each is estimated from the row's own readings."
         if not self.study.effects:
@@ -178,6 +180,18 @@ def check(
     EffectError
         If an effect of a plugin fails.
     """
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):  # as in a diagnosis
+        return _check(study, measurements, measured, progress)
+
+
+def _check(
+    study: Study,
+    measurements: Measurements,
+    measured: Measured,
+    progress: Callable[[str], None],
+) -> Check:
     case = case_of(study, replace(measurements, unknown=()), measured)
     measured = case.measured  # with poses, where they are estimated
     bare = case_of(replace(study, effects=()), measurements, measured)

@@ -44,10 +44,28 @@ class Lasting:
         """How many rows tell as much as one independent row would, of a mean over all."""
         return 1.0 + 2.0 * self.share * self.decay / (1.0 - self.decay)
 
-    def correlation(self, n_rows: int) -> FloatArray:
-        """Return the correlation between rows (n_rows, n_rows)."""
-        apart = np.abs(np.subtract.outer(np.arange(n_rows), np.arange(n_rows)))
-        return np.where(apart == 0, 1.0, self.share * self.decay**apart)
+    def correlated(self, columns: FloatArray) -> FloatArray:
+        """Return the product of the correlation between rows with columns (n_rows, n_columns).
+
+        By one pass from either end, Σₖ φᵏ over the rows on that side: the matrix itself would have
+        the square of the rows.
+        """
+        from scipy.signal import lfilter
+
+        earlier, later = (
+            lfilter([1.0], [1.0, -self.decay], columns[::step], axis=0)[::step] for step in (1, -1)
+        )
+        lasting_part = earlier + later - columns  # each row is in both passes
+        return np.asarray(columns + self.share * (lasting_part - columns))
+
+    def draw(self, rng: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
+        """Return normal noise (n_rows, n_columns) of unit variance with this correlation."""
+        from scipy.signal import lfilter
+
+        passing, lasting_part = rng.normal(size=(2, *shape))
+        lasting_part[1:] *= np.sqrt(1.0 - self.decay**2)  # the first row has all of its variance
+        lasting_part = lfilter([1.0], [1.0, -self.decay], lasting_part, axis=0)
+        return np.asarray(np.sqrt(1.0 - self.share) * passing + np.sqrt(self.share) * lasting_part)
 
 
 INDEPENDENT = Lasting(0.0, 0.0)
@@ -108,5 +126,5 @@ def score_covariances(slopes: FloatArray, residual: FloatArray) -> Iterator[Floa
     values, vectors = np.linalg.eigh(filled.T @ filled / count)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     spread = np.einsum("rcp,cd->rdp", slopes, root)
-    mixed = lasting(residual).correlation(len(rows)) @ spread.reshape(len(rows), -1)
+    mixed = lasting(residual).correlated(spread.reshape(len(rows), -1))
     yield np.einsum("rdp,rdq->pq", spread, mixed.reshape(spread.shape))

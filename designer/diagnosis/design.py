@@ -13,6 +13,7 @@ from designer.model.cable import Cable
 from designer.selection.compare import Entry
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
+from designer.selection.stiffening import as_it_meets
 from designer.selection.verify import verify
 from designer.study import DeclaredEffect, Study, Workspace, as_built_by
 from designer.workspace.section import section_of_workspace
@@ -33,28 +34,32 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     """Add what the design comes to before and after, where the study has one.
 
     That is the cable to choose, the one chosen before in the better model, and the one that hangs
-    on the machine, where its breaking load is known.
+    on the machine, where its breaking load is known. Only the last has what was found of the rope
+    itself, such as its modulus: another rope is as its data sheet says.
     """
     study = diagnosis.study
     if study.workspace is None or study.selection is None or not study.robot.has_enough_cables:
         return diagnosis
     first = _selected(study, grades)
-    reaches = any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings))
+    reaching = [
+        s.effect for s in (*diagnosis.given, *diagnosis.settings) if s.effect.reaches_design
+    ]
     better = replace(study, effects=declared_by(diagnosis))
-    last = _selected(better, grades) if reaches else first
+    is_other = any(not effect.of_rope for effect in reaching)
+    last = _selected(better, grades) if is_other else first
     mounted = mounted_use(study)
     kept = None  # where the product chosen before is as good as any
     before, after = first.product, last.product
     if before is not None and (after is None or after.name != before.name):
         cable = Allowance.of(study.selection).cable(before.grade, before.size)
-        kept = _use(last.built, study.workspace, cable)
+        kept = _use(last.built.of_products, study.workspace, cable)
     return replace(
         diagnosis,
         design_before=first.choice,
         design_after=last.choice,
         kept=kept,
         mounted_before=mounted,
-        mounted_after=mounted_use(better) if reaches else mounted,
+        mounted_after=mounted_use(better) if reaching else mounted,
     )
 
 
@@ -95,7 +100,10 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
 
 
 def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
-    found = verify(built.robot, workspace, built.cable(cable))
+    def max_tension_N(one: Cable) -> float:
+        return verify(built.robot, workspace, one).max_tension_N
+
+    found = verify(built.robot, workspace, as_it_meets(built.cable(cable), max_tension_N))
     return Use(found.max_tension_N, found.utilisation)
 
 
@@ -122,4 +130,4 @@ def mounted_use(study: Study) -> Use | None:
         axial_stiffness_N=rope.axial_stiffness_N,
         allowable_tension_N=rope.minimum_breaking_load_N * left / selection.safety_factor,
     )
-    return _use(as_built_by(study), workspace, cable)
+    return _use(as_built_by(study, mounted=True), workspace, cable)

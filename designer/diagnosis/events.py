@@ -23,6 +23,8 @@ from designer.diagnosis.structure import (
 
 _LEAST_ROWS = 5
 """On either side of a step or a knee, and readings that stand off: fewer have no pattern."""
+_MOST_ENDS = 500
+"""Rows that stand off between which ranges are looked at."""
 _DRAWS = 299
 """Of steps by accident: beyond the largest, Gumbel's law goes on."""
 _FULL_SLOPE = (0.75, 1.25)
@@ -235,12 +237,15 @@ def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Common]:
     n = len(where)
     if n < 2:
         return
-    first, last = np.triu_indices(n, 1)
+    # Of many, ranges between some: all pairs would be the square of them.
+    tried = np.unique(np.linspace(0, n - 1, min(n, _MOST_ENDS)).astype(np.int64))
+    first, last = (tried[k] for k in np.triu_indices(len(tried), 1))
     width = (where[last] - where[first] + 1) / len(off)
     inside = last - first + 1
     # Its two ends are where they are by choice.
     chance = _chance(inside - 2, n - 2, width, n * n // 2)
-    best = int(np.argmin(chance))
+    # Of many rows several are too improbable for a number: then the one with most too many.
+    best = int(np.lexsort((n * width - inside, chance))[0])
     ends = f"{rows[where[first[best]]]} to {rows[where[last[best]]]}"
     text = f"{inside[best]} of {n} rows from {ends}"
     yield float(chance[best]), float(inside[best]) / n, text

@@ -197,12 +197,10 @@ def draws(
         for _ in range(count):
             yield channels[rng.permutation(n_rows)]
         return
-    values, vectors = np.linalg.eigh(lasts.correlation(n_rows))
-    along = vectors * np.sqrt(np.maximum(values, 0.0))
     values, vectors = np.linalg.eigh(channels.T @ channels / n_rows)
     across = vectors * np.sqrt(np.maximum(values, 0.0))
     for _ in range(count):
-        drawn = along @ rng.normal(size=channels.shape) @ across.T
+        drawn = lasts.draw(rng, channels.shape) @ across.T
         yield drawn - drawn.mean(axis=0)
 
 
@@ -258,7 +256,6 @@ def _basis(column: FloatArray) -> FloatArray:
 
 def _largest_share(bases: FloatArray, channels: FloatArray) -> FloatArray:
     """Return the share of variance in the channel that each covariate explains best (n_bases,)."""
-    count, rows, width = bases.shape
-    parts = bases.transpose(0, 2, 1).reshape(-1, rows) @ channels
-    explained = np.sum(parts.reshape(count, width, -1) ** 2, axis=1)
+    parts = np.swapaxes(bases, 1, 2) @ channels
+    explained = np.sum(parts**2, axis=1)
     return np.asarray((explained / np.sum(channels**2, axis=0)).max(axis=1))

@@ -53,6 +53,7 @@ BOUNDS: Mapping[str, Bound] = {
     "position": Bound(LENGTH, -1e7, 1e7, "as far as survey coordinates reach"),
     "distance": Bound(LENGTH, 0.0, 2e4, "no cable is longer than some kilometres"),
     "clearance": Bound(LENGTH, 1e-6, 1e3, "finer than any machine, or larger"),
+    "sag": Bound(RELATIVE, 1e-3, 10.0, "from a taut wire to a loop; 'none' lets cables hang"),
     "length noise": Bound(LENGTH, 1e-9, 1e3, "no winch measures finer, or so badly"),
     "tension noise": Bound(FORCE, 1e-6, 1e8, "no load cell measures finer, or so badly"),
     "search time": Bound(TIME, 0.0, 1e6, "nobody waits for weeks"),

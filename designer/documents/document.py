@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from designer.documents.node import Key, Node, path_text, printable
+from designer.documents.opened import open_input
 from designer.errors import Fault, InputError
 
 if TYPE_CHECKING:
@@ -96,14 +97,14 @@ def read_bytes(path: Path, name: str) -> bytes:
     expected = f"a YAML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
     try:
         size = path.stat().st_size
-        if path.is_dir():
-            _refuse(name, None, "this is a folder", expected)
-        if size > LARGEST_FILE_BYTES:
+        if size > LARGEST_FILE_BYTES and path.is_file():
             _refuse(name, None, f"the file has {size / 1e6:.3g} MB", expected)
-        with path.open("rb") as file:
+        with open_input(path) as file:
             raw = file.read(LARGEST_FILE_BYTES + 1)
     except FileNotFoundError:
         _refuse(name, None, "there is no such file", expected)
+    except IsADirectoryError:
+        _refuse(name, None, "this is a folder", expected)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "its name is not valid"
         _refuse(name, None, f"the file cannot be read: {reason.lower()}", expected)

@@ -28,6 +28,8 @@ from designer.units import (
 )
 
 LONGEST_TEXT = 1000
+NONE = "none"
+"""The word that lifts a limit which a study has by default."""
 _QUANTITY = r"^\s*[-+−]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?\s*(?:[^\s\d.].*)?$"
 """What a quantity looks like as a text; an editor does not know which units there are."""
 
@@ -117,6 +119,20 @@ class QuantityField(Reader):
         if self.at_most is not None and value > self.at_most:
             return f"at most {format_SI(self.at_most, self.dimension)}{why}"
         return ""
+
+
+@dataclass(frozen=True)
+class LiftableQuantity(QuantityField):
+    """Annotation of such a float that the study has by default; ``none`` lifts it."""
+
+    def read(self, given: object) -> float | None:  # type: ignore[override]
+        """Return the SI value, None for the word, or refuse it."""
+        return None if given == NONE else super().read(given)
+
+    def json_schema(self) -> JsonSchema:
+        """Return a number within the limits, a text with a unit, or the word."""
+        schema = super().json_schema()
+        return schema | {"anyOf": [{"const": NONE}, *schema["anyOf"]]}
 
 
 @dataclass(frozen=True)
@@ -274,10 +290,10 @@ def not_empty(given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
-def bounded(name: str) -> QuantityField:
+def bounded(name: str, kind: type[QuantityField] = QuantityField) -> QuantityField:
     """Return the annotation of a number of this name in `designer.documents.bounds`."""
     bound = BOUNDS[name]
-    return QuantityField(
+    return kind(
         bound.dimension,
         above=0.0 if bound.least > 0.0 else None,
         at_least=bound.least,
@@ -296,6 +312,7 @@ FreeMapping = Annotated[dict[str, Any], BeforeValidator(mapping)]
 Length = Annotated[float, bounded("position")]
 Distance = Annotated[float, bounded("distance")]
 Clearance = Annotated[float, bounded("clearance")]
+Sag = Annotated[float | None, bounded("sag", LiftableQuantity)]
 LengthNoise = Annotated[float, bounded("length noise")]
 TensionNoise = Annotated[float, bounded("tension noise")]
 SearchTime = Annotated[float, bounded("search time")]

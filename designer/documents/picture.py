@@ -1,6 +1,66 @@
-"""What kind of picture a file holds, by its first bytes."""
+"""Whether a page can show a picture of the user's, which may be made to do harm.
+
+What a file says of itself is checked here; then it is drawn once by another process with little
+memory and time, which it may end.
+"""
 
 from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from functools import lru_cache
+
+from designer.documents.xml import Element, xml_of
+from designer.errors import InputError
+
+LARGEST_PICTURE_BYTES = 1_000_000
+_MOST_PIXELS = 20_000_000
+_LONGEST_S = 10.0
+_SVG = "image/svg+xml"
+_EXPECTED = "a PNG, JPEG or SVG file"
+_INSIDE = re.compile(r"#|data:image/(?:png|jpeg);base64,", re.IGNORECASE)
+_ADDRESS = re.compile(r"url\(\s*[\"']?\s*([^)]*)|@import\s*(.*)", re.IGNORECASE)
+
+_TOO_MANY_PIXELS, _NOT_READABLE, _LOADS = 3, 4, 5
+_WHY = {
+    _TOO_MANY_PIXELS: (f"has more than {_MOST_PIXELS / 1e6:g} million pixels", "fewer"),
+    _NOT_READABLE: ("cannot be decoded", _EXPECTED),
+    _LOADS: ("loads something from elsewhere", "a picture that holds all that it shows"),
+}
+_DRAW = f"""
+import base64, io, sys
+try:
+    import resource
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, ({_LONGEST_S:.0f}, {_LONGEST_S:.0f}))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
+except (ImportError, ValueError, OSError):
+    pass  # Windows has none of these, macOS not all
+kind, raw, asked = sys.argv[1], sys.stdin.buffer.read(), []
+if kind != "{_SVG}":
+    from PIL import Image
+    Image.MAX_IMAGE_PIXELS = None  # ours is told by its name
+    try:
+        picture = Image.open(io.BytesIO(raw), formats=("PNG", "JPEG"))
+        if picture.width * picture.height > {_MOST_PIXELS}:
+            sys.exit({_TOO_MANY_PIXELS})
+        picture.load()
+    except Exception:
+        sys.exit({_NOT_READABLE})
+import plutoprint
+class Nothing(plutoprint.ResourceFetcher):
+    def fetch_url(self, url):
+        asked.append(url)
+        return plutoprint.ResourceData(b"", "text/plain")
+book = plutoprint.Book(plutoprint.PAGE_SIZE_A4)
+book.custom_resource_fetcher = Nothing()
+address = f"data:{{kind}};base64,{{base64.b64encode(raw).decode()}}"
+book.load_html(f'<img style="max-width: 11rem" src="{{address}}">', base_url="report:/")
+book.write_to_pdf_stream(io.BytesIO())
+sys.exit({_LOADS} if asked else 0)
+"""
 
 
 def picture_type(start: bytes) -> str | None:
@@ -9,4 +69,53 @@ def picture_type(start: bytes) -> str | None:
         return "image/png"
     if start.startswith(b"\xff\xd8\xff"):
         return "image/jpeg"
-    return "image/svg+xml" if b"<svg" in start else None
+    return _SVG if b"<svg" in start else None
+
+
+@lru_cache(maxsize=8)
+def why_not_shown(raw: bytes) -> tuple[str, str] | None:
+    """Return what keeps a page from showing a picture, and what was expected; None if nothing does.
+
+    Checked are its kind, its size in bytes and pixels, and of an SVG how deep it nests, entities,
+    and references to elsewhere; and that it can be drawn at all.
+    """
+    if len(raw) > LARGEST_PICTURE_BYTES:
+        return "is too large", f"at most {LARGEST_PICTURE_BYTES:,} bytes"
+    kind = picture_type(raw[:512])
+    if kind is None:
+        return "is no such picture", _EXPECTED
+    return (_why_no_svg(raw) if kind == _SVG else None) or _why_not_drawn(raw, kind)
+
+
+def _why_no_svg(raw: bytes) -> tuple[str, str] | None:
+    try:
+        root = xml_of(raw, "")
+    except InputError as error:
+        (fault,) = error.faults
+        place = "" if fault.line is None else f" in line {fault.line}"
+        return f"is no plain SVG{place}: {fault.problem}", "one without that"
+    outside = next((place for one in root.everything() for place in _outside(one)), None)
+    outside = outside or ("a style sheet" if b"<?xml-stylesheet" in raw else None)
+    return None if outside is None else (f"refers to {outside[:80]!r}", _WHY[_LOADS][1])
+
+
+def _outside(element: Element) -> list[str]:
+    """Return the addresses in an element that lead out of the picture."""
+    given = element.attributes
+    named = [value for name, value in given.items() if name.split(":")[-1] in ("href", "src")]
+    texts = (*given.values(), element.text)
+    named += ["".join(found) for text in texts for found in _ADDRESS.findall(text)]
+    return [address for address in named if not _INSIDE.match(address.strip())]
+
+
+def _why_not_drawn(raw: bytes, kind: str) -> tuple[str, str] | None:
+    program = [sys.executable, "-P", "-c", _DRAW, kind]
+    try:
+        drawn = subprocess.run(
+            program, input=raw, capture_output=True, timeout=_LONGEST_S, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"is not drawn within {_LONGEST_S:g} s", "a simpler picture"
+    if drawn.returncode == 0:
+        return None
+    return _WHY.get(drawn.returncode, ("cannot be drawn", "a simpler picture"))

@@ -35,6 +35,9 @@ class AsBuilt:
         With moved exit points, pulleys, tilt, mass.
     change : callable
         From a cable of the data sheet to that cable on this machine.
+    change_of_product : callable or None
+        The same for a rope of the catalogue, without what belongs to another rope; None where it
+        does not differ, see `designer.study.as_built_by`.
     section_m : float or None
         Diameter whose figures stand for a whole family where the effects do not leave it one, see
         `material` [m].
@@ -43,10 +46,23 @@ class AsBuilt:
     robot: Robot
     change: Callable[[Cable], Cable] = _unchanged
     section_m: float | None = None
+    change_of_product: Callable[[Cable], Cable] | None = None
+
+    @property
+    def of_products(self) -> AsBuilt:
+        """Return the same for ropes of the catalogue."""
+        return replace(self, change=self.change_of_product or self.change, change_of_product=None)
 
     def cable(self, cable: Cable) -> Cable:
-        """Return a cable as it is on this machine."""
-        return self.change(cable)
+        """Return a cable as it is on this machine.
+
+        Where EA depends on the tension, all of it changes as the present value does.
+        """
+        changed = self.change(cable)
+        if changed.stiffening is None or changed.axial_stiffness_N == cable.axial_stiffness_N:
+            return changed
+        factor = changed.axial_stiffness_N / cable.axial_stiffness_N
+        return replace(changed, stiffening=changed.stiffening.scaled(1.0, factor))
 
     def is_family(self, material: Material) -> bool:
         """Tell whether the members of a family are one on this machine as well.

@@ -199,6 +199,9 @@ class Effect:
         From the data and the residual without it (n_rows, 2 n_cables): values to start from.
     reaches_design : bool
         Whether it changes what cable the machine needs.
+    of_rope : bool
+        Whether it is a property of the rope that is on the machine, which another rope would not
+        have; see `designer.study.as_built_by`.
     shifts_lengths : bool
         Whether it leaves only changes of the lengths to go by, not the lengths themselves.
     also_called : str
@@ -221,6 +224,7 @@ class Effect:
     starts: tuple[Values, ...] = ()
     starts_from: StartsFrom | None = None
     reaches_design: bool = False
+    of_rope: bool = False
     shifts_lengths: bool = False
     also_called: str = ""
     cable: int | None = None

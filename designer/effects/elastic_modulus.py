@@ -24,4 +24,5 @@ EFFECT = Effect(
     parameters=(Parameter("scale", NUMBER, _SIZE, neutral=1.0, above=0.0),),
     on_machine=_change,
     reaches_design=True,
+    of_rope=True,
 )

@@ -10,10 +10,9 @@ import numpy as np
 
 from designer.effects.checks import flaws_of_size
 from designer.effects.effect import Effect, Parameter, Readings, Size, Values
-from designer.errors import EffectError
+from designer.errors import EffectError, described, one_line
 from designer.model.machine import Machine
 from designer.model.measured_data import Measured
-from designer.plugins.guard import one_line
 
 Value = TypeVar("Value")
 
@@ -30,7 +29,7 @@ def guarded(effect: Effect, label: str) -> Effect:
             return action(*given, **more)
         except (Exception, SystemExit) as error:  # a stranger's code may raise anything
             asks = " (does it ask for measurements.cable.diameter?)" * ("not nan" in str(error))
-            raise fail(f"{type(error).__name__}: {one_line(error)}{asks}") from error
+            raise fail(f"{described(error)}{asks}") from error
 
     def change_machine(machine: Machine, values: Values, **more: Any) -> Machine:
         assert effect.on_machine is not None

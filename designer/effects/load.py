@@ -6,8 +6,9 @@ from designer.effects.checks import find_flaw
 from designer.effects.effect import Effect
 from designer.effects.guard import guarded
 from designer.effects.known import KnownEffects
+from designer.errors import one_line
 from designer.plugins.find import OWN_NAMES, Offer, Plugins, ask
-from designer.plugins.guard import attempt, one_line
+from designer.plugins.guard import attempt
 
 
 def load_effects(plugins: Plugins) -> KnownEffects:
@@ -26,7 +27,7 @@ def load_effects(plugins: Plugins) -> KnownEffects:
                 origins[effect.id] = offer.name
                 is_own = offer.name in OWN_NAMES
                 effects.append(effect if is_own else guarded(effect, offer.label))
-    return KnownEffects(tuple(effects), tuple(problems))
+    return KnownEffects(tuple(effects), tuple(dict.fromkeys(problems)))
 
 
 def _sound(

@@ -11,7 +11,8 @@ from designer.units import MASS
 
 def _change(machine: Machine, values: Values) -> Machine:
     platform = machine.robot.platform
-    heavier = replace(platform, mass_kg=platform.mass_kg + values["offset_kg"])
+    offset = values["offset_kg"]
+    heavier = replace(platform, mass_kg=platform.mass_kg + offset, mass_offset_kg=offset)
     return replace(machine, robot=replace(machine.robot, platform=heavier))
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -11,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from designer.documents.csv_text import csv_text
 from designer.errors import OutputError
 from designer.explore.here import CableHere, here
 from designer.explore.map import MapAnswer, map_answer
@@ -132,12 +131,8 @@ def _rope(row: RopeRow) -> dict[str, Any]:
 
 def _csv(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
     """Return a table as text; what is not a number is an empty cell."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, fieldnames=names, lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({k: "" if v is None or v != v else v for k, v in row.items()})  # noqa: PLR0124
-    return stream.getvalue()
+    cells = ([None if row[k] != row[k] else row[k] for k in names] for row in rows)
+    return csv_text([names, *cells])
 
 
 def _vtk(question: Question, target: Path) -> Exported:

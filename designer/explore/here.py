@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.analysis.field import cable_curves_m, chords_m
 from designer.arrays import FloatArray
-from designer.explore.question import Question
+from designer.explore.question import Assignment, Question, Rope
 from designer.model.cable import Cable, Cables
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
@@ -65,8 +65,8 @@ class Here:
     ----------
     verdict : Verdict
         What became of it, with the rope or, without one, with the thinnest cable.
-    with_rope : bool
-        Whether the cables are of the chosen rope; else of the thinnest cable that holds the pose.
+    rope : Rope, Assignment or None
+        What the cables are of; None for the thinnest cable that holds the pose.
     cables : tuple of CableHere
         Empty unless solved.
     curves_m : array (n_cables, 81, 3) or None
@@ -92,7 +92,7 @@ class Here:
     """
 
     verdict: Verdict
-    with_rope: bool
+    rope: Rope | Assignment | None
     cables: tuple[CableHere, ...]
     curves_m: FloatArray | None
     chords_m: FloatArray
@@ -113,9 +113,14 @@ class Here:
         return self.verdict is Verdict.SOLVED
 
     @property
+    def is_too_weak(self) -> bool:
+        """Whether the chosen rope is in balance here and beyond its allowable tension."""
+        return self.is_solved and self.rope is not None and self.utilisation > 1.0
+
+    @property
     def sentence(self) -> str:
         """The verdict for the reader; of a rope that is too weak here, that."""
-        if self.is_solved and self.with_rope and self.utilisation > 1.0:
+        if self.is_too_weak:
             return (
                 "The cables are in balance, but the rope is too weak here: its largest tension is "
                 f"{100.0 * self.utilisation:.4g} % of the allowable one."
@@ -160,7 +165,7 @@ def here(question: Question, *, settled: bool = False) -> Here:
     utilisation = np.asarray(statics.cable_tension_N / allowable)
     return Here(
         verdict=verdict,
-        with_rope=rope is not None,
+        rope=question.rope,
         cables=_cables(statics, utilisation) if verdict is Verdict.SOLVED else (),
         curves_m=cable_curves_m(statics) if verdict is Verdict.SOLVED else None,
         chords_m=chords_m(statics),

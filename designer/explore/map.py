@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
-from designer.explore.question import Question, Rope
+from designer.explore.question import Assignment, Question, Rope
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.robot import Poses
@@ -21,7 +21,7 @@ from designer.selection.groups.trials import verify_groups
 from designer.selection.products import Product, is_allowed, products_of, undominated
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
-from designer.statics.shape import sag_m
+from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
@@ -50,17 +50,20 @@ class MapAnswer:
         (what no rope serves that no other one beats).
     is_fine : bool
         Whether all rows and columns of the grids are there.
-    with_rope : bool
-        Whether tensions are those of the chosen rope.
+    rope : Rope, Assignment or None
+        What tensions are of; None for the thinnest cable of the family at each pose.
     before : mapping of str to mapping of str to array (n, m), or None
-        The same of the state that is compared with, at the same positions.
+        The values of the state that is compared with, at the same positions.
+    rope_before : Rope, Assignment or None
+        What its tensions are of.
     """
 
     grids: Mapping[str, FloatArray]
     values: Mapping[str, Values]
     is_fine: bool
-    with_rope: bool
+    rope: Rope | Assignment | None = None
     before: Mapping[str, Values] | None = None
+    rope_before: Rope | Assignment | None = None
 
     def difference(self, grid: str, key: str) -> FloatArray | None:
         """Return what a quantity has become less what it was, SI; None without a comparison.
@@ -105,16 +108,16 @@ def map_answer(
     against : Question, optional
         A state to compare with, at the same positions.
     """
-    workspace, with_rope = question.workspace, question.cable is not None
+    workspace, rope = question.workspace, question.rope
     if workspace is None:
-        return MapAnswer({}, {}, fine, with_rope)
+        return MapAnswer({}, {}, fine, rope)
     grids = map_grids(workspace.region, slice_share, fine=fine)
     grids = {name: grid for name, grid in grids.items() if parts is None or name in parts}
     values = _on_grids(question, workspace, grids, quantities)
-    before = None
-    if against is not None and against.workspace is not None:
-        before = _on_grids(against, against.workspace, grids, quantities)
-    return MapAnswer(grids, values, fine, with_rope, before)
+    if against is None or against.workspace is None:
+        return MapAnswer(grids, values, fine, rope)
+    before = _on_grids(against, against.workspace, grids, quantities)
+    return MapAnswer(grids, values, fine, rope, before, against.rope)
 
 
 def _on_grids(
@@ -171,7 +174,7 @@ def _values(
     }
     if "sag" in keys:
         with np.errstate(invalid="ignore"):
-            found["sag"] = (sag_m(statics) / statics.geometry().chord_m).max(axis=-1)
+            found["sag"] = sag_ratio(statics).max(axis=-1)
     if "stiffness" in keys:
         softness = largest_displacement_m_per_N(statics)
         stays = np.where(np.isnan(softness), 0.0, 1.0 / softness)
@@ -317,7 +320,7 @@ def _worst_of_family(found: WorkspaceMap, question: Question) -> tuple[FloatArra
 
 
 def _worst_of_rope(met: Verification, case: str) -> tuple[FloatArray | None, str]:
-    place = met.worst_position_m
+    place = met.worst_place
     if not np.isfinite(place).all():
         return None, "The rope serves no pose."
     place = np.pad(place, (0, 6 - len(place)))

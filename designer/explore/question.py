@@ -17,7 +17,10 @@ from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
 from designer.plugins.find import Plugins
+from designer.selection.cases import FEW_AT_FIRST, Cases, as_stiff_as, governing
 from designer.selection.efficiency import Allowance
+from designer.selection.stiffening import as_it_meets
+from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, Workspace, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
 
@@ -45,6 +48,11 @@ class Assignment:
     def label(self) -> str:
         """The ropes, each once, in one line."""
         return ", ".join(dict.fromkeys(rope.label for rope in self.ropes))
+
+
+def cables_words(rope: Rope | Assignment | None) -> str:
+    """Return what figures are of, for the reader."""
+    return "Thinnest cable of the family" if rope is None else rope.label
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +110,10 @@ class Question:
     def built(self) -> AsBuilt:
         """Robot and cables as the declared effects have them."""
         require_enough_cables(self.study)
-        return as_built_by(self.study)
+        has_region = self.workspace is not None
+        return as_built_by(
+            replace(self.study, selection=self.selection) if has_region else self.study
+        )
 
     @property
     def robot(self) -> Robot:
@@ -133,8 +144,8 @@ class Question:
             more or fewer ropes than cables.
         """
         if self.rope is None or isinstance(self.rope, Rope):
-            return None if self.rope is None else self._cable_of(self.rope)
-        each = {rope: self._cable_of(rope) for rope in self.rope.ropes}
+            return None if self.rope is None else self._as_it_meets(self.rope)
+        each = {rope: self._as_it_meets(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
         return Cables(tuple(each[rope] for rope in self.rope.ropes))
@@ -154,7 +165,23 @@ class Question:
                 f"{rope.label}: the sheave is thinner than the rope, or than a fibre rope may be "
                 "bent over"
             )
-        return self.built.cable(allowance.cable(grade, size))
+        return self.built.of_products.cable(allowance.cable(grade, size))
+
+    def _as_it_meets(self, rope: Rope) -> Cable:
+        """Return a rope as stiff as at the largest tension that it meets, at few samples."""
+        cable = self._cable_of(rope)
+        if cable.stiffening is None:
+            return cable
+        if self.workspace is None:
+            return as_it_meets(
+                cable,
+                lambda one: float(solve_sagging(self.robot, self.pose, one).largest_tension_N),
+            )
+        each = self.study.load_cases or (STATIC,)
+        cases = Cases(self.robot, self.workspace, each, few=FEW_AT_FIRST)
+        cables = [[self._cable_of(rope, case)] for case in each]
+        (found,) = cases.sampled(cables, lambda _: None)
+        return as_stiff_as(cable, governing(found))
 
 
 def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from designer.errors import DesignerError
+from designer.errors import DesignerError, described
 from designer.explore.question import Question
 from designer.progress import Advance
 
@@ -120,5 +120,4 @@ def failure_text(error: BaseException) -> str:
     """Return an error as a user is told of it: our own as they stand, others by their kind."""
     if isinstance(error, DesignerError):
         return str(error)
-    told = " ".join(str(error).split())
-    return f"unexpected {type(error).__name__}" + (f": {told}" if told else "")
+    return f"unexpected {described(error)}"

@@ -8,20 +8,21 @@ from typing import Any
 
 import numpy as np
 
+from designer.analysis.analyse import analyse
 from designer.analysis.selection_json import candidates_csv
 from designer.arrays import FloatArray
 from designer.explore.question import Assignment, Question, Rope
 from designer.grades.grade import Grade, Size
+from designer.model.requirement import Answer, Requirement, State
 from designer.progress import SILENT, Reporter
-from designer.selection.compare import Entry, burdens, is_undominated
-from designer.selection.groups.choose import choose_groups_of
+from designer.selection.compare import Entry, burdens, failure_words, is_undominated
 from designer.selection.groups.result import GroupChoice
 from designer.selection.proven import CaseProof
+from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import Candidate, SelectionResult
-from designer.selection.select import at_samples, select
+from designer.selection.select import at_samples
 from designer.selection.verify import Verification
-from designer.study import Objective
-from designer.workspace.section import section_of_workspace
+from designer.study import Objective, Selection
 
 _QUICK_SAMPLES = 1500
 
@@ -81,8 +82,8 @@ class RopeRow:
 
     @property
     def holds(self) -> bool:
-        """Whether it stays within its allowable tension, as far as it was looked at."""
-        return self.utilisation <= 1.0
+        """Whether it is strong enough and fails nothing else, as far as it was looked at."""
+        return self.utilisation <= 1.0 and self.standing != "rejected"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +114,7 @@ class Groups:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ropes:
-    """All ropes.
+    """All ropes; of the full selection with the answer to the study.
 
     Parameters
     ----------
@@ -138,6 +139,10 @@ class Ropes:
         What plugins and grade files gave that could not be used, one line each.
     proof : CaseProof or None
         What is proved of the best, as in the report; None until the full selection, or for groups.
+    requirements : tuple of Requirement
+        All that the study asks for, as in the report; none until the full selection.
+    answer : Answer or None
+        What follows from them; None until the full selection.
     """
 
     rows: tuple[RopeRow, ...]
@@ -150,6 +155,8 @@ class Ropes:
     csv: str = ""
     problems: tuple[str, ...] = ()
     proof: CaseProof | None = None
+    requirements: tuple[Requirement, ...] = ()
+    answer: Answer | None = None
 
     def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
@@ -176,7 +183,9 @@ def quick_ropes(question: Question) -> Ropes | None:
     entries = at_samples(few, selection, grades, question.built, load_cases)
     known = [o for o in selection.objectives if o != "stiffness"]
     best = None
-    holding = [e for e in entries if e.verification.holds]
+    for entry in entries:
+        entry.rejected_by = _failed_by_table(entry, selection)
+    holding = [e for e in entries if e.verification.holds and e.rejected_by is None]
     if known and selection.objectives[0] != "stiffness":
         comparable = [e for e in holding if np.isfinite(e.figures.burden(known[0]))]
         best = min(comparable, key=lambda e: e.key(known), default=None)
@@ -198,6 +207,12 @@ def quick_ropes(question: Question) -> Ropes | None:
     )
 
 
+def _failed_by_table(entry: Entry, selection: Selection) -> Requirement | None:
+    """Return what the sheave alone decides against a rope; None for nothing."""
+    ratios = sheave_ratio_of(entry.grade, entry.size, selection)
+    return next((each for each in ratios if not each.holds), None)
+
+
 def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
     met = entry.verification
     if is_best:
@@ -206,6 +221,8 @@ def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
         standing, reason = "not_held", "no equilibrium was found at some sample"
     elif not met.holds:
         standing, reason = "too_thin", "beyond its allowable tension at some sample"
+    elif entry.rejected_by is not None:
+        standing, reason = "rejected", failure_words(entry.rejected_by)
     elif is_in_front:
         standing, reason = "undominated", "holds at the samples, and no other beats it there"
     else:
@@ -233,7 +250,7 @@ def _figures(one: Entry | Candidate) -> dict[str, Any]:
 
 
 def _place(met: Verification) -> FloatArray | None:
-    place = met.worst_position_m
+    place = met.worst_place
     return np.pad(place, (0, 6 - len(place))) if np.isfinite(place).all() else None
 
 
@@ -252,30 +269,26 @@ def _sold(grade: Grade, size: Size) -> RopeRow:
     )
 
 
-def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes | None:
-    """Choose among all ropes, and for groups, and prove the best, as the report does.
+def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
+    """Answer the study, choose among all ropes, and prove the best, by the pipeline of the report.
 
-    None without a workspace.
+    Where the study asks for no rope, ropes are chosen as usual, and the answer is without them. No
+    rows without a workspace.
     """
-    workspace, selection = question.workspace, question.selection
-    if workspace is None:
-        return None
-    section_m = section_of_workspace(question.built, workspace, question.study.material)
-    built, grades = replace(question.built, section_m=section_m), question.catalogue.grades
-    found = select(
-        built.robot,
-        workspace,
-        selection,
-        grades,
-        built=built,
-        load_cases=question.study.load_cases,
-        reporter=reporter,
-        proof_s=0.0 if selection.groups else workspace.proof_s,
+    study, catalogue = question.study, question.catalogue
+    analysis = of_ropes = analyse(study, catalogue, reporter=reporter, explains=False)
+    if study.workspace is not None and study.selection is None:
+        asking = replace(study, selection=question.selection)
+        of_ropes = analyse(asking, catalogue, reporter=reporter, explains=False)
+    ropes = Ropes((), None, "", question.selection.objectives, currency="", is_final=True)
+    if of_ropes.selection is not None:
+        ropes = ropes_of(of_ropes.selection, of_ropes.groups)
+    return replace(
+        ropes,
+        problems=catalogue.problems,
+        requirements=analysis.requirements,
+        answer=analysis.answer,
     )
-    groups = None
-    if selection.groups:
-        groups = choose_groups_of(workspace, selection, grades, built, found.chosen, reporter)
-    return replace(ropes_of(found, groups), problems=question.catalogue.problems)
 
 
 def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
@@ -301,11 +314,12 @@ def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes
 
 
 def _full_row(candidate: Candidate) -> RopeRow:
+    fails = any(each.state is State.FAILS for each in candidate.requirements)
     return replace(
         _sold(candidate.grade, candidate.size),
         allowable_tension_N=candidate.cable.allowable_tension_N,
         **_figures(candidate),
-        standing=candidate.standing,
+        standing="rejected" if fails else candidate.standing,
         reason=candidate.reason,
         place=_place(candidate.verification),
         is_searched=candidate.verification.is_refined,

@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from designer.documents.xml import Element, read_xml
 from designer.errors import Fault, InputError
 from designer.foreign.robot import ORIGIN, ForeignRobot, Point, held_at_one_point, moved
-from designer.foreign.xml import Element, read_xml
 
 BODIES, CABLES = "bodies", "cables"
 ROOTS = {"bodies_system": BODIES, "links": BODIES, "cables": CABLES}

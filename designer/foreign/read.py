@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from designer.documents.xml import read_xml
 from designer.foreign import caspr, wirex
 from designer.foreign.robot import ForeignRobot
-from designer.foreign.xml import read_xml
 
 
 def read_foreign(

@@ -11,8 +11,8 @@ import math
 from pathlib import Path
 
 from designer.documents.bounds import BOUNDS
+from designer.documents.xml import Element
 from designer.foreign.robot import ForeignRobot, ForeignRope, Point, held_at_one_point
-from designer.foreign.xml import Element
 
 ROOT = "models"
 _MASS = 25.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, fields
@@ -19,6 +18,7 @@ from designer.errors import Fault, InputError
 from designer.grades.checks import find_flaws
 from designer.grades.grade import Grade, GradeSheet
 from designer.grades.parts import Units
+from designer.units import split_quantity
 
 MOST_FILES = 1000
 MOST_ENTRIES = 20_000
@@ -56,7 +56,7 @@ def read_grade(path: Path) -> Grade:
 
 
 def _with_units(given: Any) -> Any:
-    """Return a grade whose table has, on each bare number, the unit that ``units`` declares."""
+    """Return a grade whose table has on each bare number, quoted or not, its unit of ``units``."""
     if not isinstance(given, dict) or not isinstance(given.get("sizes"), list):
         return given
     try:
@@ -71,9 +71,9 @@ def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
         return row
     row = dict(row)
     for name, value in row.items():
-        is_bare = isinstance(value, int | float) and not isinstance(value, bool)
-        if is_bare and units.get(name) and math.isfinite(value):
-            row[name] = f"{value!r} {units[name]}"
+        number = split_quantity(value)
+        if number is not None and units.get(name) and not number[1]:
+            row[name] = f"{value} {units[name]}"
     return row
 
 

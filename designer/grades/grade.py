@@ -57,7 +57,8 @@ RopeMaterial = Literal[
 
 MOST_SIZES = 500
 TYPICAL_LOAD_FRACTION = 0.2
-"""Load over breaking load at a safety factor of 5; what stiffness is shown at without a study."""
+"""Load over breaking load at a safety factor of 5; what stiffness is shown at without a study, and
+what a search for the tension that a rope meets starts from."""
 
 
 TRUST_MEANING = {
@@ -294,18 +295,27 @@ class Grade(GradeSheet):
         return elasticity.value_Pa * area_m2
 
     def cable(self, size: Size, safety_factor: float) -> Cable:
-        """Return one size as a cable, its breaking load divided by ``safety_factor``."""
-        expansion = self.thermal_expansion
+        """Return one size as a cable, its breaking load divided by ``safety_factor``.
+
+        Where EA depends on the tension it is that at `TYPICAL_LOAD_FRACTION`, until the tension
+        that the cable meets is known; the safety factor is not in it.
+        """
+        expansion, breaking_N = self.thermal_expansion, size.minimum_breaking_load_N
+        law = self.stiffness.stiffening if self.stiffness and not self.modulus else None
         return Cable(
             diameter_m=size.diameter_m,
             linear_density_kg_per_m=size.linear_density_kg_per_m,
-            axial_stiffness_N=self.axial_stiffness_N(size, 1.0 / safety_factor),
-            allowable_tension_N=size.minimum_breaking_load_N / safety_factor,
+            axial_stiffness_N=self.axial_stiffness_N(size),
+            allowable_tension_N=breaking_N / safety_factor,
             expansion_per_K=expansion.coefficient_per_K if expansion else STEEL_EXPANSION_PER_K,
+            stiffening=law and law.scaled(breaking_N, breaking_N),
         )
 
     def family(self, safety_factor: float) -> Material:
-        """Return the continuous family of this grade, see `fit`."""
+        """Return the continuous family of this grade, see `fit`.
+
+        As stiff as at its allowable tension, which the thinnest member that serves meets.
+        """
         fit = self.fit(1.0 / safety_factor)
         return Material(
             density_kg_per_m3=fit.density_kg_per_m3,

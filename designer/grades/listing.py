@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from designer.errors import Fault
 from designer.grades.files import nothing_found_fault, read_grades
@@ -98,6 +99,20 @@ def facts(grade: Grade) -> list[tuple[str, str]]:
         *_not_printed(grade),
         *(("note", note) for note in grade.notes),
     ]
+
+
+def listed(grade: Grade) -> dict[str, Any]:
+    """Return of a grade what a list shows of it, as plain values in SI."""
+    names = ("id", "manufacturer", "product", "construction", "core", "finish", "material", "trust")
+    loads_N = [size.minimum_breaking_load_N for size in grade.sizes]
+    return {
+        **{name: getattr(grade, name) for name in names},
+        "source": str(grade.source),
+        "origin": grade.origin,
+        "sizes": [size.id for size in grade.sizes],
+        "diameter_m": [grade.sizes[0].diameter_m, grade.thickest.diameter_m],
+        "minimum_breaking_load_N": [min(loads_N), max(loads_N)],
+    }
 
 
 def check_path(path: Path) -> list[Fault]:

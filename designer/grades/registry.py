@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import os
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -12,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.documents.node import path_text
-from designer.errors import Fault, InputError
+from designer.errors import Fault, InputError, described, one_line
 from designer.grades.checks import find_flaws
 from designer.grades.files import id_fault, nothing_found_fault, read_grades
 from designer.grades.grade import Grade
+from designer.grades.plain import Misfit
 from designer.plugins.find import Offer, Plugins, ask, find_plugins
-from designer.plugins.guard import one_line
 
 if TYPE_CHECKING:
     from designer.study import Study  # geometry, which a list of grades does not need
@@ -233,10 +232,10 @@ def _grades_in(item: object, complain: Callable[[str], None]) -> list[Grade]:
     """Return the sound grades of one item that a plugin gave."""
     if isinstance(item, Grade):
         return _sound(item, complain)
-    if not isinstance(item, str | os.PathLike):
-        complain(f"register_grades() gave {type(item).__name__}, not a path or a Grade")
+    if not isinstance(item, Path):
+        complain(item.problem if isinstance(item, Misfit) else f"{item!r} is no grade")
         return []
-    path = Path(os.fsdecode(item))
+    path = item
     if not path.is_absolute():
         complain(f"register_grades() gave the relative path {str(path)!r}")
         return []
@@ -250,7 +249,7 @@ def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:
     try:
         flaws = find_flaws(grade)
     except Exception as error:  # a grade made in Python may hold values of any type
-        complain(f"a Grade is not usable: {type(error).__name__}: {one_line(error)}")
+        complain(f"a Grade is not usable: {described(error)}")
         return []
     for flaw in flaws:
         place = path_text(flaw.keys)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Annotated, Self
 
@@ -18,15 +17,17 @@ from designer.grades.parts import (
     StatedBasis,
     Uncertainty,
 )
+from designer.model.cable import Stiffening
 
 
 @dataclass(frozen=True, slots=True)
 class RelativeStiffness:
     """Axial stiffness EA of a worked-in rope over its minimum breaking load.
 
-    A sagging cable is computed with one EA. It is the one at the load that the rope is designed
-    for: breaking load over safety factor. Strain at low load, and stretch that does not come
-    back, are not in it.
+    A sagging cable is computed with one EA. It is the one at the largest tension that the rope
+    meets in a load case, see `designer.selection.stiffening`; of a continuous family the one at
+    its allowable tension, which its thinnest member meets. Strain at low load, and stretch that
+    does not come back, are not in it.
 
     Parameters
     ----------
@@ -52,14 +53,17 @@ class RelativeStiffness:
         where = f" at {loads} of it" if loads else ""
         return f"EA is {ratios} times the breaking load{where}"
 
+    @property
+    def stiffening(self) -> Stiffening | None:
+        """EA over the load, both over the breaking load; None where one figure is for all loads."""
+        if len(self.load_fraction) < 2:
+            return None
+        return Stiffening(self.load_fraction, self.ea_over_breaking_load)
+
     def at(self, load_fraction: float) -> float:
         """Return EA / MBL at a load over MBL: linear between the loads, constant beyond."""
-        loads, ratios = self.load_fraction, self.ea_over_breaking_load
-        above = bisect_right(loads, load_fraction)
-        if above == 0 or above == len(loads):
-            return ratios[0] if above == 0 else ratios[-1]
-        share = (load_fraction - loads[above - 1]) / (loads[above] - loads[above - 1])
-        return ratios[above - 1] + share * (ratios[above] - ratios[above - 1])
+        law = self.stiffening
+        return self.ea_over_breaking_load[0] if law is None else law.at(load_fraction)
 
 
 class StiffnessSection(Section):

@@ -12,6 +12,7 @@ from designer.diagnosis.as_json import effects_table
 from designer.diagnosis.design import declared_by
 from designer.diagnosis.result import Diagnosis
 from designer.documents.modeline import with_schema_moved
+from designer.documents.opened import read_input
 from designer.io.config.moved import path_from
 
 
@@ -28,7 +29,7 @@ def diagnosed_config(diagnosis: Diagnosis, folder: Path, text: str | None = None
     source = diagnosis.study.source.path
     yaml = YAML()
     yaml.width = 100
-    document = yaml.load(source.read_text(encoding="utf-8-sig") if text is None else text)
+    document = yaml.load(read_input(source).decode("utf-8-sig") if text is None else text)
     document["effects"] = effects_table(declared_by(diagnosis))
     document.yaml_set_comment_before_after_key("effects", before=_origin(diagnosis))
     if estimated := _estimated_noise(diagnosis):

@@ -6,14 +6,15 @@ import errno
 import os
 import secrets
 import shutil
+import time
 from collections.abc import Container, Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.errors import OutputError
-from designer.io.process import Undo, undone_at_end
+from designer.io.process import NO_ROOM, Undo, undone_at_end
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
 _HIDDEN = ".designer-"
 _NEW, _OLD, _LOCK = "new", "old", "lock"
 """In the hidden folder: what is being made, what it replaces, and what tells that a run lives."""
-
-_FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", None))  # Windows knows no quota by this name
+_TO_LOCK_S = 60.0
+"""A hidden folder of this age that has no lock is of a run which was killed before, or just after.
+"""
 
 
 @contextmanager
@@ -44,7 +46,7 @@ def output_folder(folder: Path, outdated: Iterable[str] = ()) -> Iterator[Path]:
     with undone_at_end() as undo:
         with explained(folder):
             building = _begin(folder, undo)
-        with explained(folder, only=_FULL):
+        with explained(folder, only=NO_ROOM):
             yield building
         with explained(folder), undone_at_end() as back:
             aside = _move(building, folder, outdated, back)
@@ -88,6 +90,9 @@ def _begin(folder: Path, undo: Undo) -> Path:
 
 
 def _remove_hidden(hidden: Path, lock: BaseFileLock) -> None:
+    for part in hidden.glob("*"):  # the lock last: without it nobody knows what the rest is
+        if part.name != _LOCK:
+            shutil.rmtree(part, ignore_errors=True)
     lock.release()  # Windows removes no file that is open
     shutil.rmtree(hidden, ignore_errors=True)
 
@@ -99,14 +104,14 @@ def clear_left_overs(folder: Path) -> None:
     """
     from filelock import FileLock, Timeout
 
-    for lock_file in folder.glob(f"{_HIDDEN}*/{_LOCK}"):
-        hidden, lock = lock_file.parent, FileLock(lock_file)
+    for hidden in folder.glob(f"{_HIDDEN}*"):
+        lock = FileLock(hidden / _LOCK)
+        if not (hidden / _LOCK).exists() and time.time() - hidden.stat().st_mtime < _TO_LOCK_S:
+            continue  # a run may be about to lock it
         with suppress(Timeout, NotImplementedError, OSError), lock.acquire(timeout=0):
             for file in (hidden / _OLD).glob("*"):
                 file.replace(folder / file.name)
-            shutil.rmtree(hidden, ignore_errors=True)
-            if os.name == "nt":
-                _remove_hidden(hidden, lock)
+            _remove_hidden(hidden, lock)
 
 
 def _move(building: Path, folder: Path, outdated: Iterable[str], back: Undo) -> Path:
@@ -163,7 +168,7 @@ def file_names(folder: Path) -> list[str]:
 
 def write_whole(path: Path, content: bytes) -> None:
     """Write a file under another name in its folder, then rename it."""
-    unfinished = path.with_name(f".{path.name}.part")
+    unfinished = _unfinished(path)
     try:
         unfinished.write_bytes(content)
         unfinished.replace(path)
@@ -191,13 +196,31 @@ def write_new_file(path: Path, text: str) -> None:
     OutputError
         If it exists, or cannot be written.
     """
+    unfinished = _unfinished(path)
     try:
-        with ExitStack() as undo, path.open("x", encoding="utf-8") as file:
-            undo.callback(path.unlink)
-            file.write(text)
-            file.flush()
-            undo.pop_all()
-    except FileExistsError as error:
-        raise OutputError(f"{path}: exists already (expected a new file)") from error
-    except OSError as error:
-        raise OutputError(_not_writable(path, error)) from error
+        with explained(path), undone_at_end() as undo:
+            undo.add(partial(unfinished.unlink, missing_ok=True))
+            unfinished.write_bytes(text.encode())
+            _take_new_name(unfinished, path)
+    except OutputError as error:
+        if isinstance(error.__cause__, FileExistsError):
+            line = f"{path}: exists already (expected a new file)"
+            raise OutputError(line) from error.__cause__
+        raise
+
+
+def _take_new_name(unfinished: Path, path: Path) -> None:
+    """Give a file that is whole its name, unless something has that name."""
+    try:
+        path.hardlink_to(unfinished)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):  # a file system without links
+        if os.path.lexists(path):
+            raise FileExistsError(errno.EEXIST, "exists already") from None
+        unfinished.replace(path)
+
+
+def _unfinished(path: Path) -> Path:
+    """Return where a file is written first; what a kill leaves there, the next run overwrites."""
+    return path.with_name(f".{path.name}.part")

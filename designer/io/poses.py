@@ -10,6 +10,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.documents.bounds import BOUNDS
+from designer.documents.opened import open_input
 from designer.errors import Fault, InputError
 from designer.measured.names import POSITION, ROTATION_VECTOR
 from designer.measured.table import RawColumn, Table, read_table
@@ -55,7 +56,7 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
         cannot do: a point mass that turns, a planar robot out of its plane.
     """
     try:
-        file = path.open("rb")
+        file = open_input(path)
     except (OSError, ValueError) as error:
         reason = (getattr(error, "strerror", None) or "its name is not valid").lower()
         expected = "a CSV file with columns x_m, y_m, z_m"

@@ -16,6 +16,8 @@ from typing import NoReturn, TextIO
 
 from designer.errors import OutputError
 
+NO_ROOM = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", None))  # Windows has no quota
+"""What the system says where a file cannot grow: the disk is full, or a limit is reached."""
 CLOSED_PIPE = 128 + 13
 """Exit status of a program whose reader went away, as the shell gives it after a SIGPIPE."""
 
@@ -57,7 +59,7 @@ def readable_output() -> Iterator[None]:
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             end_at_closed_pipe()
-        if error.errno == errno.ENOSPC:
+        if error.errno in NO_ROOM:
             silence_broken_output()
             raise OutputError(f"standard output: cannot be written ({error.strerror})") from error
         raise

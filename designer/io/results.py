@@ -10,6 +10,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import Json
 from designer.analysis.selection_json import candidates_csv
 from designer.documents.formats import RESULT_FORMAT, why_unreadable
+from designer.documents.opened import read_input
 from designer.errors import Fault, InputError
 from designer.io.output import write_whole
 
@@ -38,7 +39,7 @@ def read_result(path: Path) -> Json:
         If it cannot be read, is no result, or is of a newer format; it names the version needed.
     """
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
+        values = json.loads(read_input(path))
     except (OSError, ValueError, RecursionError) as error:
         found = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
         raise InputError(

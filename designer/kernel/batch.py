@@ -11,6 +11,7 @@ from designer.kernel import answer
 from designer.kernel.branches import rate_range
 from designer.kernel.calling import Figures, Situation, plain, share_out
 from designer.kernel.cone import refuse_range
+from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
 from designer.kernel.search import search_range
 from designer.kernel.square import solve_range
@@ -66,6 +67,7 @@ def solve_batch(
     strength_m: FloatArray,
     inverse_weight_m_per_N: float | None,
     *,
+    sag_max: float | None = None,
     is_thorough: bool = False,
     rates_branches: bool = True,
 ) -> Solution:
@@ -80,6 +82,8 @@ def solve_batch(
     inverse_weight_m_per_N : float or None
         1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
         strength allows.
+    sag_max : float or None
+        Largest sag over chord; of a robot that leaves no choice it is not regarded.
     is_thorough : bool
         Whether to look for other branches as well, which takes a thousand times as long.
     rates_branches : bool
@@ -97,7 +101,13 @@ def solve_batch(
     require_shape("relative_weights", relative_weights, n)
     require_shape("strength_m", strength_m, n)
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
-    figures = Figures(plain(kappa_per_m), plain(relative_weights), plain(strength_m), least_N)
+    figures = Figures(
+        plain(kappa_per_m),
+        plain(relative_weights),
+        plain(strength_m),
+        least_N,
+        least_pulls(sag_max if robot.is_redundant else None),
+    )
     out = answer.Answers(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
@@ -148,13 +158,17 @@ def solve_massless_batch(
     tension = np.empty((count, robot.n_cables))
     wrench = np.empty((count, robot.degrees_of_freedom))
     verdict = np.empty(count, dtype=np.int8)
-    figures = _straight(robot, robot.tension_min_N)
+    figures = _straight(robot.n_cables, robot.tension_min_N)
     share_out(solve_massless_range, count, _SHARE, situation, figures, tension, wrench, verdict)
     return tension, wrench, verdict
 
 
-def refuse_batch(robot: Robot, situation: Situation) -> tuple[VerdictArray, FloatArray, FloatArray]:
+def refuse_batch(
+    situation: Situation, least_tension_N: float
+) -> tuple[VerdictArray, FloatArray, FloatArray]:
     """Return what is proved of poses (n_poses,) that no cables were found for; see `cone`.
+
+    Cables shall nowhere have less than the ``least_tension_N``.
 
     Returns
     -------
@@ -168,15 +182,15 @@ def refuse_batch(robot: Robot, situation: Situation) -> tuple[VerdictArray, Floa
         Its product with the load of unit length.
     """
     count = len(situation.positions)
-    wrench = np.empty((count, robot.degrees_of_freedom))
+    wrench = np.empty((count, len(situation.rows)))
     separation = np.empty(count)
     verdict = np.empty(count, dtype=np.int8)
-    figures = _straight(robot, robot.tension_min_N if robot.is_redundant else 0.0)
+    figures = _straight(len(situation.attachments), least_tension_N)
     share_out(refuse_range, count, _SHARE, situation, figures, wrench, separation, verdict)
     return verdict, wrench, separation
 
 
-def _straight(robot: Robot, least_tension_N: float) -> Figures:
+def _straight(n_cables: int, least_tension_N: float) -> Figures:
     """Return straight cables, of which strength and weight say nothing."""
-    ones = plain(np.ones(robot.n_cables))
+    ones = plain(np.ones(n_cables))
     return Figures(ones, ones, ones, least_tension_N)

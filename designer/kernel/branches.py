@@ -24,6 +24,7 @@ from designer.kernel.compiling import element, kernel
 from designer.kernel.interior import Scratch, new_scratch
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
+    FLOOR,
     FORCE,
     LEAST,
     LOWEST,
@@ -34,6 +35,7 @@ from designer.kernel.pose import (
     WRENCH,
     Pose,
     along,
+    limit_sag,
     linearise,
     new_pose,
     place,
@@ -41,7 +43,6 @@ from designer.kernel.pose import (
     write_wrenches,
 )
 from designer.kernel.table import CHORD, LIFT, T_P, V_P, X2, D, L, P, T, V
-from designer.kernel.unit_cable import PULL_FLOOR
 
 _AT_LIMIT = 1e-6
 """Relative distance from a limit at which a cable counts as at it."""
@@ -77,6 +78,7 @@ def rate_range(
         if found.verdict[at] != SOLVED:
             continue
         place(pose, situation, at)
+        limit_sag(pose)
         c, w = pose.cables, found.poses[at, WEIGHT]
         for i in range(n):
             c[L, i] = found.cables[at, i, LENGTH]
@@ -143,7 +145,8 @@ def _is_full(c: FloatArray, i: int, limit: float) -> bool:
 def _is_least(pose: Pose, i: int, scaled_c: float) -> bool:
     c, scale = pose.cables, pose.scale
     least = scaled_c * scale[FORCE] / scale[SIZE] * c[LEAST, i]
-    return bool(least > 0.0 and c[LOWEST, i] <= least * (1.0 + _AT_LIMIT))
+    is_lowest = least > 0.0 and c[LOWEST, i] <= least * (1.0 + _AT_LIMIT)
+    return bool(is_lowest or c[P, i] <= c[FLOOR, i] * (1.0 + _AT_LIMIT))
 
 
 @kernel
@@ -163,7 +166,7 @@ def _potential(
         beta = along(pose, value, LIFT, i) * c[SHARE, i] / pose.scale[FORCE]
         alpha = slope - beta * c[V_P, i]
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
-        low, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        low, low_c = smallest_pull(pose, i, scaled_c)
         least = (low + low_c * scaled_c) * c[UNIT, i]
         if beta < 0.0:
             best = 0.0

@@ -14,8 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import BoolArray, FloatArray, IntArray, require_shape
+from designer.arrays import BoolArray, FloatArray, IntArray, frozen_array, require_shape
 from designer.model.robot import Poses, Robot
+
+ANY_SAG = frozen_array(np.empty((0, 2)))
+"""Least pulls of cables that may hang as they like."""
 
 
 class Situation(NamedTuple):
@@ -58,12 +61,15 @@ class Figures(NamedTuple):
         weight per length [N/m]), allowable tension over weight [m].
     least_tension : float
         Least tension that is asked for anywhere in a cable [N].
+    least_pulls : array (n_nodes, 2)
+        Least pulls for the sag that is allowed, see `designer.kernel.least_pull`; no rows for any.
     """
 
     kappa: FloatArray
     weights: FloatArray
     strength: FloatArray
     least_tension: float
+    least_pulls: FloatArray = ANY_SAG
 
 
 class Meets(NamedTuple):

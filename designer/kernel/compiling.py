@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+
+from designer import __version__
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -25,13 +29,9 @@ def element(function: Function) -> Function:
 
 def kernel(function: Function) -> Function:
     """Compile a loop over poses; releases the interpreter lock and is cached on disk."""
-    options = {"nogil": True, "cache": True, "error_model": "numpy", "fastmath": _FAST}
-    compiled: Any = numba.njit(**options)(function)
-    # Numba takes cached code for fresh as long as the function's own file is unchanged, although
-    # it contains what the function calls; here any change in these folders makes it stale.
-    compiled._cache._cache_file._source_stamp = _stamp("kernel", "physics")
-    result: Function = compiled
-    return result
+    options = {"nogil": True, "error_model": "numpy", "fastmath": _FAST}
+    compiled: Function = numba.njit(**options)(function)
+    return _kept(compiled, "kernel", "physics")
 
 
 def exact(function: Function) -> Function:
@@ -44,10 +44,80 @@ def exact(function: Function) -> Function:
 
 def exact_kernel(function: Function) -> Function:
     """Compile a loop over boxes the same way; otherwise as `kernel`."""
-    compiled: Any = numba.njit(nogil=True, cache=True, error_model="numpy")(function)
-    compiled._cache._cache_file._source_stamp = _stamp("kernel", "physics", "proof/enclosure")
-    result: Function = compiled
-    return result
+    compiled: Function = numba.njit(nogil=True, error_model="numpy")(function)
+    return _kept(compiled, "kernel", "physics", "proof/enclosure")
+
+
+def _kept(function: Function, *rooms: str) -> Function:
+    """Keep the machine code on disk; where no folder takes it, each process compiles anew."""
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled: Any = function
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = before or str(_folder())
+    try:
+        compiled.enable_caching()
+    except RuntimeError:
+        return function
+    finally:
+        numba.config.CACHE_DIR = before
+    files = compiled._cache._cache_file
+    # Numba takes cached code for fresh as long as the function's own file is unchanged, although
+    # it contains what the function calls; here any change in these folders makes it stale.
+    files._source_stamp = _stamp(*rooms)
+    compiled._cache._cache_file = _Files(files)
+    return function
+
+
+@cache
+def _folder() -> Path:
+    """Return where machine code is kept, by our version and the processor."""
+    import llvmlite.binding
+    from platformdirs import user_cache_path
+
+    processor = llvmlite.binding.get_host_cpu_name()
+    return user_cache_path("cdpr-designer", appauthor=False) / f"{__version__}-{processor}"
+
+
+class _Files:
+    """Numba's files of one kernel, of which a damaged one is written anew.
+
+    Each has a digest: object code with a byte wrong would end the process.
+    """
+
+    def __init__(self, files: Any) -> None:
+        self._files = files
+
+    def load(self, key: object) -> Any:
+        """Return what is kept under a key; None for nothing, or what is not to be read."""
+        try:
+            kept = self._files.load(key)
+            return None if kept is None else _checked(*kept)
+        except Exception:  # whatever a damaged file makes of its reader
+            _Damage.tell(self._files._index_path)
+            with suppress(OSError):
+                self._files.flush()
+            return None
+
+    def save(self, key: object, data: object) -> None:
+        """Keep data under a key, if the disk takes them."""
+        from numba.core.serialize import dumps
+
+        packed = dumps(data)
+        with suppress(OSError):
+            self._files.save(key, (sha256(packed).digest(), packed))
+
+
+def _checked(digest: bytes, packed: bytes) -> Any:
+    if sha256(packed).digest() != digest:
+        raise ValueError("the digest is another")
+    return pickle.loads(packed)
+
+
+class _Damage:
+    """Who is told of damaged files."""
+
+    tell: Callable[[str], None] = staticmethod(lambda _: None)
 
 
 @cache
@@ -58,12 +128,15 @@ def _stamp(*rooms: str) -> str:
     return sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 
-def tell_of_compiling(tell: Callable[[], None]) -> None:
+def tell_of_compiling(tell: Callable[[], None], damaged: Callable[[str], None]) -> None:
     """Call ``tell`` once, as soon as a kernel has to be compiled in this process.
 
-    It is not called where the machine code of all that is used lies on disk.
+    It is not called where the machine code of all that is used lies on disk. ``damaged`` is called
+    with each file of it that cannot be read.
     """
     from numba.core import event
+
+    _Damage.tell = staticmethod(damaged)
 
     event.Listener.register(_FirstCompile)
     event.register("numba:compile", _FirstCompile(tell))

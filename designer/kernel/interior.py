@@ -6,7 +6,8 @@ Unknowns are the scaled pulls y of all cables and s; each cable's length follows
                                Tᵢ(yᵢ)/strengthᵢ + ζᵢ = f_0 + s f_s,      ζ > 0, multiplier μ
                                yᵢ - lowᵢ - leastᵢ (c_0 + s c_s) = ηᵢ,     η > 0, multiplier ν
 
-The last line is the least tension of a cable along its tangent, over the slope.
+The last line is the least tension of a cable along its tangent, over the slope; or without c, where
+it is more, the least pull that keeps its sag.
 
 As cables do not act on each other, the Hessian of the Lagrangian is diagonal; its second slopes are
 differences of first ones along the closure. Where it is not convex it is cut at zero. A Newton step
@@ -31,7 +32,6 @@ from designer.kernel.pose import (
     FORCE,
     FREEDOM,
     HEIGHT,
-    LEAST,
     LOWEST_P,
     LOWEST_PP,
     MU_HEIGHT,
@@ -54,7 +54,6 @@ from designer.kernel.pose import (
     write_wrenches,
 )
 from designer.kernel.table import CHORD, LIFT, STRAIGHT, T_P, V_P, P, T, V
-from designer.kernel.unit_cable import PULL_FLOOR
 
 START_OF_STRAIGHT = 0.8
 """Of what straight cables reach, to begin with: sag takes its part."""
@@ -122,8 +121,9 @@ def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
     c = pose.cables
     make_straight(pose, _CARRIED)
     for i in range(c.shape[1]):
-        low, low_c = smallest_pull(pose, i, PULL_FLOOR)
-        least = low + low_c * max(ask.c_0 + s * ask.c_s, 0.0)
+        scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
+        low, low_c = smallest_pull(pose, i, scaled_c)
+        least = low + low_c * scaled_c
         y = START_OF_STRAIGHT * c[STRAIGHT, i] / (c[SHARE, i] * c[STRENGTH, i])
         # Negated, so that NaN of straight cables that hold nothing is left out.
         if not y > least + _START_SHARE:
@@ -189,8 +189,9 @@ def _balance(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
 def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
     """Return by how much the scaled pull of a cable is above its smallest."""
     c = pose.cables
-    low, low_c = smallest_pull(pose, i, PULL_FLOOR)
-    return float(c[P, i] / c[UNIT, i] - low - low_c * (ask.c_0 + s * ask.c_s))
+    scaled_c = ask.c_0 + s * ask.c_s
+    low, low_c = smallest_pull(pose, i, scaled_c)
+    return float(c[P, i] / c[UNIT, i] - low - low_c * scaled_c)
 
 
 @kernel
@@ -208,7 +209,7 @@ def _gap(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
         in_s -= ask.c_s * pose.load[pose.rows[k]] * dual[k]
     for i in range(n):
         slope = c[T_P, i] / c[CHORD, i]
-        _, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
         stationary = c[MU_ROOM, i] * slope - c[MU_HEIGHT, i]
         for k in range(m):
             stationary += columns[i, k] * dual[k]
@@ -259,9 +260,9 @@ def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) 
     n, m = columns.shape
     weight, rest = 0.0, 1.0
     for i in range(n):
-        H = _curvature(pose, i, scratch.dual)
         slope = c[T_P, i] / c[CHORD, i]
-        _, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
+        H = _curvature(pose, i, scratch.dual, low_c > 0.0)
         low_s = low_c * ask.c_s
         d_room = c[MU_ROOM, i] / c[ROOM, i]
         d_height = c[MU_HEIGHT, i] / c[HEIGHT, i]
@@ -296,13 +297,16 @@ def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) 
 
 
 @kernel
-def _curvature(pose: Pose, i: int, dual: FloatArray) -> float:
-    """Return the second slope of the Lagrangian in a scaled pull, where it is convex."""
+def _curvature(pose: Pose, i: int, dual: FloatArray, has_least: bool) -> float:
+    """Return the second slope of the Lagrangian in a scaled pull, where it is convex.
+
+    ``has_least`` is whether the least tension, not the sag, sets the smallest pull.
+    """
     c = pose.cables
     of_lift = c[SHARE, i] / pose.scale[FORCE] * c[V_PP, i] * along(pose, dual, LIFT, i)
     of_tension = c[MU_ROOM, i] * c[T_PP, i] / c[STRENGTH, i]
     of_least = 0.0
-    if c[LEAST, i] > 0.0:
+    if has_least:
         of_least = c[MU_HEIGHT, i] / c[UNIT, i] * c[LOWEST_PP, i] / c[LOWEST_P, i]
     return float(max(c[UNIT, i] * c[UNIT, i] * (of_lift + of_tension - of_least), _FLAT))
 
@@ -315,7 +319,7 @@ def _step_sizes(
     c = pose.cables
     forward, back = 1.0, 1.0
     for i in range(c.shape[1]):
-        _, low_c = smallest_pull(pose, i, PULL_FLOOR)
+        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
         miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
         room = miss + ask.f_s * ds - c[T_P, i] / c[CHORD, i] * c[STEP, i]
         sunk = _height(pose, ask, s, i) - c[HEIGHT, i]

@@ -23,6 +23,7 @@ from designer.kernel.answer import (
 )
 from designer.kernel.calling import Figures, Situation
 from designer.kernel.compiling import element, kernel
+from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
     CHORD,
     L_0,
@@ -45,15 +46,16 @@ from designer.kernel.table import (
     place_cable,
     straighten,
 )
-from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
+from designer.kernel.unit_cable import sag_series, unit_cable
 
 # Rows beside those of the table. The same for all poses: weight over stiffness, weight relative to
 # w, allowable tension over weight, least tension asked for over relative weight. Then the pull of a
-# straight cable at its strength, the unit in which pulls are measured.
-KAPPA, SHARE, STRENGTH, LEAST, UNIT = range(LANE_ROWS, LANE_ROWS + 5)
+# straight cable at its strength, the unit in which pulls are measured, and the least pull for the
+# sag that is allowed.
+KAPPA, SHARE, STRENGTH, LEAST, UNIT, FLOOR = range(LANE_ROWS, LANE_ROWS + 6)
 # Second slopes of pull and top tension; least tension anywhere in the cable over its weight, with
 # its slopes, where one is asked for; 1 for a cable left to hang, 0 for one that is pulled.
-V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, HANGS = range(UNIT + 1, UNIT + 7)
+V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, HANGS = range(FLOOR + 1, FLOOR + 7)
 # Of the interior point: slack below the strength and above the smallest pull, their multipliers,
 # the inverse of the diagonal of the Hessian, right-hand side, coupling with s; then the steps of
 # the pull, of both slacks and of both multipliers.
@@ -89,6 +91,8 @@ class Pose(NamedTuple):
     scale : array (3,)
         Strength of the strongest cable over w [m], size of the load [N], reach of the attachments
         [m].
+    least_pulls : array (n_nodes, 2)
+        See `designer.kernel.least_pull`.
     """
 
     cables: FloatArray
@@ -96,6 +100,7 @@ class Pose(NamedTuple):
     load: FloatArray
     rest: FloatArray
     scale: FloatArray
+    least_pulls: FloatArray
 
 
 class Ask(NamedTuple):
@@ -121,7 +126,7 @@ def new_pose(figures: Figures, rows: IntArray) -> Pose:
     cables[STRENGTH] = figures.strength
     cables[LEAST] = figures.least_tension / figures.weights
     scale[FORCE] = np.max(figures.weights * figures.strength)
-    return Pose(cables, rows, np.zeros(6), np.zeros(6), scale)
+    return Pose(cables, rows, np.zeros(6), np.zeros(6), scale, figures.least_pulls)
 
 
 @kernel
@@ -129,7 +134,7 @@ def place(pose: Pose, situation: Situation, at: int) -> None:
     """Fill geometry and load."""
     c, load, scale = pose.cables, pose.load, pose.scale
     reach, size = 0.0, 1e-300
-    c[HANGS] = 0.0
+    c[HANGS], c[FLOOR] = 0.0, 0.0
     for i in range(c.shape[1]):
         place_cable(c, i, situation, at, i)
         c[UNIT, i] = c[STRENGTH, i] / c[CHORD, i]
@@ -148,6 +153,14 @@ def place(pose: Pose, situation: Situation, at: int) -> None:
     for k in range(6):
         load[k] /= size
     scale[SIZE] = size
+
+
+@kernel
+def limit_sag(pose: Pose) -> None:
+    """Let no pull be smaller than allowed; straight, weightless cables may be without any."""
+    c = pose.cables
+    for i in range(c.shape[1]):
+        c[FLOOR, i] = least_pull(pose.least_pulls, c, i, c[KAPPA, i])
 
 
 @element
@@ -254,30 +267,35 @@ def write_wrenches(pose: Pose) -> None:
 
 
 @element
-def smallest_pull(pose: Pose, i: int, floor: float) -> tuple[float, float]:
+def smallest_pull(pose: Pose, i: int, scaled_c: float) -> tuple[float, float]:
     """Return the smallest scaled pull of a cable, and its rise per scaled c.
 
-    Of the line that touches the least tension in the cable at the present pull.
+    Of the line that touches the least tension in the cable at the present pull, or what keeps its
+    sag, whichever is more at a scaled c.
     """
     c, scale = pose.cables, pose.scale
+    floor = c[FLOOR, i] / c[UNIT, i]
     if c[LEAST, i] > 0.0:
         slope = c[LOWEST_P, i] * c[UNIT, i]
         low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
-        return c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope, low_c
-    return floor / c[UNIT, i], 0.0
+        low = c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope
+        if low + low_c * scaled_c >= floor:
+            return low, low_c
+    return floor, 0.0
 
 
 @kernel
-def _measure(pose: Pose, c: float) -> tuple[float, float, float]:
-    """Return closure error [m], balance error over w [m] and load factor of the state.
+def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
+    """Return closure error [m] and over each length, balance error over w [m] and load factor.
 
     Pull and top tension of every cable are put into its rows. A load factor is infinite where a
-    cable is too slack to be evaluated, stretched through zero length or below its least tension.
+    cable is too slack to be evaluated or for its sag, stretched through zero length or below its
+    least tension.
     """
     cables, rest = pose.cables, pose.rest
     for k in range(6):
         rest[k] = -c * pose.scale[SIZE] * pose.load[k]
-    closure, error, overload = 0.0, 0.0, 0.0
+    closure, apart, error, overload = 0.0, 0.0, 0.0, 0.0
     for i in range(cables.shape[1]):
         p, length = cables[P, i], cables[L, i]
         F, _, F_l, v, _, _, t, _, _ = unit_cable(
@@ -289,12 +307,17 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float]:
             rest[k] += cables[SHARE, i] * (cables[LEVEL + k, i] * p + cables[LIFT + k, i] * v)
         # Sums instead of maxima where NaN has to get through.
         closure = max(closure, abs(F / F_l)) + 0.0 * F
+        apart = max(apart, abs(F / F_l) / length) + 0.0 * F
         lowest, _ = _lowest_tension(cables, i, p, length, 0.0, v, 0.0)
-        held = p >= PULL_FLOOR and t > 0.0 and lowest * AT_LIMIT >= c * cables[LEAST, i]
+        held = (
+            p * AT_LIMIT >= cables[FLOOR, i]
+            and t > 0.0
+            and lowest * AT_LIMIT >= c * cables[LEAST, i]
+        )
         overload = max(overload, t / cables[STRENGTH, i] if held else np.inf)
     for k in pose.rows:
         error += abs(rest[k])
-    return closure, error, overload
+    return closure, apart, error, overload
 
 
 @kernel
@@ -313,13 +336,12 @@ def store(
         Whether c was sought or given.
     """
     cables, scale = pose.cables, pose.scale
-    closure, error, overload = _measure(pose, c)
-    heaviest, shortest, massless = abs(c) * scale[SIZE], np.inf, 0.0
+    closure, apart, error, overload = _measure(pose, c)
+    heaviest, massless = abs(c) * scale[SIZE], 0.0
     for i in range(cables.shape[1]):
         heaviest = max(heaviest, cables[SHARE, i] * cables[T, i])
-        shortest = min(shortest, cables[L, i])
         massless = max(massless, cables[STRAIGHT, i])
-    residual = closure / shortest + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
+    residual = apart + error / heaviest if gap <= OPTIMAL_WITHIN else np.inf
     verdict = judge(residual, c, overload, sizing)
     w = write_pose(out, at, verdict, c, closure, error)
     for i in range(cables.shape[1]):

@@ -33,6 +33,7 @@ from designer.kernel.interior import (
 )
 from designer.kernel.linear import solve_small
 from designer.kernel.pose import (
+    FLOOR,
     FORCE,
     HANGS,
     KAPPA,
@@ -52,6 +53,7 @@ from designer.kernel.pose import (
     Pose,
     along,
     asked,
+    limit_sag,
     linearise,
     make_straight,
     new_pose,
@@ -124,6 +126,7 @@ def solve_redundant_range(
             out.poses[at] = np.nan
             out.verdict[at] = NOT_CONVERGED
             continue
+        limit_sag(pose)
         to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
         ask = asked(pose, inverse_weight)
         s, gap = _walk(pose, lp, ask, scratch)
@@ -205,14 +208,15 @@ def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float,
     """Solve by linear programmes, one a Newton step; return s and the last relative step.
 
     The basis of the straight cables is the start. A cable that wants less than no tension is left
-    to hang from then on. An infinite step tells that the steps do not settle.
+    to hang from then on, unless its sag is limited. An infinite step tells that the steps do not
+    settle.
     """
     c = pose.cables
     n = c.shape[1]
-    s = 0.0
+    s = float(lp.z[n])  # of straight cables
     make_straight(pose, 0.5)
     for iteration in range(_MOST_STEPS):
-        _write_programme(lp, pose, ask, PULL_FLOOR)
+        _write_programme(lp, pose, ask, s)
         if not rebuild(lp) or maximise(lp) != OPTIMAL:
             return s, np.inf
         before, s = s, float(lp.z[n])
@@ -220,7 +224,7 @@ def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float,
         step = max(step, _pull(pose, lp, ask, iteration == 0))
         some_hang = False
         for i in range(n):
-            if lp.dual[i] < 0.0 and c[LEAST, i] == 0.0:
+            if lp.dual[i] < 0.0 and c[LEAST, i] == 0.0 and c[FLOOR, i] == PULL_FLOOR:
                 c[HANGS, i] = 1.0
             some_hang = some_hang or c[HANGS, i] > 0.0
         if some_hang:
@@ -243,7 +247,7 @@ def _pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
         new = _pull_of(lp, pose, ask, i)
         if not is_first:
             new = min(max(new, 0.2 * old), 5.0 * old)
-        c[P, i] = new = max(new, PULL_FLOOR)
+        c[P, i] = new = max(new, c[FLOOR, i])
         moved = length + c[L_0, i] + c[L_P, i] * (new - old)
         c[L, i] = min(max(moved, 0.5 * length), 2.0 * length)
         step = abs(new - old) / new + abs(c[L, i] - length) / length
@@ -253,8 +257,8 @@ def _pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
 
 
 @element
-def _write_programme(lp: Programme, pose: Pose, ask: Ask, floor: float) -> None:
-    """Write the linearised pose as a linear programme in the rooms below the strengths.
+def _write_programme(lp: Programme, pose: Pose, ask: Ask, s: float) -> None:
+    """Write the linearised pose, about s, as a linear programme in the rooms below the strengths.
 
     The scaled pulls are y = u + s u' - z with u + s u' the pull at which the linearised top tension
     reaches its limit.
@@ -265,7 +269,7 @@ def _write_programme(lp: Programme, pose: Pose, ask: Ask, floor: float) -> None:
         hangs = c[HANGS, i] > 0.0
         rest, slope = _tension_line(c, i)
         reach = 1.0 / (slope * c[UNIT, i])
-        low, low_c = smallest_pull(pose, i, floor)
+        low, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
         top = (ask.f_0 * c[STRENGTH, i] - rest) * reach
         top_s = ask.f_s * c[STRENGTH, i] * reach
         # The pull of a hanging cable is settled elsewhere: here it is a part of the load.

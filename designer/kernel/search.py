@@ -41,6 +41,7 @@ from designer.kernel.pose import (
     Pose,
     along,
     asked,
+    limit_sag,
     new_pose,
     place,
     settled_length,
@@ -95,6 +96,7 @@ def search_range(
         straight_c, spans = massless(pose, lp)
         if not (spans and straight_c > 0.0):
             pose.cables[STRAIGHT] = np.nan
+        limit_sag(pose)
         to_scaled = pose.scale[SIZE] / pose.scale[FORCE]
         ask = asked(pose, inverse_weight)
         best = -np.inf
@@ -187,8 +189,9 @@ def _begin_beside(
 @kernel
 def _slacken(pose: Pose, ask: Ask, s: float, i: int, p: float) -> None:
     """Set a pull, above the smallest that the cable has to keep."""
-    low, low_c = smallest_pull(pose, i, PULL_FLOOR)
-    least = low + low_c * max(ask.c_0 + s * ask.c_s, 0.0)
+    scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
+    low, low_c = smallest_pull(pose, i, scaled_c)
+    least = low + low_c * scaled_c
     pose.cables[P, i] = max(p, _ABOVE_LEAST * least * pose.cables[UNIT, i])
 
 

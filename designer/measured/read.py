@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
+from designer.documents.opened import open_input
 from designer.errors import Fault, InputError
 from designer.measured.assign import Assigned, assign
 from designer.measured.names import (
@@ -17,7 +18,7 @@ from designer.measured.names import (
     length_names,
     tension_names,
 )
-from designer.measured.rows import Rows, cell_faults, usable_rows
+from designer.measured.rows import Rows, cell_faults, thinned, usable_rows
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
 from designer.measured.table import Table, read_table
@@ -33,7 +34,8 @@ def read_measured(study: Study) -> Measured:
     """Return what was measured on the machine that the study describes.
 
     Columns go by the names of `designer.measured.names`; the config's ``measurements.columns``
-    translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing.
+    translates others. Cells that are empty, ``nan`` or ``NA`` hold nothing. Of a long log all rows
+    are checked, and `designer.measured.rows.MOST_ROWS` returned.
 
     Raises
     ------
@@ -51,6 +53,7 @@ def read_measured(study: Study) -> Measured:
         rows = usable_rows(found, study.robot.n_cables, settled=measurements.settled)
         faults = [*found.table.faults, *found.faults, *cell_faults(found), *rows.faults]
         _refuse([*faults, *quaternion_faults(found, rows.kept)])
+    rows = thinned(rows, settled=measurements.settled)
     if measurements.has_poses:
         poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
         has_moved = np.ptp(poses.position_m, axis=0).max() > 1e-6
@@ -81,7 +84,7 @@ def _refuse(faults: list[Fault]) -> None:
 def _table(study: Study, measurements: Measurements) -> Table:
     path = measurements.file
     try:
-        file = path.open("rb")
+        file = open_input(path)
     except FileNotFoundError:
         problem = f"there is no file {path}"
     except (OSError, ValueError) as error:
@@ -149,6 +152,7 @@ def _measured(
         covariates=covariates(found, kept, notes),
         row_numbers=row_numbers,
         notes=tuple(notes),
+        thinned=rows.thinned,
         sha256=found.table.sha256,
     )
 

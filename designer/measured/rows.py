@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, des
 
 FEWEST_ROWS = 8
 """A quarter is held out from every fit, and what is left has to show more than its noise."""
+MOST_ROWS = 10_000
+"""As many are diagnosed: more would tell no more of an effect, and take time and memory."""
+_RUN = 50
+"""Poses at rest that follow one another: in which direction a cable has moved shows between two."""
 _LARGEST_NUMBER = 1e30
 _BOUNDS = {
     LENGTH: (-1e7, 1e7),  # these three as in the config
@@ -41,11 +45,14 @@ class Rows:
         Rows with half a pose, without their time, or out of order; too few rows.
     notes : list of str
         Rows that were left out, and why.
+    thinned : str
+        Which of a long log are used, in words; empty where all are.
     """
 
     kept: BoolArray
     faults: list[Fault]
     notes: list[str]
+    thinned: str = ""
 
 
 def is_numeric(column: RawColumn) -> bool:
@@ -106,6 +113,27 @@ def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
         expected = f"at least {FEWEST_ROWS} rows"
         faults.append(Fault(found.table.name, None, "", problem, expected))
     return Rows(kept, faults, notes)
+
+
+def thinned(rows: Rows, *, settled: bool) -> Rows:
+    """Return about `MOST_ROWS` of the rows, from all over the log.
+
+    Samples of a motion: evenly apart. Poses at rest: runs of neighbours, one somewhere in each of
+    equal stretches, so that no programme that is driven again and again hides the rest of it.
+    """
+    where = np.flatnonzero(rows.kept)
+    every = -(-len(where) // MOST_ROWS)
+    if every == 1:
+        return rows
+    run = _RUN if settled else 1
+    stretch, turn = np.divmod(np.arange(len(where)) // run, every)
+    chosen = np.random.default_rng(0).integers(every if settled else 1, size=stretch[-1] + 1)
+    used = where[turn == chosen[stretch]]
+    kept = np.zeros_like(rows.kept)
+    kept[used] = True
+    which = f"{run} rows of each {run * every}" if settled else f"one row of each {every}"
+    text = f"{len(used)} of {len(where)} rows are used, {which}: so many tell as much"
+    return replace(rows, kept=kept, notes=[*rows.notes, text], thinned=text)
 
 
 def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:

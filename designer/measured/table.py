@@ -16,7 +16,7 @@ from designer.arrays import FloatArray, IntArray
 from designer.errors import Fault, InputError
 from designer.measured.cells import MOST_ALIKE, TextCell, is_number, read_cells
 
-LARGEST_FILE_BYTES = 200_000_000
+LARGEST_FILE_BYTES = 1_000_000_000
 _LONGEST_LINE_BYTES = 1_000_000
 _CONTROL_CODE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 _EXPECTED = "a CSV file: names of columns in its first line, numbers below"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from bisect import bisect_right
+from dataclasses import dataclass, replace
 
 from designer.arrays import FloatArray, frozen_array, require_number
 
@@ -11,6 +12,38 @@ STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
 STEEL_EXPANSION_PER_K = 12e-6
 """Thermal expansion of steel, EN 1993-1-1:2005, 3.2.6 [1/K]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffening:
+    """EA of a rope that depends on its tension: linear between the points, constant beyond.
+
+    Parameters
+    ----------
+    tension_N : tuple of float
+        Tensions, ascending [N].
+    axial_stiffness_N : tuple of float
+        EA at each of them [N].
+    """
+
+    tension_N: tuple[float, ...]
+    axial_stiffness_N: tuple[float, ...]
+
+    def at(self, tension_N: float) -> float:
+        """Return EA at a tension [N]."""
+        tensions, stiffnesses = self.tension_N, self.axial_stiffness_N
+        above = bisect_right(tensions, tension_N)
+        if above == 0 or above == len(tensions):
+            return stiffnesses[0] if above == 0 else stiffnesses[-1]
+        share = (tension_N - tensions[above - 1]) / (tensions[above] - tensions[above - 1])
+        return stiffnesses[above - 1] + share * (stiffnesses[above] - stiffnesses[above - 1])
+
+    def scaled(self, tension: float, stiffness: float) -> Stiffening:
+        """Return the same with each tension and each EA times a factor."""
+        return Stiffening(
+            tuple(tension * each for each in self.tension_N),
+            tuple(stiffness * each for each in self.axial_stiffness_N),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +62,9 @@ class Cable:
         Largest tension the design may use, safety factor included [N].
     expansion_per_K : float
         Strain per change of temperature [1/K].
+    stiffening : Stiffening or None
+        How EA depends on the tension; None where it does not. ``axial_stiffness_N`` is then one
+        value of it, which `designer.selection.stiffening` takes at the largest tension met.
     """
 
     diameter_m: float
@@ -36,6 +72,7 @@ class Cable:
     axial_stiffness_N: float
     allowable_tension_N: float
     expansion_per_K: float = STEEL_EXPANSION_PER_K
+    stiffening: Stiffening | None = None
 
     def __post_init__(self) -> None:
         if not math.isnan(self.diameter_m):
@@ -49,6 +86,12 @@ class Cable:
     def weight_N_per_m(self) -> float:
         """Weight per unstrained length [N/m]."""
         return self.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2
+
+    def at_tension(self, tension_N: float) -> Cable:
+        """Return the cable with its EA at a tension [N]; itself where EA does not depend on it."""
+        if self.stiffening is None or not math.isfinite(tension_N):
+            return self
+        return replace(self, axial_stiffness_N=self.stiffening.at(tension_N))
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,9 +24,10 @@ import numpy as np
 from designer.arrays import FloatArray, finite_array, require_number
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
-from designer.model.robot import Robot
+from designer.model.robot import Platform, Robot
 
 AIR_DENSITY_KG_PER_M3 = 1.25
+FIRST_WINDS = 8
 EACH = "each"
 """Of a lost cable: each in turn."""
 
@@ -41,15 +42,16 @@ class Wind:
         Its speed [m/s].
     cable_drag_coefficient : float
         C_d of the cables, on their diameter.
-    count : int
-        How many directions are tried, horizontal, evenly spread from +x.
+    count : int or None
+        How many directions are tried, horizontal, evenly spread from +x. None for all: a search
+        starts from `FIRST_WINDS` of them.
     direction : array (3,) or None
         Where it blows to, instead of these; its length does not count.
     """
 
     speed_m_per_s: float
     cable_drag_coefficient: float
-    count: int = 8
+    count: int | None = None
     direction: FloatArray | None = None
 
     def __post_init__(self) -> None:
@@ -67,14 +69,15 @@ class Wind:
     def directions(self, robot: Robot) -> FloatArray:
         """Return unit vectors of where it blows to (n, 3), world frame.
 
-        On a planar robot, whose guides bear what is across its plane, the two along the plane are
-        the worst of all horizontal ones.
+        Of all directions, those that a search starts from. On a planar robot, whose guides bear
+        what is across its plane, the two along the plane are the worst of all horizontal ones.
         """
         if self.direction is not None:
             return (self.direction / np.linalg.norm(self.direction))[None]
         if robot.is_planar:
             return np.array([robot.level[0], -robot.level[0]])
-        turn = 2.0 * math.pi * np.arange(self.count) / self.count
+        count = self.count or FIRST_WINDS
+        turn = 2.0 * math.pi * np.arange(count) / count
         return np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn]) @ robot.level
 
 
@@ -122,15 +125,26 @@ class Loaded:
     inertia: FloatArray | None = None
     lost_cable: int | None = None
 
-    def pushed(self, along: FloatArray) -> Loaded:
-        """Return the same with the inertia force along another direction (3,)."""
-        turned = along / np.linalg.norm(along)
-        return self.case.under(*self.bare, self.wind, turned, self.lost_cable)
+    @property
+    def is_turned(self) -> bool:
+        """Whether its wind or inertia force comes from the worst direction, to be searched."""
+        return next(self.turned(1.0), None) is not None
+
+    def turned(self, step: float) -> Iterator[Loaded]:
+        """Yield the same with the wind, or the inertia force, turned a little: by a step aside."""
+        robot, lost = self.bare[0], self.lost_cable
+        if self.wind is not None and self.case.searches_wind(robot):
+            for along in _aside(self.wind, robot.level[:2], step):
+                yield self.case.under(*self.bare, along, self.inertia, lost)
+        if self.inertia is not None:
+            for along in _aside(self.inertia, free_axes(robot), step):
+                yield self.case.under(*self.bare, self.wind, along, lost)
 
     @property
     def growth(self) -> float:
         """Strain of the unstrained lengths by the change of temperature."""
-        return (self.case.temperature_change_K or 0.0) * self.cable.expansion_per_K
+        change_K = self.case.temperature_change_K
+        return change_K * self.cable.expansion_per_K if change_K else 0.0
 
     @property
     def keeps_lengths(self) -> bool:
@@ -220,6 +234,11 @@ class LoadCase:
         """Whether the robot as loaded depends on the cable, whose drag and weight tilt its load."""
         return self.wind is not None and self.wind.cable_drag_coefficient > 0.0
 
+    def searches_wind(self, robot: Robot) -> bool:
+        """Whether any direction of the wind may be the worst, beside those of `on`."""
+        is_any = self.wind is not None and self.wind.count is None and self.wind.direction is None
+        return is_any and not robot.is_planar
+
     def on(self, robot: Robot, cable: Cable) -> Iterator[Loaded]:
         """Yield robot and cable in all directions of this case: of wind, of inertia, lost cables.
 
@@ -235,6 +254,10 @@ class LoadCase:
         for wind, push, gone in product(winds, pushes, lost):
             yield self.under(robot, cable, wind, push, gone)
 
+    def mass_on(self, body: Platform) -> float:
+        """Return the mass of a platform in this case, with what it weighs beyond its drawing."""
+        return body.mass_kg if self.mass_kg is None else self.mass_kg + body.mass_offset_kg
+
     def under(
         self,
         robot: Robot,
@@ -245,7 +268,7 @@ class LoadCase:
     ) -> Loaded:
         """Return robot and cable in one direction of wind and inertia force (3,), unit vectors."""
         bare, body, factor = (robot, cable), robot.platform, self.dynamic_factor
-        mass = body.mass_kg if self.mass_kg is None else self.mass_kg
+        mass = self.mass_on(body)
         wrench = factor * (body.wrench_N if self.wrench_N is None else self.wrench_N)
         centre = body.centre_force_N
         if inertia is not None:
@@ -274,6 +297,15 @@ class LoadCase:
 
 STATIC = LoadCase("static")
 """What a study without load cases is solved for."""
+
+
+def _aside(along: FloatArray, axes: FloatArray, step: float) -> Iterator[FloatArray]:
+    """Yield unit vectors by a step along each axis, and against it, from one (3,)."""
+    for side in (*axes, *-axes):
+        turned = along + step * side
+        size = float(np.linalg.norm(turned))
+        if size > 0.0:
+            yield turned / size
 
 
 def free_axes(robot: Robot) -> FloatArray:

@@ -35,6 +35,8 @@ class Measured:
         Number of each row in the file, the first row below the head being 1.
     notes : tuple of str
         What the reader of a report should know: columns that were left out, and why.
+    thinned : str
+        Which rows of a long log these are, in words; empty where they are all.
     sha256 : str
         Digest of the file's bytes; empty where there is no file.
     has_poses : bool
@@ -51,6 +53,7 @@ class Measured:
     covariates: Mapping[str, FloatArray] = field(default_factory=dict)
     row_numbers: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     notes: tuple[str, ...] = ()
+    thinned: str = ""
     sha256: str = ""
     has_poses: bool = True
 

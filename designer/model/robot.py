@@ -39,6 +39,9 @@ class Platform:
         Constant force at the centre of mass, beside gravity, along those axes [N].
     drag_area_m2 : float or None
         Drag coefficient times area in the wind [m²]; None where it is not known.
+    mass_offset_kg : float
+        Share of the mass that a load case does not replace: what the platform weighs beyond its
+        drawing [kg].
     """
 
     mass_kg: float
@@ -48,6 +51,7 @@ class Platform:
     wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
     centre_force_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
     drag_area_m2: float | None = None
+    mass_offset_kg: float = 0.0
 
     def __post_init__(self) -> None:
         require_number("mass_kg", self.mass_kg, least=0.0)
@@ -83,6 +87,10 @@ class Robot:
     tension_min_N : float
         Least tension anywhere in any cable, where there are more cables than degrees of freedom:
         at its lower end, or at its lowest point where that hangs below both ends [N].
+    sag_max, family_sag_max : float or None
+        Largest sag over chord of any cable, where there are more cables than degrees of freedom:
+        of cables that are given, and of a family that is sized; None for any. See
+        `designer.statics.shape.sag_m`. A pose that cannot keep it is solved without.
     gravity_direction : array (3,)
         Where things fall, world frame; its length does not count.
     is_planar : bool
@@ -97,6 +105,8 @@ class Robot:
     pulley_radius_m: float = 0.0
     tilt_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(2)))
     tension_min_N: float = 0.0
+    sag_max: float | None = None
+    family_sag_max: float | None = None
     gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
     is_planar: bool = False
     cable_load_direction: FloatArray | None = None
@@ -113,6 +123,8 @@ class Robot:
                 object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
         require_number("pulley_radius_m", self.pulley_radius_m)
         require_number("tension_min_N", self.tension_min_N, least=0.0)
+        require_number("sag_max", self.sag_max, above=0.0)
+        require_number("family_sag_max", self.family_sag_max, above=0.0)
         if not self.gravity_direction.any():
             raise ValueError("gravity_direction must not be zero")
         if self.attachments_m.shape[0] != self.n_cables:
@@ -195,6 +207,11 @@ class Robot:
         tilt = Rotation.from_rotvec([*self.tilt_rad, 0.0]).as_matrix()
         return np.asarray(tilt @ self._headed(vertical_frame(self.gravity_direction)))
 
+    @property
+    def leaning(self) -> FloatArray:
+        """Rotation (3, 3) from the frame of `level` to that of `upright`."""
+        return np.asarray(self.upright @ self.level.T)
+
     def _headed(self, vertical: FloatArray) -> FloatArray:
         if not self.is_planar:
             return vertical
@@ -234,7 +251,7 @@ class Robot:
         """The part of that force that acts at the centre of mass (3,), upright frame [N]."""
         pull = np.array([0.0, 0.0, self.weight_N])
         if self.cable_load_direction is not None:
-            pull = self.upright @ self.level.T @ pull
+            pull = self.leaning @ pull
         return np.asarray(pull - self.upright @ self.platform.centre_force_N)
 
     def without_cable(self, cable: int) -> Robot:

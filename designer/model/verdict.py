@@ -49,7 +49,8 @@ class Verdict(IntEnum):
     RANK_DEFICIENT = (
         4,
         "rank deficient",
-        "the directions of straight cables leave a force or moment that no tensions can take up",
+        "no cables were found that hold the platform; straight ones leave some force or moment, "
+        "if not the present load, that no tensions can take up",
         NO_FINITE_CABLE[-1],
     )
     NOT_FOUND = (
@@ -58,6 +59,11 @@ class Verdict(IntEnum):
         "straight cables cannot hold the platform; sagging ones might, but none were found",
         OUTSIDE_HULL[-1],
     )
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether it is certain: the pose is solved, or shown to be impossible."""
+        return self not in OPEN
 
     @property
     def label(self) -> str:

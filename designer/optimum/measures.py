@@ -7,7 +7,8 @@ way takes it from a whole result over few samples.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,12 +18,18 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
+from designer.model.load_case import STATIC, Loaded
 from designer.model.region import PointList
+from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.model.space import Space
+from designer.progress import SILENT
 from designer.selection.cases import governing
 from designer.selection.compare import Entry
+from designer.selection.criteria import criteria_of
 from designer.selection.products import is_allowed, products_of, undominated
+from designer.selection.requirements import CaseLoads, evaluate
+from designer.selection.screen import Screen
 from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses
@@ -43,8 +50,8 @@ VOLUME = Dimension("a volume", "m^3", "200 m^3")
 class NotHeldError(Exception):
     """A design has no value: why, and how far it is from one, so that a search is led to it.
 
-    ``violation`` is below 1 where all poses are held but something is too weak, and 1 plus the
-    share of the poses that are not held otherwise.
+    ``violation`` is at most 1 where all poses are held but something is too weak or another
+    requirement does not hold, and 1 plus the share of the poses that are not held otherwise.
     """
 
     def __init__(self, violation: float, reason: str) -> None:
@@ -132,10 +139,15 @@ class Quick:
             (o for o in self.selection.objectives if o != "stiffness"), "mass"
         )
         ranked = sorted(holding, key=lambda one: one.figures.burden(decides))
-        best = next((one for one in ranked if self._holds(one)), None)
-        if best is None:
-            raise NotHeldError(_HARDLY, "no rope is strong enough")
-        return best
+        criteria = criteria_of(self._built.robot, self.workspace, self.selection)
+        screen = Screen(criteria, self.selection, SILENT)
+        screen.reject_by_table(ranked)
+        for entry in ranked:
+            if entry.rejected_by is None and self._holds(entry):
+                screen.rejects_any(entry, (), ranked)
+                if entry.rejected_by is None:
+                    return entry
+        raise _nearest_to_holding(screen, ranked)
 
     def _holds(self, entry: Entry) -> bool:
         allowable = governing(entry.cases).loaded.cable.allowable_tension_N
@@ -150,12 +162,33 @@ class Quick:
             return found.verification.max_tension_N
         demand = rope_demand(one.robot, one.cable, hangs_below, seeks_better=False)
         worst = climbed(
-            replace(self.evenly, region=found.case.region or self.evenly.region).space,
+            self.evenly.of_case(found.case).space,
             lambda places: demand(places)[:, 0],
-            found.verification.worst_position_m,
+            found.verification.worst_place,
             found.verification.max_tension_N,
         )
         return worst.demand
+
+    def require(self) -> None:
+        """Require all that the study asks for: of the rope, or of the cable of the family.
+
+        Raises
+        ------
+        NotHeldError
+            If something of it does not hold.
+        """
+        if self._study.selection is not None:
+            _ = self.rope
+            return
+        built, material = self._built, self._built.material(self._study.material)
+        bare = built.robot, material.cable(self.worst.demand)
+        loads = CaseLoads(self.workspace, (Loaded(STATIC, bare, *bare),))
+        criteria = criteria_of(built.robot, self.workspace, None)
+        unmet = [
+            one.requirement for one in evaluate([loads], criteria) if not one.requirement.holds
+        ]
+        if unmet:
+            raise _violated(unmet)
 
     @property
     def diameter_m(self) -> float:
@@ -205,6 +238,33 @@ def _why_no_rope(found: list[Entry]) -> tuple[float, str]:
         return 1.0 - 1.0 / least, "no rope is strong enough"
     shares = [one.sampled.not_held / max(one.sampled.samples, 1) for one in found]
     return 1.0 + min(*shares, 1.0), "no rope holds in all of the workspace"
+
+
+def shortfall(demand: float, capacity: float, utilisation: float) -> float:
+    """Return how far a requirement is from holding: above 0, at most 1 (NaN for no figure)."""
+    gap = abs(demand - capacity)
+    far = 1.0 - 1.0 / utilisation if utilisation >= 1.0 else gap / (1.0 + gap)
+    return max(far, _HARDLY) if math.isfinite(far) else 1.0
+
+
+def _shortfall(requirement: Requirement) -> float:
+    return shortfall(requirement.demand, requirement.capacity, requirement.utilisation)
+
+
+def _violated(unmet: Iterable[Requirement]) -> NotHeldError:
+    """Return the error of requirements that do not hold: the one that is furthest from it."""
+    worst = max(unmet, key=_shortfall)
+    reason = f"{worst.id} in {worst.load_case}: {worst.state.value}"
+    return NotHeldError(_shortfall(worst), reason)
+
+
+def _nearest_to_holding(screen: Screen, strong: Sequence[Entry]) -> NotHeldError:
+    """Return what the rope fails that is nearest to meeting all requirements."""
+    rejected = [(entry, entry.rejected_by) for entry in strong if entry.rejected_by is not None]
+    if not rejected:
+        return NotHeldError(_HARDLY, "no rope is strong enough")
+    nearest, by = min(rejected, key=lambda each: _shortfall(each[1]))
+    return _violated([by, *(one for one in screen.evaluated(nearest) if not one.holds)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,12 +346,15 @@ def measure_at(path: str, sign: int = 1) -> Measure:
 
 
 def for_study(measure: Measure, study: Study) -> Measure:
-    """Return the measure as this study has it: of groups, and without a selection."""
+    """Return the measure as this study has it.
+
+    There is no quick way to what groups of cables, or load cases of a family, are asked for.
+    """
     if measure.name == "max_tension" and study.selection is None:
-        return replace(measure, path="workspace.sagging.max_tension_N")
-    if study.selection is not None and study.selection.groups and measure.name != "diameter":
-        return replace(measure, quick=None)
-    return measure
+        measure = replace(measure, path="workspace.sagging.max_tension_N")
+    selection = study.selection
+    takes_whole = bool(study.load_cases) if selection is None else bool(selection.groups)
+    return replace(measure, quick=None) if takes_whole else measure
 
 
 def promising(study: Study, grades: tuple[Grade, ...]) -> tuple[Grade, ...]:

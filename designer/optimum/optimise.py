@@ -17,15 +17,14 @@ from designer.grades.registry import Catalogue
 from designer.optimum.measures import promising
 from designer.optimum.plan import Plan, Values
 from designer.optimum.read import read_optimisation
-from designer.optimum.result import Optimum, Profile, is_near
+from designer.optimum.result import Optimum, Profile
 from designer.optimum.search import LINE, Searched, Stop, search
 from designer.optimum.trial import Examiner, Trial
+from designer.optimum.verifier import FEW_VERIFIED, MOST_VERIFIED, Verifier
 from designer.progress import SILENT, Reporter
-from designer.sweep.point import why_not
+from designer.study import Study
+from designer.sweep.point import explains_for, why_not
 
-_MOST_VERIFIED = 3
-_APART = 0.05
-"""Of each range: designs that are no further apart are verified once."""
 _MOST_PROFILES = 8
 
 
@@ -78,48 +77,40 @@ def _verified(
     given: Analysis,
     reporter: Reporter,
 ) -> Optimum:
-    """Analyse the best designs in full until none that is left looks better than one that was.
-
-    The search between the samples can only make a design worse, so a design that is no better in
-    the search than a verified one is no better in full, but for what few samples cannot tell.
-    """
-    plan, sign = examiner.plan, examiner.plan.objective.sign
-    best: Optimum | None = None
-    rejected: list[Trial] = []
-    for trial in _candidates(plan, searched):
-        verified = best.after if best is not None and best.holds else None
-        if verified is not None and sign * trial.value >= sign * verified:
-            break
-        found = _analysed(plan, catalogue, searched, given, trial, reporter)
-        if best is None or _beats(found, best, sign):
-            rejected += [best.best] if best is not None else []
-            best = found
-        else:
-            rejected.append(trial)
-    assert best is not None
-    return replace(best, rejected=tuple(rejected), profiles=_profiles(examiner, best.best))
-
-
-def _beats(a: Optimum, b: Optimum, sign: int) -> bool:
-    if a.holds != b.holds:
-        return a.holds
-    return a.holds and sign * (a.after or 0.0) < sign * (b.after or 0.0)
-
-
-def _candidates(plan: Plan, searched: Searched) -> list[Trial]:
-    """Return the best designs that are well apart, the best first."""
-    sign = plan.objective.sign
-    tried = [one for one in searched.trials if one.values and plan.is_within(one.values)]
-    if not tried:
+    """Return the best design that holds in full, or the one that looked best where none does."""
+    plan = examiner.plan
+    ranked = _ranked(plan, searched)
+    if not ranked:
         raise DesignerError("the search was ended before it had tried a design")
-    ranked = sorted(tried, key=lambda t: (t.violation, sign * t.value if t.holds else math.inf))
-    kept: list[Trial] = []
-    for one in ranked:
-        if len(kept) == _MOST_VERIFIED or (kept and not one.holds):
-            break
-        if not any(is_near(plan, one.values, other.values, _APART) for other in kept):
-            kept.append(one)
-    return kept
+    holding = [trial for trial in ranked if trial.holds]
+    most = FEW_VERIFIED if searched.ended in ("asked", "time") else MOST_VERIFIED
+    with reporter.task("verification", most) as advance:
+        verifier = Verifier(plan, lambda trial: _in_full(plan, catalogue, trial), advance, most)
+        verifier.verify(holding, examiner.trial)
+    best = verifier.best or ranked[0]
+    return replace(
+        _analysed(plan, catalogue, searched, given, best, reporter),
+        rejected=tuple(trial for trial in verifier.failed if trial is not best),
+        unverified=len(verifier.unverified(holding)),
+        profiles=_profiles(examiner, best),
+    )
+
+
+def _ranked(plan: Plan, searched: Searched) -> list[Trial]:
+    """Return the designs within the bounds, each once, the best first."""
+    sign = plan.objective.sign
+    tried = {t.values: t for t in searched.trials if t.values and plan.is_within(t.values)}
+    return sorted(
+        tried.values(), key=lambda t: (t.violation, sign * t.value if t.holds else math.inf)
+    )
+
+
+def _in_full(plan: Plan, catalogue: Catalogue, trial: Trial) -> float | None:
+    """Return the objective of a design that holds over all samples and between them; else None."""
+    study = _study_of(plan, trial)
+    result = analyse(study, catalogue, explains=explains_for(plan.base.keep)).to_dict()
+    holds = result["positive"] and not any(limit.is_broken_by(result) for limit in plan.limits)
+    return plan.objective.value(result) if holds else None
 
 
 def _analysed(
@@ -130,19 +121,22 @@ def _analysed(
     trial: Trial,
     reporter: Reporter,
 ) -> Optimum:
-    text = optimised_text(plan, trial.values)
-    document = document_of(text.encode(), plan.document.name)
-    try:
-        study = replace(plan.base, document=document).study()
-    except InputError as error:  # its lines are those of no file of the user's
-        why = f"no design that was tried makes a valid study: {why_not(error)}"
-        raise DesignerError(f"{plan.name}: variables: {why}") from None
-    analysis = analyse(study, catalogue, reporter=reporter)
+    analysis = analyse(_study_of(plan, trial), catalogue, reporter=reporter)
     before, after = given.to_dict(), analysis.to_dict()
     values = plan.objective.value(before), plan.objective.value(after)
     breaches = tuple(limit for limit in plan.limits if limit.is_broken_by(after))
     comparison = compare(before, after)
+    text = optimised_text(plan, trial.values)
     return Optimum(plan, searched, trial, given, analysis, *values, breaches, (), comparison, text)
+
+
+def _study_of(plan: Plan, trial: Trial) -> Study:
+    document = document_of(optimised_text(plan, trial.values).encode(), plan.document.name)
+    try:
+        return replace(plan.base, document=document).study()
+    except InputError as error:  # its lines are those of no file of the user's
+        why = f"no design that was tried makes a valid study: {why_not(error)}"
+        raise DesignerError(f"{plan.name}: variables: {why}") from None
 
 
 def optimised_text(plan: Plan, values: Values) -> str:

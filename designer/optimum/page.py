@@ -34,6 +34,7 @@ from designer.report.figures import optimum as figures
 from designer.report.render import write_pages
 
 _MOST_REASONS = 8
+_ASKS = {"less": "less than the study", "more": "more", "other": "something else"}
 _ENDED = {
     "settled": "the search had settled",
     "evaluations": "the starts had used up their budget of designs",
@@ -123,12 +124,23 @@ def trust_lines(found: Optimum) -> list[str]:
         )
     if found.rejected:
         count = fmt.plural(len(found.rejected), "design")
+        lines.append(f"{count} looked better in the search, and did not hold in full.")
+    if found.unverified:
+        count = fmt.plural(found.unverified, "other design")
         lines.append(
-            f"{count} looked better in the search, and did not hold or were worse in full."
+            f"{count} looked better in the search and may hold: the budget of full verifications "
+            "was used up."
         )
     if found.worsened:
         each = (f"{one.label} {change(one)}" for one in found.worsened)
         lines.append(f"Paid with what was not asked for: {fmt.listing(each)}.")
+    for one, value, asked in zip(plan.variables, found.best.values, found.demands, strict=True):
+        if asked:
+            given = "" if one.given is None else f" in place of {_number(one, one.given)}"
+            lines.append(
+                f"{one.name} is what the study asks for, not what the robot is: this design asks "
+                f"for {_ASKS[asked]}, {_number(one, value)}{given}."
+            )
     lines.append(_starts_text(found))
     outside = [
         one.name for one in plan.variables if one.given is not None and not one.is_within(one.given)

@@ -82,10 +82,47 @@ class Variable:
         """Tell whether a value lies within the bounds, give or take rounding."""
         return -_ROUNDING <= self.share(value) <= 1.0 + _ROUNDING
 
+    def asks_for(self, value: float) -> str:
+        """Return what a value asks for beside the study: ``less``, ``more``, ``other`` or nothing.
+
+        Empty where the variable is of the robot, or its value that of the study.
+        """
+        senses = {tie: demand_sense(tie.keys) for tie in self.ties}
+        asked = {tie: sense for tie, sense in senses.items() if sense is not None}
+        if not asked or value == self.given:
+            return ""
+        change = math.nan if self.given is None else value - self.given
+        changes = {tie.slope * sense * change for tie, sense in asked.items()}
+        if all(x > 0.0 for x in changes):
+            return "more"
+        return "less" if all(x < 0.0 for x in changes) else "other"
+
     @property
     def fields(self) -> tuple[str, ...]:
         """The paths of its fields."""
         return tuple(path_text(tie.keys) for tie in self.ties)
+
+
+_SENSES = {
+    "safety_factor": 1, "inset": -1, "clearance": 1, "floor": 1,
+    "sag": -1, "stiffness": 1, "drum_capacity": -1, "mass": 1, "dynamic_factor": 1,
+    "acceleration": 1, "speed": 1, "thickness": 1, "tension_min": 1,
+}  # fmt: skip
+"""Whether more of a demand asks for more, by the last name of its field."""
+_ASKED = ("workspace", "selection", "load_cases", "pose", "uncertainty", "surroundings")
+_OF_ROBOT = (("selection", "sheave_diameter"), ("selection", "termination_efficiency"))
+_ASKED_OF_ROBOT = (("tension_min",), ("platform", "mass"), ("platform", "wrench"))
+
+
+def demand_sense(keys: tuple[Key, ...]) -> int | None:
+    """Return 1 where more in a field of a study asks for more, -1 where less does, 0 where neither.
+
+    None where a field is what the robot is, and not what is asked of it.
+    """
+    is_asked = keys[0] in _ASKED and keys[:2] not in _OF_ROBOT
+    is_asked |= keys[0] == "robot" and any(keys[1 : 1 + len(k)] == k for k in _ASKED_OF_ROBOT)
+    is_asked |= keys == ("cable", "safety_factor")
+    return _SENSES.get(str(keys[-1]), 0) if is_asked else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,6 +88,8 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
     limits = _limits(document, section.constraints, faults)
     measures = [one for one in (objective, *(limit.measure for limit in limits)) if one]
     kept = tuple(one.path for one in measures)
+    if study.workspace is not None:  # all that the study asks for constrains the search
+        kept += ("answer",)
     base = Base(document_of(fixed.encode(), str(study_path)), kept, with_plugins)
     faults += _faults_of_measures(document, study, measures, base)
     if faults or objective is None:

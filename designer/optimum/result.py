@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections import Counter
 from dataclasses import dataclass
+from typing import Any
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.comparison import Comparison, Line
 from designer.analysis.result_json import Json
+from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite, json_text
 from designer.optimum.plan import Limit, Plan, Values
 from designer.optimum.search import Searched
@@ -19,7 +19,8 @@ from designer.optimum.trial import Trial
 
 _NEAR = 0.02
 """Of each range: two designs that are no further apart are the same place."""
-_SAME = 1e-6
+_SAME = 1e-4
+"""Relative: what changes the objective by less is no better."""
 _WORSE = {
     "workspace.stiffness.largest_displacement_m_per_N": 1,
     "workspace.interference.min_distance_m": -1,
@@ -59,7 +60,9 @@ class Optimum:
     breaches : tuple of Limit
         What the verified design breaks.
     rejected : tuple of Trial
-        Designs that looked better in the search, and were not, in full.
+        Designs that looked better in the search, and do not hold in full.
+    unverified : int
+        How many others looked better than it, when the budget of verifications was used up.
     comparison : Comparison
         Both results side by side.
     text : str
@@ -80,6 +83,7 @@ class Optimum:
     comparison: Comparison
     text: str
     profiles: tuple[Profile, ...] = ()
+    unverified: int = 0
 
     @property
     def holds(self) -> bool:
@@ -116,6 +120,12 @@ class Optimum:
         """What got notably worse by it, of what is not asked for: give, and clearance."""
         lines = (line for line in self.comparison.answers if line.path in _WORSE)
         return [one for one in lines if (one.relative or 0.0) * _WORSE[one.path] > _NOTABLE]
+
+    @property
+    def demands(self) -> tuple[str, ...]:
+        """What each variable asks for beside the study, see `Variable.asks_for`."""
+        pairs = zip(self.plan.variables, self.best.values, strict=True)
+        return tuple(variable.asks_for(value) for variable, value in pairs)
 
     @property
     def off(self) -> float | None:
@@ -189,6 +199,7 @@ class Optimum:
                 "region_stays": plan.region_stays,
                 "not_held": [{"reason": why, "designs": count} for why, count in self.reasons],
                 "rejected": [list(one.values) for one in self.rejected],
+                "unverified": self.unverified,
             },
             "convergence": [
                 {"design": k, "best": finite(value)} for k, value in enumerate(self.best_so_far)
@@ -211,6 +222,7 @@ class Optimum:
             "before": one.given,
             "after": value,
             "at_bound": one.bound_at(value) or None,
+            "asks_for": self.demands[k] or None,
         }
 
     @property
@@ -229,15 +241,13 @@ class Optimum:
 
     def to_csv(self) -> str:
         """Return every design that was tried, one a row."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
         names = [f"{v.name} [{v.unit}]" if v.unit else v.name for v in self.plan.variables]
-        writer.writerow(["start", "turn", *names, self.plan.objective.name, "reason"])
+        rows: list[list[Any]] = [["start", "turn", *names, self.plan.objective.name, "reason"]]
         for one in self.searched.trials:
             value = "" if math.isnan(one.value) else f"{one.value:.10g}"
             values = one.values or [""] * len(names)
-            writer.writerow([one.start, one.round, *values, value, one.reason])
-        return stream.getvalue()
+            rows.append([one.start, one.round, *values, value, one.reason])
+        return csv_text(rows)
 
 
 def is_near(plan: Plan, a: Values, b: Values, share: float) -> bool:

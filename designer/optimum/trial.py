@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 from designer.analysis.result_json import Json
 from designer.grades.grade import Grade
+from designer.model.requirement import State
 from designer.model.verdict import Verdict
-from designer.optimum.measures import Measure, NotHeldError, Quick
+from designer.optimum.measures import Measure, NotHeldError, Quick, shortfall
 from designer.optimum.plan import Limit, Plan, Values
 from designer.study import Study, require_enough_cables
 from designer.sweep.point import why_negative, why_not
@@ -95,8 +96,11 @@ class _Figures:
         self._result: Json | None = None
 
     def of(self, measure: Measure) -> float:
-        quick = measure.quick
-        value = measure.value(self._whole()) if quick is None else quick(self._quick)
+        if measure.quick is None:
+            value = measure.value(self._whole())
+        else:
+            self._quick.require()
+            value = measure.quick(self._quick)
         if value is None or math.isnan(value):
             raise NotHeldError(1.0, f"there is no {measure.title}")
         return value
@@ -117,12 +121,21 @@ class _Figures:
             self._result = self._plan.base.result(study)
         reason = why_negative(self._result)
         if reason:
-            raise NotHeldError(1.0 + _share_not_held(self._result), reason)
+            raise NotHeldError(_violation(self._result), reason)
         return self._result
 
 
-def _share_not_held(result: Json) -> float:
+def _violation(result: Json) -> float:
+    """Return how far a result is from a positive one, see `NotHeldError`."""
     workspace = result.get("workspace")
     if workspace is None:
-        return 1.0
-    return 1.0 - float(workspace["statuses"][Verdict.SOLVED.label]) / float(workspace["samples"])
+        return 2.0
+    not_held = 1.0 - float(workspace["statuses"][Verdict.SOLVED.label]) / workspace["samples"]
+    unmet = [check for check in result["checks"] if check["state"] != State.HOLDS]
+    far = max((_check_shortfall(check) for check in unmet), default=1.0)
+    return 1.0 + not_held if not_held else far
+
+
+def _check_shortfall(check: Json) -> float:
+    figures = (check[name] for name in ("demand", "capacity", "utilisation"))
+    return shortfall(*(math.nan if value is None else value for value in figures))

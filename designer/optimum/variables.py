@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import chain
 
 from pydantic import ValidationError
@@ -179,10 +180,11 @@ def _in_bounds_unit(variable: Variable, tie: Tie, value: float) -> Node:
 
 
 def _check_values(variable: Variable, study: Document) -> None:
-    """Refuse a field that there is not, and bounds that it cannot have by itself."""
-    for tie, value in (
-        (tie, end) for tie in variable.ties for end in (variable.low, variable.high)
-    ):
+    """Refuse a field that there is not, bounds that it cannot have by itself, and whole numbers."""
+    # Within its bounds a variable takes any value, which a whole number cannot.
+    between = variable.low + (variable.high - variable.low) / math.pi
+    each = (variable.low, variable.high, between)
+    for tie, value in ((tie, value) for tie in variable.ties for value in each):
         field = path_text(tie.keys)
         try:
             root = study.root.with_value(tie.keys, _in_bounds_unit(variable, tie, value))

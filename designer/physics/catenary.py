@@ -119,6 +119,32 @@ def lowest_z_m(
     return np.minimum(position_m(at, length, F_x, F_z, EA, w)[1], 0.0)
 
 
+def sag_m(
+    length_m: ArrayLike,
+    force_x_N: ArrayLike,
+    force_z_N: ArrayLike,
+    axial_stiffness_N: ArrayLike,
+    weight_N_per_m: ArrayLike,
+    horizontal_distance_m: ArrayLike,
+    drop_m: ArrayLike,
+) -> FloatArray:
+    """Return how far the cable strays from its chord (...) [m].
+
+    It is farthest where it is parallel to the chord, at the unstrained length s with
+    V(s) / F_x = -D / X. A steep cable that is slack strays beyond the end of its chord instead:
+    then it is how far its lowest point is below its lower end.
+    """
+    cable = _floats(length_m, force_x_N, force_z_N, axial_stiffness_N, weight_N_per_m)
+    X, D = _floats(horizontal_distance_m, drop_m)
+    length, F_x, F_z, _EA, w = cable
+    with np.errstate(invalid="ignore", divide="ignore"):
+        s = length - (F_z + F_x * D / X) / w
+        s = np.where(X > 0.0, np.clip(s, 0.0, length), 0.0)
+        x, z = position_m(s, *cable)
+        across = np.abs(x * D + z * X) / np.hypot(X, D)
+    return np.asarray(np.maximum(across, np.minimum(-D, 0.0) - lowest_z_m(*cable)))
+
+
 def least_tension_N(
     length_m: ArrayLike, force_x_N: ArrayLike, force_z_N: ArrayLike, weight_N_per_m: ArrayLike
 ) -> FloatArray:

@@ -6,8 +6,19 @@ below the horizontal, the tangent point lies at
 
 .. math::  A + R\,\big((1 + \sin\alpha)\,e + \cos\alpha\, z\big)
 
-with e the horizontal unit vector toward the platform, and the cable has covered an arc R (π/2 + α).
-After Pott, Cable-Driven Parallel Robots (2018), section 4.4, with the cable's own slope for α.
+with e the horizontal unit vector toward the attachment point, and the cable has covered an arc
+R (π/2 + α). After Pott, Cable-Driven Parallel Robots (2018), section 4.4, with the cable's own
+slope for α.
+
+The pulley's axis is horizontal and it swivels about the vertical through A, in wind as well: where
+the load on the cable is not vertical, the cable bows out of the pulley's plane. The pulley still
+faces the attachment point, and α is the slope of the cable's direction t where it leaves, projected
+onto the plane of e and z:
+
+.. math::  \tan α = -t_z / (t · e)
+
+A pulley that swivels freely would follow the bow instead, by an angle of about half the side load
+of the cable over its tension.
 """
 
 from __future__ import annotations
@@ -30,7 +41,7 @@ def tangent_point_m(
     outward : array (..., 2)
         Horizontal unit vector toward the platform.
     slope_rad : array (...)
-        Angle of the cable below the horizontal where it leaves [rad].
+        Angle of the cable below the horizontal where it leaves, in the pulley's plane [rad].
     radius_m : float or array (...)
         Pulley radius [m].
     """
@@ -62,3 +73,17 @@ def straight_slope_rad(
     distance = np.hypot(beyond, drop_m)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.arctan2(drop_m, beyond) + np.arcsin(radius / distance))
+
+
+def lower_slope_rad(
+    horizontal_distance_m: FloatArray, drop_m: FloatArray, radius_m: ArrayLike
+) -> FloatArray:
+    """Return α of the other tangent point from the attachment point (...): all else is between.
+
+    Parameters are those of `straight_slope_rad`.
+    """
+    radius = np.asarray(radius_m, dtype=np.float64)
+    beyond = horizontal_distance_m - radius
+    with np.errstate(invalid="ignore"):
+        width = np.arcsin(radius / np.hypot(beyond, drop_m))
+    return np.asarray(np.arctan2(drop_m, beyond) + np.pi - width)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from importlib.metadata import EntryPoint, entry_points
-
-import pluggy
+from importlib import import_module
+from importlib.metadata import EntryPoint, distributions, entry_points
 
 import designer
+from designer.errors import described, one_line
 from designer.plugins import hookspecs
-from designer.plugins.guard import attempt, one_line
+from designer.plugins.examine import Asked, examine
+from designer.plugins.guard import attempt
+from designer.plugins.hooks import hooks_of, listed
 
 OWN_ENTRIES = (
     EntryPoint("builtin", "designer.grades.builtin", hookspecs.ENTRY_POINT_GROUP),
@@ -22,6 +24,7 @@ OWN_ENTRIES = (
 They are taken from here, so that a checkout on Python's path, which declares nothing, has them too.
 """
 OWN_NAMES = frozenset(entry.name for entry in OWN_ENTRIES)
+OWN_SOURCE = f"cdpr-designer {designer.__version__}"
 _OWN_MODULES = tuple(entry.value for entry in OWN_ENTRIES)
 
 
@@ -63,21 +66,32 @@ class Offer:
 
 
 def find_plugins(with_plugins: bool = True) -> Plugins:
-    """Load the entry points, ours first; without plugins, ours alone."""
+    """Load the entry points, ours first; without plugins, ours alone.
+
+    Those of others are loaded, and asked, in processes of their own first.
+    """
     problems: list[str] = []
     found: dict[str, Plugin] = {}
-    installed = entry_points(group=hookspecs.ENTRY_POINT_GROUP) if with_plugins else ()
-    strangers = [entry for entry in installed if entry.value not in _OWN_MODULES]
-    strangers.sort(key=lambda entry: (entry.name, entry.value))
-    for entry in (*OWN_ENTRIES, *strangers):
-        name, source = one_line(entry.name), _distribution(entry)
+    for entry in OWN_ENTRIES:
+        found[entry.name] = Plugin(entry.name, OWN_SOURCE, hooks_of(entry))
+    strangers = []
+    for entry in _strangers(problems) if with_plugins else ():
+        name, source = one_line(entry.name), _distribution(entry, problems)
+        if source is None:
+            continue
         plugin = Plugin(name, source, {})
         if name in found:
             problems.append(f"{plugin.label} has the name of {found[name].source}: left out")
             continue
-        hooks = attempt(partial(_hooks, entry), plugin.label, "cannot be loaded", problems)
-        if hooks is not None:
-            found[name] = Plugin(name, source, hooks)
+        found[name] = plugin
+        strangers.append(Asked(entry, source, plugin.label))
+    for asked, answer in zip(strangers, examine(strangers), strict=True):
+        problems += answer.problems
+        name = one_line(asked.entry.name)
+        plugin = found.pop(name)
+        if answer.items:
+            hooks = {hook: _hook(asked, hook, items) for hook, items in answer.items.items()}
+            found[name] = Plugin(name, plugin.source, hooks)
     return Plugins(tuple(found.values()), tuple(problems), with_plugins)
 
 
@@ -88,40 +102,54 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
     for plugin in plugins.found:
         if hook not in plugin.hooks:
             continue
-        answer = partial(_listed, plugin.hooks[hook])
-        items = attempt(answer, plugin.label, f"fails in {hook}()", problems)
+        answer = partial(listed, plugin.hooks[hook])
+        if plugin.name in OWN_NAMES:  # needs no guard; a machine that is busy may take its time
+            items: tuple[object, ...] | None = answer()
+        else:
+            items = attempt(answer, plugin.label, f"fails in {hook}()", problems)
         if items is not None:
             offers.append(Offer(plugin.name, plugin.source, plugin.label, items))
     return offers, problems
 
 
-def _hooks(entry: EntryPoint) -> dict[str, Callable[[], object]]:
-    if entry.pattern.match(entry.value) is None:
-        raise ValueError(f"its entry point {one_line(entry.value)!r} names no module")
-    # A manager for each, so that pluggy looks at one stranger at a time.
-    manager = pluggy.PluginManager(hookspecs.PROJECT)
-    manager.add_hookspecs(hookspecs)
-    manager.register(entry.load(), entry.name)
-    manager.check_pending()  # a hook that is misspelt
-    hooks = {
-        name: implementation.function
-        for name in hookspecs.HOOKS
-        for implementation in getattr(manager.hook, name).get_hookimpls()
-    }
-    if not hooks:
-        raise TypeError("it has no hook " + " or ".join(f"{name}()" for name in hookspecs.HOOKS))
-    return hooks
+def _hook(asked: Asked, hook: str, items: Sequence[object]) -> Callable[[], object]:
+    """Return what gives a plugin's answer: from plain data, or by the plugin itself."""
+    if hook in hookspecs.PLAIN:
+        return partial(import_module(hookspecs.PLAIN[hook]).from_plain, items)
+    return lambda: hooks_of(asked.entry)[hook]()  # noqa: PLW0108  # loads the plugin when called
 
 
-def _listed(hook: Callable[[], object]) -> tuple[object, ...]:
-    answer = hook()
-    if not isinstance(answer, list | tuple):
-        raise TypeError(f"it returned {type(answer).__name__}, not a list")
-    return tuple(answer)
+def _strangers(problems: list[str]) -> list[EntryPoint]:
+    """Return the entry points of others by name; names a distribution that cannot be read."""
+    try:
+        entries = list(entry_points(group=hookspecs.ENTRY_POINT_GROUP))
+    except Exception:  # one that cannot be read takes all along
+        entries = list(_one_by_one(problems))
+    strangers = [entry for entry in entries if entry.value not in _OWN_MODULES]
+    return sorted(strangers, key=lambda entry: (entry.name, entry.value))
 
 
-def _distribution(entry: EntryPoint) -> str:
-    if entry.value in _OWN_MODULES:
-        return f"cdpr-designer {designer.__version__}"
+def _one_by_one(problems: list[str]) -> Iterator[EntryPoint]:
+    seen = set()
+    for place in distributions():
+        path = getattr(place, "_path", "a distribution")
+        try:
+            if place.name not in seen:  # the first on Python's path is the one that is loaded
+                yield from place.entry_points.select(group=hookspecs.ENTRY_POINT_GROUP)
+            seen.add(place.name)
+        except Exception as error:
+            line = f"{one_line(path)}: its metadata cannot be read: {described(error)}: left out"
+            problems.append(line)
+
+
+def _distribution(entry: EntryPoint, problems: list[str]) -> str | None:
+    """Return distribution and version of a plugin; None, with a line, where they are unreadable."""
     dist = entry.dist
-    return one_line(f"{dist.name} {dist.version}") if dist is not None else entry.value
+    if dist is None:
+        return one_line(entry.value)
+    try:
+        return one_line(f"{dist.name} {dist.version}")
+    except Exception as error:
+        label = f"plugin {one_line(entry.name)} ({one_line(entry.value)})"
+        problems.append(f"{label}: its metadata cannot be read: {described(error)}: left out")
+        return None

@@ -11,20 +11,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
 from typing import TypeVar
 
+from designer.errors import described, one_line
+
 Value = TypeVar("Value")
 
 LONGEST_WAIT_S = 30.0
 """How long a plugin may take to be imported, or to answer a hook [s]."""
-
-
-def one_line(text: object) -> str:
-    """Return a text on one line, without control characters, cut short."""
-    try:
-        words = " ".join(str(text).split())
-    except Exception:  # a stranger's exception may fail at telling what it is
-        words = "an error without a readable message"
-    shown = "".join(letter if letter.isprintable() else "?" for letter in words)
-    return shown if len(shown) <= 300 else shown[:300] + "…"
 
 
 def attempt(
@@ -53,8 +45,7 @@ def attempt(
         late = TimeoutError(f"no answer within {LONGEST_WAIT_S:g} s")
         value, error = answers[0] if answers else (None, late)
     if error is not None:
-        told = ": ".join(filter(None, (type(error).__name__, one_line(error))))
-        problems.append(f"{label} {failure}: {told}: left out")
+        problems.append(f"{label} {failure}: {described(error)}: left out")
     printed = "" if caught.closed else caught.getvalue()
     if printed:
         problems.append(f"{label} wrote to standard output: {one_line(printed)!r}")

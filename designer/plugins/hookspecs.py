@@ -47,3 +47,5 @@ def register_effects() -> Sequence[Effect]:
 
 HOOKS = (register_grades.__name__, register_effects.__name__)
 """Names of all hooks."""
+PLAIN = {register_grades.__name__: "designer.grades.plain"}
+"""Of hooks whose answers come from another process: what makes them plain data, and back."""

@@ -24,7 +24,7 @@ _SHARE = 128
 """Boxes that one thread takes at a time."""
 _ULPS = 64.0 * 2.0**-53
 FIRST_RAISE, _LEAST_RAISE, _MOST_RAISE = 0.25, 2.0**-14, 1.0
-"""Relative, of the least tension in the middle of a box, so that it is kept in all of the box."""
+"""Relative, of least tension and pull in the middle of a box, so that all of the box keeps them."""
 _MOST_FOLLOWED = 0.25
 """Share of its pull by which that of a cable may change in half a box by choice."""
 
@@ -44,7 +44,8 @@ class Told:
 
     ``estimate`` is what the cable is about used to in the worst corners ``worst`` (n_boxes, k);
     ``solved`` tells whether the product's solver has an answer in the ``middle``; ``needs`` is by
-    how much least tensions had to be raised there, relative, NaN where that is not known.
+    how much least tensions, and pulls that keep the sag, had to be raised there, relative, NaN
+    where that is not known.
     """
 
     bound: FloatArray
@@ -67,6 +68,7 @@ class Encloser:
         ends = (cover.places(one)[:, :3] for one in (cover.low, cover.high))
         self._size = np.abs(np.concatenate([robot.exit_points_m, *ends])).max()
         self._least_N = robot.tension_min_N if robot.is_redundant else 0.0
+        self._sag = robot.sag_max if robot.is_redundant else None
         weight = cable.weight_N_per_m
         levers = np.linalg.norm(robot.attachments_m, axis=1)
         self._reach = float(levers.max()) or 1.0
@@ -76,6 +78,7 @@ class Encloser:
             kappa=weight / cable.axial_stiffness_N,
             strength=cable.allowable_tension_N / weight,
             least=self._least_N / weight,
+            sag=self._sag or np.inf,
             inverse_weight=1.0 / weight,
             reach=self._reach,
             fuzz=self._fuzz,
@@ -92,7 +95,7 @@ class Encloser:
     def bound(self, low: FloatArray, high: FloatArray, raised: FloatArray, level: float) -> Told:
         """Bound the largest utilisation in boxes (n, k), where one of `level` would do.
 
-        Least tensions are ``raised`` (n,) in their middles.
+        Least tensions are ``raised`` (n,) in their middles, sags lowered.
         """
         from designer.proof.enclosure.box import bound_range
         from designer.proof.enclosure.tables import BOUND, CUT, ESTIMATE, SPARE, TOLD, Boxes
@@ -189,11 +192,14 @@ class Encloser:
     def _solve(self, coordinates: FloatArray, raised: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Return pulls (n, n_cables) of unit weight, and where there are any."""
         pull, solved = np.ones((len(raised), self._robot.n_cables)), np.zeros(len(raised), np.bool_)
-        if self._least_N == 0.0:
+        if self._least_N == 0.0 and self._sag is None:
             raised = np.zeros(len(raised))
         for share in np.unique(raised):
             at = np.flatnonzero(raised == share)
-            robot = replace(self._robot, tension_min_N=(1.0 + share) * self._least_N)
+            sag_max = None if self._sag is None else self._sag / (1.0 + share)
+            robot = replace(
+                self._robot, tension_min_N=(1.0 + share) * self._least_N, sag_max=sag_max
+            )
             poses = Poses.at(self.cover.places(coordinates[at]))
             statics = solve_sagging(robot, poses, self._cable, seeks_better=False)
             found = _pulls_of(statics, self._cable)

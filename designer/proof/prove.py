@@ -252,7 +252,8 @@ class _Search:
     def result(self, seconds: float) -> Proof:
         open_bound = max(self._stuck, self._bound.max(initial=0.0))
         bound = max(self._proved_bound, open_bound, self._found)
-        status: Status = "proved" if bound <= self._enough else "partial"
+        is_bound = np.isfinite(bound) and bound <= self._enough
+        status: Status = "proved" if is_bound else "partial"
         return Proof(
             "refuted" if self.is_refuted else status,
             bound=bound,

@@ -108,7 +108,11 @@ def _answers(found: Comparison, names: tuple[str, str]) -> tuple[Block | None, .
         text += f", after {fmt.plural(len(found.inputs), 'field')} of the study did"
     caption = "The answers. What is the same in both is grey."
     table = _table(caption, found.answers, names, "Answer")
-    return (Statement("The two differ", f"{text}."), table, _chart(found))
+    unmet = None
+    if found.unmet:
+        caption = "What one of the two does not meet, of all that its study asks for."
+        unmet = _table(caption, found.unmet, names, "Requirement")
+    return (Statement("The two differ", f"{text}."), table, unmet, _chart(found))
 
 
 def _chart(found: Comparison) -> Picture | None:

@@ -8,7 +8,8 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
-from designer.documents.picture import picture_type
+from designer.documents.opened import read_input
+from designer.documents.picture import picture_type, why_not_shown
 from designer.grades.registry import Catalogue
 from designer.report.blocks import Control, Fact
 from designer.study import Study
@@ -38,14 +39,13 @@ def _digests(study: Study, catalogue: Catalogue | None) -> Iterator[tuple[str, s
             yield f"grades {source.name}", source.sha256
     if study.measurements is not None:
         with suppress(OSError):  # a design needs no data, so they may be gone
-            yield "measured data", sha256(study.measurements.file.read_bytes()).hexdigest()
+            yield "measured data", sha256(read_input(study.measurements.file)).hexdigest()
 
 
 def _data_uri(path: Path) -> str:
     """Return a picture; empty where it is gone or is none, although the study was read."""
     with suppress(OSError):
-        content = path.read_bytes()
-        kind = picture_type(content[:512])
-        if kind is not None:
-            return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+        content = read_input(path)
+        if why_not_shown(content) is None:
+            return f"data:{picture_type(content[:512])};base64,{base64.b64encode(content).decode()}"
     return ""

@@ -67,7 +67,9 @@ def count(value: int) -> str:
 
 
 def metres(value: float) -> str:
-    """Return a length such as ``324.22 m``."""
+    """Return a length such as ``324.22 m``; one below 5 mm by its first digits."""
+    if _TINY < abs(value) < 0.005:
+        return power_of_ten(value, "m") if abs(value) < 1e-4 else _with_unit(trimmed(value, 2), "m")
     return _with_unit(fixed(value, 2), "m")
 
 
@@ -149,7 +151,7 @@ def plus_minus(fraction: float) -> str:
 def utilisation(fraction: float) -> str:
     """Return tension over what is allowed; never ``100.0 %`` for what exceeds it."""
     if math.isinf(fraction):
-        return "cannot hold"
+        return "not held"
     if fraction > 1.0 and round(100.0 * fraction, 1) == 100.0:
         return f"over{_BEFORE_UNIT}100{_BEFORE_UNIT}%"
     return _with_unit(fixed(100.0 * fraction, 1), "%")

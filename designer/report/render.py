@@ -14,6 +14,7 @@ from designer.report.blocks import Report
 from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
+from designer.report.paper import why_no_pdf
 from designer.report.templates import check_templates, environment, told_in_one_line
 
 if TYPE_CHECKING:
@@ -110,9 +111,10 @@ def write_pages(
     templates: Path | None = None,
     reporter: Reporter = SILENT,
 ) -> None:
-    """Write a report as HTML and as PDF, named after it, into an existing folder.
+    """Write a report as HTML and, where that can be made, as PDF, into an existing folder.
 
-    Both are made before either is written, and each takes its name only when it is whole.
+    They are named after it. Both are made before either is written, and each takes its name only
+    when it is whole.
     ``templates`` is a folder of the user's.
 
     Raises
@@ -127,7 +129,7 @@ def write_pages(
             ]
         advance(1)
         try:
-            pdf = render_pdf(pages[1])
+            pdf = b"" if why_no_pdf() else render_pdf(pages[1])
         except ValueError as error:
             if templates is None:
                 raise
@@ -135,4 +137,5 @@ def write_pages(
         advance(1)
     files = {f"{report.name}.html": pages[0].encode(), f"{report.name}.pdf": pdf}
     for name, content in files.items():
-        write_whole(folder / name, content)
+        if content:
+            write_whole(folder / name, content)

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from designer.analysis.result_json import evaluates_answer
 from designer.arrays import BoolArray, FloatArray
+from designer.documents.csv_text import csv_text
 from designer.io.output import write_whole
 from designer.report import format as fmt
 from designer.report.blocks import (
@@ -31,6 +33,10 @@ from designer.report.render import write_pages
 if TYPE_CHECKING:
     import xarray as xr
 
+NOT_EVALUATED = (
+    "Whether they hold as asked was not evaluated, since nothing that is kept depends on it: keep "
+    "answer.verdict for that."
+)
 _MOST_POINTS = 40
 _MOST_PAIRS = 3
 _MOST_FIELDS = 5
@@ -108,14 +114,24 @@ def sweep_report(found: xr.Dataset, name: str, created: datetime) -> Report[None
 def write_sweep(found: xr.Dataset, name: str, folder: Path, templates: Path | None = None) -> None:
     """Write ``sweep.html``, ``sweep.pdf`` and ``sweep.csv`` into an existing folder."""
     write_pages(sweep_report(found, name, datetime.now().astimezone()), folder, templates)
-    write_whole(folder / "sweep.csv", found.to_dataframe().to_csv().encode())
+    write_whole(folder / "sweep.csv", _table(found).encode())
+
+
+def _table(found: xr.Dataset) -> str:
+    """Return all points as CSV."""
+    table = found.to_dataframe().reset_index()
+    rows = table.itertuples(index=False)
+    return csv_text([table.columns, *([None if x != x else x for x in row] for row in rows)])  # noqa: PLR0124
 
 
 def _overview(found: xr.Dataset, points: SweptPoints) -> tuple[Block | None, ...]:
     n, holds = len(points.holds), int(points.holds.sum())
     fields = fmt.listing(axis.title for axis in points.varied)
     text = f"{fmt.count(n)} {'study' if n == 1 else 'studies'} over {fields}."
-    if holds == n:
+    if not evaluates_answer(str(name) for name in found.filter_by_attrs(role="kept")):
+        text += f" {NOT_EVALUATED}"
+        head = Statement(f"{fmt.share(holds, n)} of the studies are solved", text)
+    elif holds == n:
         head = Statement("Every study has an answer", text, "good")
     else:
         head = Statement(f"{fmt.share(holds, n)} of the studies have an answer", text, "doubt")

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from designer.errors import Fault, InputError
+from designer.errors import Fault, InputError, one_line
 from designer.resources import data_folder
 
 if TYPE_CHECKING:
@@ -53,6 +53,9 @@ def check_templates(folder: Path) -> None:
     if not names:
         expected = "page.html.j2, report.css or another template of cdpr-designer"
         raise InputError([Fault(str(folder), None, "", "holds no template", expected)])
+    for path in folder.rglob("*"):  # any of them may be included by another
+        if not (path.is_file() or path.is_dir()):
+            raise InputError([Fault(str(path), None, "", "is no file", "a template or a folder")])
     with told_in_one_line(folder):
         own = environment(folder)
         for name in names:
@@ -78,7 +81,7 @@ def told_in_one_line(folder: Path | None) -> Iterator[None]:
             raise
         if isinstance(error, TemplateSyntaxError):
             place = error.filename or place[0], error.lineno
-        problem = str(error) or type(error).__name__
+        problem = str(error) or one_line(type(error).__name__)
         raise InputError([Fault(*place, "", problem, "a template of Jinja")]) from error
 
 

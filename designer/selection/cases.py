@@ -10,27 +10,29 @@ samples it is searched in the direction in which a case asks for most, and in th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray
+from designer.arrays import IntArray
 from designer.model.cable import Cable
-from designer.model.load_case import LoadCase, Loaded, free_axes
+from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
 from designer.progress import Advance
-from designer.selection.verify import Sampled, Verification, refined, verify_sizes
+from designer.selection.samples import over_kept_lengths, over_samples, sampled_at_tension
+from designer.selection.stiffening import StiffnessSearch
+from designer.selection.verify import Sampled, Verification, refined
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
 from designer.study import HangsBelow, Workspace
-from designer.workspace.demand import is_left_out, rope_demand, settled, settled_demand
+from designer.workspace.demand import rope_demand, settled, settled_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
-FEW_SAMPLES, MOST_SAMPLES = 64, 256
-"""Poses in which lengths are kept, for each candidate and for the chosen one."""
+_MOST_SAMPLES = 256
+"""Poses in which lengths are kept, for the chosen one."""
 FEW_AT_FIRST = 300
 """Samples that candidates are tried at first where all of them take long."""
 _NEAR = 0.95
@@ -70,13 +72,8 @@ class CaseFound:
         """Return what is met over all samples."""
         if self.is_whole or not self.verification.holds:
             return self
-        one = self.loaded
-        if _leans(one, self.workspace):
-            sampled = _one_by_one(one, self.workspace)
-        else:
-            (sampled,) = verify_sizes(one.robot, self.workspace, [one.cable])
-        met = sampled.verification(one.cable)
-        return replace(self, sampled=sampled, verification=met, is_whole=True)
+        ((one, sampled),) = sampled_at_tension([self.loaded], self.workspace)
+        return CaseFound(self.workspace, one, sampled, sampled.verification(one.cable))
 
     @property
     def case(self) -> LoadCase:
@@ -91,14 +88,14 @@ class CaseFound:
     @property
     def pose(self) -> Poses:
         """Where (1,)."""
-        return Poses.at(self.verification.worst_position_m[None])
+        return Poses.at(self.verification.worst_place[None])
 
     def tension_N(self, other: Loaded, hangs_below: HangsBelow = "include") -> float:
         """Return the largest tension at that pose with another robot or cable [N].
 
         Minus infinity where the pose is left out for a cable that hangs below the platform.
         """
-        place = self.verification.worst_position_m[None]
+        place = self.verification.worst_place[None]
         if other.keeps_lengths:
             return float(settled_demand(other, hangs_below)(place)[0])
         return float(rope_demand(other.robot, other.cable, hangs_below)(place)[0, 0])
@@ -197,29 +194,53 @@ class Cases:
     def _try(
         self, case: LoadCase, loaded: Sequence[Loaded], progress: Advance
     ) -> Iterator[CaseFound]:
-        region = case.region or self.workspace.region
-        workspace = whole = replace(self.workspace, region=region)
+        workspace = whole = self.workspace.of_case(case)
         keeps = any(one.keeps_lengths for one in loaded)
         if self.few is not None and not keeps:
             workspace = replace(workspace, samples=min(self.few, workspace.samples))
-        cables = [one.cable for one in loaded]
         shares = bool(loaded) and not case.changes_robot and not keeps
-        if not loaded:
-            met = []
-        elif keeps:
-            met = [_settled(one, workspace, FEW_SAMPLES) for one in loaded]
-        elif _leans(loaded[0], workspace):
-            met = [_one_by_one(one, workspace) for one in loaded]
-        elif case.changes_robot:
-            met = [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
-        else:
-            met = verify_sizes(loaded[0].robot, workspace, cables, progress=progress)
+        each = sampled_at_tension(loaded, workspace, progress)
         if not shares:
             progress(self.sample_count)
-        for one, sampled in zip(loaded, met, strict=True):
+        is_whole = workspace.samples == whole.samples
+        for one, sampled in each:
             known = sampled.verification(one.cable)
-            is_whole = workspace.samples == whole.samples
             yield CaseFound(whole, one, sampled, known, is_whole=is_whole)
+
+
+def resettled(found: CaseFound) -> CaseFound:
+    """Return a case, after another worst pose, with the stiffness at the tension there."""
+
+    def search(one: CaseFound) -> CaseFound:
+        return one if one.verification.is_refined else _search_once(one, is_light=False)
+
+    return _at_its_tension(found, search)
+
+
+def as_stiff_as(cable: Cable, found: CaseFound) -> Cable:
+    """Return a cable with the stiffness that it has in a load case."""
+    if cable.stiffening is None:
+        return cable
+    return replace(cable, axial_stiffness_N=found.loaded.cable.axial_stiffness_N)
+
+
+def _at_its_tension(found: CaseFound, search: Callable[[CaseFound], CaseFound]) -> CaseFound:
+    """Search until the cable has the stiffness that it has at the largest tension found.
+
+    With another stiffness all samples are solved again, and the search starts from the worst pose
+    found before as well.
+    """
+    stiffness, found = StiffnessSearch(), search(found)
+    while True:
+        met = found.verification
+        other = stiffness.next_of(found.loaded, met.max_tension_N)
+        if other is None:
+            return found
+        (again,) = over_samples([other], found.workspace)
+        places = np.concatenate([met.worst_place[None], again.worst_places])
+        known = again.verification(other.cable)
+        again = replace(again, worst_places=places)
+        found = search(CaseFound(found.workspace, other, again, known))
 
 
 def governing(found: Sequence[CaseFound]) -> CaseFound:
@@ -258,9 +279,9 @@ def _near(found: Sequence[CaseFound]) -> list[CaseFound]:
 def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
     """Search between the samples in every case: its worst direction in full, those near it lightly.
 
-    Of inertia forces, the direction is then turned and the pose searched again by turns until
-    neither gains. What is found is the largest that these searches met, from the worst of the first
-    directions on; that there is none larger is not proved.
+    Wind from all directions and inertia forces are then turned and the pose searched again by
+    turns until neither gains. What is found is the largest that these searches met, from the worst
+    of the first directions on; that there is none larger is not proved.
     """
     found = tuple(one.whole() for one in found)
     done: dict[int, CaseFound] = {}
@@ -275,6 +296,10 @@ def _with(found: Sequence[CaseFound], done: dict[int, CaseFound]) -> tuple[CaseF
 
 
 def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
+    return _at_its_tension(found, partial(_search_once, is_light=is_light))
+
+
+def _search_once(found: CaseFound, *, is_light: bool) -> CaseFound:
     one, workspace = found.loaded, found.workspace
     if not np.isfinite(found.utilisation) or found.is_full:
         return found
@@ -284,69 +309,27 @@ def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
         return replace(found, verification=met, is_full=not is_light)
     if is_light:
         return found
-    more = _settled(one, workspace, MOST_SAMPLES)
+    more = over_kept_lengths(one, workspace, _MOST_SAMPLES)
     demand_with = partial(settled_demand, one, workspace.hangs_below)
-    starts = np.concatenate([found.sampled.worst_m, more.worst_m])
+    starts = np.concatenate([found.sampled.worst_places, more.worst_places])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
     used = worst.demand / one.cable.allowable_tension_N
     # Lengths are those before it settles.
     lengths = refined(one.robot, workspace, one.cable, more, LIGHT)
-    met = replace(
-        lengths, worst_position_m=worst.place, max_tension_N=worst.demand, utilisation=used
-    )
+    met = replace(lengths, worst_place=worst.place, max_tension_N=worst.demand, utilisation=used)
     return replace(found, verification=met, is_full=True)
 
 
-def _settled(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
-    """Return what a cable meets on kept lengths, over some samples."""
-    places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
-    loss = settled(one, Poses.at(places))
-    counts = ~is_left_out(loss.before, workspace.hangs_below)
-    tension = np.where(counts, loss.largest_tension_N, -np.inf)
-    longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
-    return _sampled(one.cable, places, tension, longest)
-
-
-def _leans(one: Loaded, workspace: Workspace) -> bool:
-    """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
-    return workspace.hangs_below == "exclude" and one.robot.cable_load_direction is not None
-
-
-def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
-    """Return what a cable meets over the samples, which poses count told by the true vertical."""
-    demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
-    each = (workspace.space.landmarks(), *workspace.places())
-    parts = [some for some in each if len(some)]  # a list of points has no landmarks
-    tension, lengths, _ = np.split(
-        np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
-    )
-    longest = np.maximum(lengths, 0.0).max(axis=0)
-    return _sampled(one.cable, np.concatenate(parts), tension[:, 0], longest)
-
-
-def _sampled(
-    cable: Cable, places: FloatArray, tension_N: FloatArray, longest_m: FloatArray
-) -> Sampled:
-    """Put together what a cable meets; the tension is minus infinite where a pose is left out."""
-    used = tension_N / cable.allowable_tension_N
-    counts = ~np.isneginf(used)
-    order = np.argsort(-used, kind="stable")[: counts.sum()]
-    return Sampled(
-        worst_m=places[order[:8]],
-        utilisation=float(used.max()) if counts.any() else np.inf,
-        longest_m=longest_m,
-        samples=len(places),
-        counted=int(np.isfinite(used).sum()),
-        overloaded=int((used > 1.0).sum()),
-        not_held=int(np.isposinf(used).sum()),
-        is_complete=True,
-    )
-
-
 def _turned(found: CaseFound) -> CaseFound:
-    """Turn the inertia force to where it is worst, with the pose that goes with it."""
-    if found.loaded.inertia is None or not found.verification.is_refined:
+    """Turn wind and inertia force to where they are worst, with the pose that goes with them."""
+    if not found.loaded.is_turned or not found.verification.is_refined:
         return found
+    return _at_its_tension(found, _turned_once)
+
+
+def _turned_once(found: CaseFound) -> CaseFound:
+    if not found.verification.is_refined:  # with another stiffness than before
+        found = _search_once(found, is_light=True)
     for _ in range(_MOST_ROUNDS):
         before = found.utilisation
         turned = _steepest(found)
@@ -355,7 +338,7 @@ def _turned(found: CaseFound) -> CaseFound:
             break
         met = refined(
             turned.loaded.robot, turned.workspace, turned.loaded.cable,
-            replace(turned.sampled, worst_m=turned.verification.worst_position_m[None]), LIGHT,
+            replace(turned.sampled, worst_places=turned.verification.worst_place[None]), LIGHT,
         )  # fmt: skip
         if met.utilisation > turned.utilisation:
             turned = replace(turned, verification=met)
@@ -366,18 +349,30 @@ def _turned(found: CaseFound) -> CaseFound:
 
 
 def _steepest(found: CaseFound) -> CaseFound:
-    """Turn the inertia force at one pose, by ever smaller steps, for as long as it gets worse."""
-    step, axes = 0.5, free_axes(found.loaded.robot)
+    """Turn wind and inertia force at one pose while it gets worse."""
+
+    def utilisation(loaded: Loaded) -> float:
+        tension_N = found.tension_N(loaded, found.workspace.hangs_below)
+        return tension_N / loaded.cable.allowable_tension_N
+
+    loaded, used = steepest(found.loaded, found.utilisation, utilisation)
+    tension_N = used * loaded.cable.allowable_tension_N
+    met = replace(found.verification, max_tension_N=tension_N, utilisation=used)
+    return replace(found, loaded=loaded, verification=met)
+
+
+def steepest(
+    loaded: Loaded, severity: float, severity_of: Callable[[Loaded], float]
+) -> tuple[Loaded, float]:
+    """Turn wind and inertia force by ever smaller steps while something gets more severe.
+
+    Returns the direction that ends in, and the severity there; ``severity`` is where it starts.
+    """
+    step = 0.5
     while step > 1e-6:
-        trials = [found]
-        for side in (*axes, *-axes):
-            assert found.loaded.inertia is not None
-            loaded = found.loaded.pushed(found.loaded.inertia + step * side)
-            tension = found.tension_N(loaded, found.workspace.hangs_below)
-            used = tension / loaded.cable.allowable_tension_N
-            met = replace(found.verification, max_tension_N=tension, utilisation=used)
-            trials.append(replace(found, loaded=loaded, verification=met))
-        best = governing(trials)
-        step *= 0.5 if best is found else 1.2
-        found = best
-    return found
+        trials = [(severity_of(turned), turned) for turned in loaded.turned(step)]
+        highest, turned = max(trials, key=lambda trial: trial[0])
+        gains = highest > severity
+        loaded, severity = (turned, highest) if gains else (loaded, severity)
+        step *= 1.2 if gains else 0.5
+    return loaded, severity

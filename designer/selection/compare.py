@@ -11,6 +11,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.load_case import STATIC
+from designer.model.requirement import Requirement
 from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.result import Standing
@@ -23,7 +24,8 @@ class Entry:
     """A candidate on its way, see `designer.selection.result.Candidate`: what is known grows.
 
     ``verification`` is what it meets over the samples, until it has been searched between them;
-    ``cases`` the same in each direction of each load case.
+    ``cases`` the same in each direction of each load case; ``rejected_by`` a requirement beside
+    strength that it is known to fail.
     """
 
     grade: Grade
@@ -33,6 +35,7 @@ class Entry:
     cases: tuple[CaseFound, ...]
     verification: Verification
     figures: Figures
+    rejected_by: Requirement | None = None
 
     @property
     def sampled(self) -> Sampled:
@@ -69,7 +72,7 @@ def settle(
     """
     pending = True
     while pending:
-        holding = [e for e in entries if _may_win(e, objectives)]
+        holding = [e for e in entries if may_win(e, objectives)]
         front = [holding[k] for k in np.flatnonzero(is_undominated(burdens(holding, objectives)))]
         pending = _search_all(front, search)
     for grade in dict.fromkeys(entry.grade for entry in entries):
@@ -85,7 +88,7 @@ def best_of(
 ) -> Entry | None:
     """Return the best entry that holds between the samples as well."""
     while True:
-        holding = [e for e in entries if _may_win(e, objectives)]
+        holding = [e for e in entries if may_win(e, objectives)]
         best = min(holding, key=lambda e: e.key(objectives), default=None)
         if best is None or not _search_all([best], search):
             return best
@@ -120,7 +123,7 @@ def standing_of(
 ) -> tuple[Standing, str]:
     """Return what became of an entry, and why."""
     found, best = entry.verification, front[0] if front else None
-    worst = f"({', '.join(f'{x:.4g}' for x in found.worst_position_m[:3])}) m{entry.in_case}"
+    worst = f"({', '.join(f'{x:.4g}' for x in found.worst_place[:3])}) m{entry.in_case}"
     if entry.sampled.not_held or np.isinf(found.utilisation):
         why = "in every sample a cable hangs below the platform"
         return "not_held", f"no equilibrium was found at {worst}" if entry.sampled.not_held else why
@@ -128,15 +131,13 @@ def standing_of(
         least = "" if entry.sampled.is_complete else "at least "
         percent = f"{least}{100.0 * found.utilisation:.4g} %"
         return "too_thin", f"meets {percent} of its allowable tension at {worst}"
-    if not _may_win(entry, objectives):
+    failed = None if entry.rejected_by is None else failure_words(entry.rejected_by)
+    if failed is not None and entry is not best:
+        return "rejected", failed
+    if not may_win(entry, objectives):
         return "not_comparable", f"its {MEANINGS[objectives[0]].word} is not known"
     if best is not None and entry in front:
-        if entry is best:
-            return "chosen", f"best in {MEANINGS[objectives[0]].title}"
-        ours, theirs = entry.figures, best.figures
-        better = [MEANINGS[o].title for o in objectives if ours.burden(o) < theirs.burden(o)]
-        than = f"better than the chosen one in {' and '.join(better)}"
-        return "undominated", than if better else "as good as the chosen one"
+        return _standing_in_front(entry, best, objectives, failed)
     number = dominator_of(burdens([entry], objectives)[0], burdens(front, objectives))
     assert number is not None  # else it would be in the set
     at = "the samples" if all(one.is_whole for one in entry.cases) else "the samples tried first"
@@ -144,7 +145,26 @@ def standing_of(
     return "dominated", f"dominated by {front[number].name}{unsearched}"
 
 
-def _may_win(entry: Entry, objectives: Sequence[Objective]) -> bool:
+def _standing_in_front(
+    entry: Entry, best: Entry, objectives: Sequence[Objective], failed: str | None
+) -> tuple[Standing, str]:
+    if entry is best:
+        words = f"best in {MEANINGS[objectives[0]].title}"
+        return "chosen", words if failed is None else f"{words} of what is strong enough; {failed}"
+    ours, theirs = entry.figures, best.figures
+    better = [MEANINGS[o].title for o in objectives if ours.burden(o) < theirs.burden(o)]
+    than = f"better than the chosen one in {' and '.join(better)}"
+    return "undominated", than if better else "as good as the chosen one"
+
+
+def failure_words(requirement: Requirement) -> str:
+    """Return which requirement a candidate fails and by how much, for the reader of a report."""
+    case = "" if requirement.load_case in ("all", STATIC.name) else f" in '{requirement.load_case}'"
+    return f"{requirement.title.lower()}{case} {requirement.words}"
+
+
+def may_win(entry: Entry, objectives: Sequence[Objective]) -> bool:
+    """Tell whether an entry holds and has the figure by which candidates are compared."""
     return entry.verification.holds and np.isfinite(entry.figures.burden(objectives[0]))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -14,6 +14,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Material
 from designer.model.robot import Poses
+from designer.model.verdict import Verdict
 from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
 from designer.study import Workspace
@@ -25,6 +26,25 @@ _MOST_TURNS = 20
 _STILL = 1e-7
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ContinuousOptimum:
+    """The thinnest member of a grade's continuous family that holds everywhere.
+
+    Parameters
+    ----------
+    family : Material
+        The family.
+    diameter_m : float
+        That member [m]; NaN where no member holds, or none that the sheave allows.
+    verdict : Verdict or None
+        Of the pose that no member holds; None where there is none.
+    """
+
+    family: Material
+    diameter_m: float
+    verdict: Verdict | None = None
+
+
 def continuous_optimum(
     workspace: Workspace,
     grade: Grade,
@@ -32,16 +52,16 @@ def continuous_optimum(
     built: AsBuilt,
     *,
     doubtful: Sequence[FloatArray],
-) -> tuple[Material, float]:
-    """Return the family of a grade, and the thinnest member that holds everywhere [m].
+) -> ContinuousOptimum:
+    """Return the thinnest member of a grade's family that holds everywhere.
 
     With a sheave the strength of the family depends on the diameter, so the thinnest member is a
     fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
     the worst pose alone. With an effect that adds to a cable all figures depend on the diameter,
-    and its member is sought as in `designer.workspace.section`. NaN where no member holds, or none
-    that the sheave allows. ``doubtful`` are places (n, n_coordinates) of the workspace at which
-    members may fail: they are tried first.
+    and its member is sought as in `designer.workspace.section`. ``doubtful`` are places
+    (n, n_coordinates) of the workspace at which members may fail: they are tried first.
     """
+    built = built.of_products
     unbent = replace(allowance, sheave_diameter_m=None)
 
     def family_at(diameter_m: float) -> Material:
@@ -59,12 +79,13 @@ def continuous_optimum(
         return Worst(worst.place, math.inf) if worst.demand == -math.inf else worst
 
     if built.is_family(unbent.family(grade, grade.thickest.diameter_m)):
-        family, diameter = _member(grade, allowance, built, family_at, worst_with)
+        best = _member(grade, allowance, built, family_at, worst_with)
     else:
         diameter = thinnest(built.robot, family_at, worst_with)
-        family = family_at(diameter if math.isfinite(diameter) else grade.thickest.diameter_m)
-    is_allowed = not math.isnan(allowance.efficiency(grade, diameter))
-    return family, diameter if is_allowed else math.nan
+        shown = diameter if math.isfinite(diameter) else grade.thickest.diameter_m
+        best = ContinuousOptimum(family_at(shown), diameter)
+    is_allowed = not math.isnan(allowance.efficiency(grade, best.diameter_m))
+    return best if is_allowed else replace(best, diameter_m=math.nan)
 
 
 def _member(
@@ -73,15 +94,15 @@ def _member(
     built: AsBuilt,
     family_at: FamilyAt,
     worst_with: Callable[[Material], Worst],
-) -> tuple[Material, float]:
+) -> ContinuousOptimum:
     diameter = grade.sizes[0].diameter_m
     for _ in range(_MOST_TURNS):
         family = family_at(diameter)
         worst = worst_with(family)
         if not math.isfinite(worst.demand):
-            return family, math.nan
+            return ContinuousOptimum(family, math.nan, _verdict_at(built, family, worst.place))
         if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):
-            return family, worst.demand
+            return ContinuousOptimum(family, worst.demand)
         # The diameter that this pose needs, as strong as a rope of that diameter.
         diameter = worst.demand
         for _ in range(_MOST_TURNS):
@@ -92,7 +113,14 @@ def _member(
                 break
             if _is_still(diameter, last):
                 break
-    return family, diameter
+    return ContinuousOptimum(family, diameter)
+
+
+def _verdict_at(built: AsBuilt, family: Material, place: FloatArray) -> Verdict | None:
+    """Return what became of a pose that no member holds; None where every pose is left out."""
+    if not np.isfinite(place).all():
+        return None
+    return Verdict(int(size_poses(built.robot, Poses.at(place), family).statics.verdict))
 
 
 def _is_still(diameter_m: float, before_m: float) -> bool:

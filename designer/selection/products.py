@@ -45,7 +45,7 @@ def products_of(selection: Selection, grades: Sequence[Grade], built: AsBuilt) -
     allowance = Allowance.of(selection)
     each = ((g, s, allowance.efficiency(g, s.diameter_m)) for g in grades for s in g.sizes)
     return [
-        Product(grade, size, built.cable(allowance.cable(grade, size)), share)
+        Product(grade, size, built.of_products.cable(allowance.cable(grade, size)), share)
         for grade, size, share in each
         if not math.isnan(share)
     ]

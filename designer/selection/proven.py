@@ -73,7 +73,7 @@ def prove_governing(
             place, used = worst.place, worst.demand / one.cable.allowable_tension_N
     met = replace(
         most.verification,
-        worst_position_m=place,
+        worst_place=place,
         max_tension_N=used * one.cable.allowable_tension_N,
         utilisation=used,
     )

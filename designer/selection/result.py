@@ -8,6 +8,8 @@ from typing import Literal
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Material
 from designer.model.load_case import STATIC
+from designer.model.requirement import Requirement
+from designer.model.verdict import Verdict
 from designer.selection.cases import CaseFound, governing
 from designer.selection.objectives import Figures
 from designer.selection.proven import CaseProof
@@ -15,8 +17,10 @@ from designer.selection.usable import Usable
 from designer.selection.verify import Verification
 from designer.study import Objective
 
-Outcome = Literal["fits", "too_thin", "no_finite_cable"]
-Standing = Literal["chosen", "undominated", "dominated", "not_comparable", "too_thin", "not_held"]
+Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
+Standing = Literal[
+    "chosen", "undominated", "dominated", "not_comparable", "rejected", "too_thin", "not_held"
+]
 """What became of a candidate; those of the first two span the Pareto set."""
 
 
@@ -44,6 +48,8 @@ class Candidate:
         What became of it.
     reason : str
         Why, for the reader of a report.
+    requirements : tuple of Requirement
+        All that the study asks of it; empty where that was not evaluated in full.
     """
 
     grade: Grade
@@ -56,6 +62,7 @@ class Candidate:
     figures: Figures
     standing: Standing
     reason: str
+    requirements: tuple[Requirement, ...] = ()
 
     @property
     def verified(self) -> bool:
@@ -102,9 +109,13 @@ class GradeOutcome:
     candidates : tuple of Candidate
         Its sizes, ascending.
     outcome : str
-        ``fits``, ``too_thin`` (no size holds) or ``no_finite_cable``.
+        ``fits``; ``rejected`` (sizes are strong enough, but fail another requirement); ``too_thin``
+        (no size holds); ``no_finite_cable`` (proved); ``open`` (a pose was neither solved nor
+        proved to be impossible).
     best : Candidate or None
-        The best size by the objective that decides, of those that are verified.
+        The best size by the objective that decides, of those that meet all requirements.
+    verdict : Verdict or None
+        Of the pose that no member of the family holds; None where there is none.
     """
 
     grade: Grade
@@ -113,6 +124,7 @@ class GradeOutcome:
     candidates: tuple[Candidate, ...]
     outcome: Outcome
     best: Candidate | None
+    verdict: Verdict | None = None
 
     @property
     def fails_in(self) -> str:
@@ -125,19 +137,27 @@ class GradeOutcome:
     @property
     def sentence(self) -> str:
         """Why the grade is in or out, for the reader of a report."""
-        if self.best is None and self.outcome == "no_finite_cable":
-            return "no section of this rope can hold the workspace: its own weight is too much"
         need = f"{1e3 * self.continuous_diameter_m:.1f} mm needed"
-        if self.best is None and self.fails_in:
+        if self.best is not None:
+            return f"{self.best.size.id} holds everywhere, {need}"
+        if self.outcome == "rejected":
+            last = [c for c in self.candidates if c.standing == "rejected"][-1]
+            return f"has no size that meets every requirement: {last.size.id}, {last.reason}"
+        if self.outcome == "no_finite_cable" and self.verdict is Verdict.NO_FINITE_CABLE:
+            return "no section of this rope can hold the workspace: its own weight is too much"
+        if self.outcome in ("no_finite_cable", "open"):
+            return "no pose counts" if self.verdict is None else f"in a pose {self.verdict.clause}"
+        return self._too_thin(need)
+
+    def _too_thin(self, need: str) -> str:
+        if self.fails_in:
             return f"has no size that holds in the load case '{self.fails_in}'"
-        if self.best is None:
-            sold = [c.size for c in self.candidates] or [self.grade.thickest]
-            if self.continuous_diameter_m < sold[0].diameter_m:
-                return f"is too heavy even in its smallest size sold, {sold[0].id}, {need}"
-            if self.continuous_diameter_m <= sold[-1].diameter_m:
-                return f"has no size that holds, {need} by the law fitted to its sizes"
-            return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
-        return f"{self.best.size.id} holds everywhere, {need}"
+        sold = [c.size for c in self.candidates] or [self.grade.thickest]
+        if self.continuous_diameter_m < sold[0].diameter_m:
+            return f"is too heavy even in its smallest size sold, {sold[0].id}, {need}"
+        if self.continuous_diameter_m <= sold[-1].diameter_m:
+            return f"has no size that holds, {need} by the law fitted to its sizes"
+        return f"is insufficient in its largest size sold, {self.grade.thickest.id}, {need}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

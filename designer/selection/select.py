@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,14 +19,25 @@ from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.progress import Reporter, Silent
 from designer.proof.prove import Budget
-from designer.selection.cases import Cases, searched, searched_all, together, worst_of_each
-from designer.selection.compare import Entry, best_of, settle, standing_of
-from designer.selection.continuous import continuous_optimum
+from designer.selection.cases import (
+    Cases,
+    as_stiff_as,
+    governing,
+    resettled,
+    searched,
+    searched_all,
+    together,
+    worst_of_each,
+)
+from designer.selection.compare import Entry, best_of, may_win, settle, standing_of
+from designer.selection.continuous import ContinuousOptimum, continuous_optimum
+from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.proven import CaseProof, prove_governing
 from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
+from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable
 from designer.selection.verify import Verification, verify_sizes
 from designer.statics.sizes import is_quick
@@ -90,14 +102,14 @@ def best_product(
 ) -> Entry | None:
     """Return the product that `select` would choose, without what becomes of the others.
 
-    Searched between the samples is the best, until it stays the best: the search can only raise
-    what candidates are compared by. None where nothing holds.
+    None where nothing holds.
     """
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
     currency = common_currency(allowed)
     trial = _Trial(cases, selection, built or AsBuilt(robot), Silent(), currency)
-    return best_of(trial.sampled(allowed), selection.objectives, trial.searched)
+    front, _ = trial.choose(trial.sampled(allowed))
+    return front[0] if front else None
 
 
 def at_samples(
@@ -120,7 +132,7 @@ def at_samples(
     return trial.sampled(allowed)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Trial:
     """What all candidates have in common."""
 
@@ -132,6 +144,13 @@ class _Trial:
     proof_s: float = 0.0
     proofs: dict[int, CaseProof] = field(default_factory=dict)
 
+    @cached_property
+    def screen(self) -> Screen:
+        """What candidates are held against beside strength."""
+        robot, workspace = self.cases.robot, self.cases.workspace
+        criteria = criteria_of(robot, workspace, self.selection)
+        return Screen(criteria, self.selection, self.reporter)
+
     def outcomes(
         self, grades: Sequence[Grade], *, only_fitting: bool = False
     ) -> tuple[list[GradeOutcome], list[NotTried]]:
@@ -142,6 +161,26 @@ class _Trial:
         not_tried = [
             NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in tried
         ]
+        front, allowed = self.choose(entries)
+        outcomes = []
+        with self.reporter.task("grades", len(grades)) as advance:
+            for grade in grades:
+                own = [e for e in entries if e.grade is grade]
+                fitting = [e for e in own if id(e) in allowed]
+                its_best = best_of(fitting, self.selection.objectives, _nothing_left)
+                if its_best is not None or (own and not only_fitting):
+                    outcomes.append(self._outcome(grade, own, front, its_best))
+                advance(1)
+        return outcomes, not_tried
+
+    def choose(self, entries: Sequence[Entry]) -> tuple[list[Entry], set[int]]:
+        """Return the Pareto set, the best first, and by `id` the entries that it was chosen from.
+
+        The best is searched in every load case, proved as far as that goes, and meets every
+        requirement. Where no entry meets all, it is the best of those that are strong enough.
+        """
+        objectives = self.selection.objectives
+        self.screen.reject_by_table(entries)
         with self.reporter.task("search", len(entries)) as advance:
             thorough: set[int] = set()
 
@@ -149,33 +188,37 @@ class _Trial:
                 advance(1)
                 return self.searched(entry, in_all=id(entry) in thorough)
 
-            while True:  # until the best is searched in every load case, not refuted, still best
-                front = settle(entries, self.selection.objectives, search)
+            while True:
+                meeting = [e for e in entries if e.rejected_by is None]
+                meets_all = any(may_win(e, objectives) for e in meeting)
+                allowed = meeting if meets_all else entries
+                front = settle(allowed, objectives, search)
                 if not front:
                     break
                 best = front[0]
                 if id(best) not in thorough and len(best.cases) > 1:
                     thorough.add(id(best))
                     best.verification = replace(best.verification, is_refined=False)
+                elif meets_all and self.screen.rejects_any(best, front, meeting):
+                    continue
                 elif not self._proves(best):
+                    self.screen.evaluated(best)
+                    front = front if meets_all else [best]
                     break
-        found = []
-        with self.reporter.task("grades", len(grades)) as advance:
-            for grade in grades:
-                own = [e for e in entries if e.grade is grade]
-                its_best = best_of(own, self.selection.objectives, _nothing_left)
-                if its_best is not None or (own and not only_fitting):
-                    found.append(self._outcome(grade, own, front, its_best))
-                advance(1)
-        return found, not_tried
+        return front, {id(e) for e in allowed}
 
     def _proves(self, entry: Entry) -> bool:
         """Prove that a candidate holds in all poses; tell whether a worse pose was found."""
         if self.proof_s == 0.0 or id(entry.size) in self.proofs:
             return False
         with self.reporter.task("proof", 100) as advance:
-            proof, entry.cases = prove_governing(entry.cases, Budget(self.proof_s), advance)
+            proof, cases = prove_governing(entry.cases, Budget(self.proof_s), advance)
+            # A proof is of one stiffness: where a worse pose changes it, that is proved anew.
+            while (settled := tuple(map(resettled, cases))) != cases:
+                proof, cases = prove_governing(settled, Budget(self.proof_s), lambda _: None)
+            entry.cases = cases
         self.proofs[id(entry.size)] = proof
+        entry.cable = as_stiff_as(entry.cable, governing(entry.cases))
         entry.verification = most = together(entry.cases)
         entry.figures = replace(entry.figures, max_tension_N=most.max_tension_N)
         return proof.found.worst is not None
@@ -185,9 +228,10 @@ class _Trial:
 
         Where it governs and near there, or in every load case.
         """
+        entry.cases = searched_all(entry.cases) if in_all else searched(entry.cases)
+        entry.cable = as_stiff_as(entry.cable, governing(entry.cases))
         if "stiffness" in self.selection.objectives:
             self._add_stiffness(entry, searched=True)
-        entry.cases = searched_all(entry.cases) if in_all else searched(entry.cases)
         return together(entry.cases)
 
     def sampled(self, grades: Sequence[Grade]) -> list[Entry]:
@@ -202,7 +246,8 @@ class _Trial:
             sampled = self.cases.sampled(cables, advance)
         entries = []
         for product, cases in zip(products, sampled, strict=True):
-            grade, size, cable = product.grade, product.size, product.cable
+            grade, size = product.grade, product.size
+            cable = as_stiff_as(product.cable, governing(cases))
             found = together(cases)
             if not math.isfinite(found.utilisation):  # lengths of other poses mean nothing
                 found = replace(found, longest_m=np.full_like(found.longest_m, np.nan))
@@ -233,12 +278,12 @@ class _Trial:
     ) -> GradeOutcome:
         allowance = Allowance.of(self.selection)
         not_held = [
-            one.sampled.worst_m[:1]
+            one.sampled.worst_places[:1]
             for entry in entries
             for one in entry.cases
             if one.sampled.not_held and one.case.region is None
         ]
-        family, optimum = continuous_optimum(
+        optimum = continuous_optimum(
             self.cases.workspace, grade, allowance, self.built, doubtful=not_held[:1]
         )
         objectives = self.selection.objectives
@@ -248,25 +293,36 @@ class _Trial:
                 size=entry.size,
                 cable=entry.cable,
                 efficiency=entry.efficiency,
-                continuous_diameter_m=optimum,
+                continuous_diameter_m=optimum.diameter_m,
                 verification=entry.verification,
                 cases=worst_of_each(entry.cases),
                 figures=entry.figures,
                 standing=standing,
                 reason=reason,
+                requirements=self.screen.requirements(entry),
             )
             for entry in entries
             for standing, reason in [standing_of(entry, front, objectives)]
         }
-        outcome: Outcome = "no_finite_cable" if math.isnan(optimum) else "too_thin"
         return GradeOutcome(
             grade=grade,
-            family=family,
-            continuous_diameter_m=optimum,
+            family=optimum.family,
+            continuous_diameter_m=optimum.diameter_m,
             candidates=tuple(candidates.values()),
-            outcome=outcome if best is None else "fits",
+            outcome=_outcome_of(entries, optimum) if best is None else "fits",
             best=None if best is None else candidates[id(best)],
+            verdict=optimum.verdict,
         )
+
+
+def _outcome_of(entries: Sequence[Entry], optimum: ContinuousOptimum) -> Outcome:
+    """Return what became of a grade of which no size meets all that is asked."""
+    if any(entry.verification.holds for entry in entries):
+        return "rejected"
+    if math.isfinite(optimum.diameter_m):
+        return "too_thin"
+    proved = optimum.verdict is not None and optimum.verdict.is_proved
+    return "no_finite_cable" if proved else "open"
 
 
 def _nothing_left(entry: Entry) -> Verification:
@@ -312,6 +368,8 @@ def _reason(
     if all(outcome.outcome == "no_finite_cable" for outcome in outcomes):
         return "no section of any grade holds the whole workspace"
     thin = [outcome for outcome in outcomes if outcome.outcome == "too_thin"]
+    if not thin:
+        return f"no size was found that holds: {outcomes[0].grade.id} {outcomes[0].sentence}"
     nearest = min(thin, key=lambda o: o.continuous_diameter_m / o.grade.thickest.diameter_m)
     if nearest.fails_in:
         what = "no size holds in every load case"

@@ -32,7 +32,7 @@ class Verification:
 
     Parameters
     ----------
-    worst_position_m : array (n_coordinates,)
+    worst_place : array (n_coordinates,)
         Place where its tension is largest, see `designer.model.space` [m, rad].
     max_tension_N : float
         The largest tension there [N]; inf if the pose cannot be held at all.
@@ -45,7 +45,7 @@ class Verification:
         Whether the extremes were searched for between the samples as well.
     """
 
-    worst_position_m: FloatArray
+    worst_place: FloatArray
     max_tension_N: float
     utilisation: float
     longest_m: FloatArray
@@ -64,7 +64,7 @@ class Sampled:
 
     Parameters
     ----------
-    worst_m : array (n_starts, n_coordinates)
+    worst_places : array (n_starts, n_coordinates)
         Places where it is used most, one for each part of the space, the worst first; where it is
         not held if there is such a pose [m, rad].
     utilisation : float
@@ -80,7 +80,7 @@ class Sampled:
         was settled that the cable does not serve the workspace.
     """
 
-    worst_m: FloatArray
+    worst_places: FloatArray
     utilisation: float
     longest_m: FloatArray
     samples: int
@@ -97,7 +97,7 @@ class Sampled:
     def verification(self, cable: Cable) -> Verification:
         """Return what is known before the search between the samples."""
         return Verification(
-            worst_position_m=self.worst_m[0] if len(self.worst_m) else np.full(3, np.nan),
+            worst_place=self.worst_places[0] if len(self.worst_places) else np.full(3, np.nan),
             max_tension_N=self.utilisation * cable.allowable_tension_N,
             utilisation=self.utilisation,
             longest_m=self.longest_m,
@@ -124,7 +124,7 @@ def refined(
 ) -> Verification:
     """Search for the extremes of a cable between the samples, from the worst of them."""
     demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
-    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_m, effort)
+    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_places, effort)
     found = _verification(cable, worst)
     return replace(found, longest_m=np.maximum(found.longest_m, sampled.longest_m))
 
@@ -135,7 +135,7 @@ def _verification(cable: Cable, worst: list[Worst]) -> Verification:
     most = np.inf if np.isneginf(tension.demand) else tension.demand
     length = np.array([one.demand for one in lengths]).reshape(2, -1)
     return Verification(
-        worst_position_m=tension.place,
+        worst_place=tension.place,
         max_tension_N=most,
         utilisation=most / cable.allowable_tension_N,
         longest_m=np.maximum(length[0], 0.0),
@@ -180,7 +180,7 @@ def verify_sizes(
                 met = _meet(robot, workspace, some, [cables[k] for k in now], cells, gives_up)
                 totals.add(now, some, met, counts)
                 if alive and _refutes(met):
-                    place = totals.of(now[0]).worst_m[:1]
+                    place = totals.of(now[0]).worst_places[:1]
                     alive = _survivors(robot, workspace, cables, alive, place, totals)
             progress(len(some) if counts else 0)
     return [totals.of(k) for k in range(len(cables))]
@@ -239,34 +239,34 @@ class _Totals:
         self.samples = 0
         self.tried = np.zeros(n_tried, dtype=np.int64)
         self.utilisation = np.full((n_tried, _CELLS), -np.inf)
-        self.worst_m = np.full((n_tried, _CELLS, n_coordinates), np.nan)
+        self.worst_places = np.full((n_tried, _CELLS, n_coordinates), np.nan)
         self.longest_m = np.zeros((n_tried, n_cables))
         self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
-        self.not_held_m = np.full((n_tried, n_coordinates), np.nan)
+        self.not_held_places = np.full((n_tried, n_coordinates), np.nan)
 
     def add(self, rows: Sequence[int], positions: FloatArray, met: Meets, counts: bool) -> None:
         self.tried[rows] += len(positions) * counts
         higher = met.utilisation > self.utilisation[rows]
         self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])
         at_worst = positions[met.pose]
-        self.worst_m[rows] = np.where(higher[..., None], at_worst, self.worst_m[rows])
+        self.worst_places[rows] = np.where(higher[..., None], at_worst, self.worst_places[rows])
         self.longest_m[rows] = np.maximum(self.longest_m[rows], met.longest_m)
         self.counted[rows] += met.counted * counts
         self.overloaded[rows] += met.overloaded * counts
         fails = met.failed.sum(axis=1)
         first = (self.not_held[rows] == 0) & (fails > 0)
         at_first = positions[met.failed.argmax(axis=1)]
-        self.not_held_m[rows] = np.where(first[:, None], at_first, self.not_held_m[rows])
+        self.not_held_places[rows] = np.where(first[:, None], at_first, self.not_held_places[rows])
         self.not_held[rows] += fails
 
     def of(self, row: int) -> Sampled:
         not_held = int(self.not_held[row])
         asked = self.utilisation[row]
         order = np.argsort(-asked, kind="stable")
-        worst = self.worst_m[row][order[~np.isneginf(asked[order])]]
+        worst = self.worst_places[row][order[~np.isneginf(asked[order])]]
         serves_none = self.tried[row] > 0 and self.counted[row] == 0  # a landmark at most
         return Sampled(
-            worst_m=self.not_held_m[row][None] if not_held else worst,
+            worst_places=self.not_held_places[row][None] if not_held else worst,
             utilisation=np.inf if not_held or serves_none or not len(worst) else float(asked.max()),
             longest_m=self.longest_m[row],
             samples=int(self.tried[row]),

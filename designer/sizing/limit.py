@@ -21,6 +21,11 @@ def limit_ratio(robot: Robot, poses: Poses, material: Material) -> FloatArray:
 
     NaN where that limit was not solved.
     """
-    task = Task(material.elastic_compliance_per_m, material.strength_length_m, 0.0)
+    task = Task(
+        material.elastic_compliance_per_m,
+        material.strength_length_m,
+        0.0,
+        sag_max=robot.family_sag_max,
+    )
     solution, _ = solve_task(robot, poses, task)
     return solution.load_factor.reshape(poses.shape)

@@ -56,7 +56,12 @@ def size_poses(
     another branch might be thinner, `designer.kernel.search` tries more of them, unless
     it is not to ``seeks_better`` than what was found first.
     """
-    task = Task(material.elastic_compliance_per_m, material.strength_length_m, None)
+    task = Task(
+        material.elastic_compliance_per_m,
+        material.strength_length_m,
+        None,
+        sag_max=robot.family_sag_max,
+    )
     solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
     area = solution.weight_N_per_m / (STANDARD_GRAVITY_M_PER_S2 * material.density_kg_per_m3)
     massless_area = solution.massless_tension_N / material.allowable_stress_Pa

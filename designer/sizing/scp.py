@@ -6,7 +6,7 @@ tension :math:`T_i` and the least tension in it :math:`\tau_i` follow. With c th
 weight per length,
 
 .. math::  \max c \quad \text{s.t.} \quad \sum_i W_i(p_i) = c\,w, \quad T_i(p_i) \le \sigma/(g\rho),
-           \quad \tau_i(p_i) \ge c\,t_{min}.
+           \quad \tau_i(p_i) \ge c\,t_{min}, \quad p_i \ge p_i^{sag}.
 
 Each turn linearises the cables at the last pulls, adds the convex part of the Lagrangian's
 curvature, which is diagonal, keeps the pulls within a trust region, puts a price on what is
@@ -30,7 +30,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
 from designer.model.robot import Poses, Robot
 from designer.physics import catenary
 from designer.statics.distribution import distribute_evenly
-from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
+from designer.statics.geometry import CableGeometry, cable_geometry, load_wrench_N, structure_matrix
 
 _START_PULL = 0.7
 _TRUST = 0.5
@@ -39,6 +39,8 @@ _PRICE = 100.0  # of a violation; above the sum of all multipliers
 _ROUNDING = 1e-13
 _STILL = 1e-8
 _AT_BOUND = 1e-7
+_SLACKEST, _HALVINGS = 1.0 / 64.0, 60
+"""Least pull of all, as of the compiled solver, and steps between it and the taut end."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,6 +190,7 @@ class _Problem:
     load_N: float
     least: FloatArray
     straight: FloatArray
+    floor: FloatArray
 
     @classmethod
     def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
@@ -209,13 +212,14 @@ class _Problem:
             size,
             np.full(robot.n_cables, robot.tension_min_N / size),
             massless.tension_N / size,
+            _pulls_of_sag(robot.family_sag_max, geometry, material),
         )
 
     def start(self) -> tuple[FloatArray, float]:
         """The massless design, with no cable all but slack."""
         c = 1.0 / float(self.straight.max())
         slack = _START_PULL * self.chord_m / self.material.strength_length_m
-        return np.maximum(self.straight * c, slack), c
+        return np.maximum.reduce([self.straight * c, slack, self.floor]), c
 
     def state(self, y: FloatArray) -> _State:
         """Return the cables at scaled pulls, their slopes by central differences."""
@@ -252,7 +256,8 @@ class _Problem:
         slopes = np.column_stack([state.wrench_y, -self.load])
         freedom = np.append(turn.y * np.maximum(1.0 - state.tension, 0.0), turn.c)
         step = np.linalg.lstsq(slopes * freedom, rest, rcond=None)[0] * freedom
-        return replace(turn, y=np.maximum(turn.y - step[:-1], 0.5 * turn.y), c=turn.c - step[-1])
+        y = np.maximum.reduce([turn.y - step[:-1], 0.5 * turn.y, self.floor])
+        return replace(turn, y=y, c=turn.c - step[-1])
 
     def violation(self, state: _State, c: float) -> float:
         """Return the worst violation of the full equations."""
@@ -275,9 +280,10 @@ class _Problem:
         least = np.nonzero((self.least > 0.0) & (state.lowest < c * self.least + _AT_BOUND))[0]
         at_full = np.eye(n)[:, full] * state.tension_y[full]
         at_least = -np.eye(n)[:, least] * state.lowest_y[least]
-        in_y = np.hstack([state.wrench_y.T, at_full, at_least])
-        in_c = np.concatenate([-self.load, np.zeros(len(full)), self.least[least]])
-        slopes = np.vstack([in_y, in_c])
+        sags = np.nonzero(y < self.floor * (1.0 + _AT_BOUND))[0]
+        in_y = np.hstack([state.wrench_y.T, at_full, at_least, -np.eye(n)[:, sags]])
+        in_c = [-self.load, np.zeros(len(full)), self.least[least], np.zeros(len(sags))]
+        slopes = np.vstack([in_y, np.concatenate(in_c)])
         wanted = np.eye(n + 1)[n]
         signed = np.hstack([slopes, -slopes[:, :dof]])
         return float(np.abs(signed @ nnls(signed, wanted)[0] - wanted).max())
@@ -301,6 +307,21 @@ class _Problem:
         )
 
 
+def _pulls_of_sag(sag_max: float | None, geometry: CableGeometry, material: Material) -> FloatArray:
+    """Return the scaled pulls (n,) at which cables sag as far as they may; zero for any sag."""
+    X, D, chord = geometry.horizontal_distance_m, geometry.drop_m, geometry.chord_m
+    if sag_max is None:
+        return np.zeros_like(chord)
+    EA = 1.0 / material.elastic_compliance_per_m
+    low, high = np.full_like(chord, _SLACKEST), np.full_like(chord, 1.0 + 1.0 / sag_max)
+    for _ in range(_HALVINGS):
+        p = np.sqrt(low * high)
+        length, force_z = catenary.length_and_force_z(p, X, D, EA, 1.0)
+        is_slack = catenary.sag_m(length, p * X, force_z, EA, 1.0, X, D) > sag_max * chord
+        low, high = np.where(is_slack, p, low), np.where(is_slack, high, p)
+    return np.asarray(high * chord / material.strength_length_m)
+
+
 @cache
 def _programme(dof: int, n: int) -> dict[str, Any]:
     """State the convex programme once, with parameters for what changes from turn to turn."""
@@ -308,7 +329,7 @@ def _programme(dof: int, n: int) -> dict[str, Any]:
 
     step, c, gap = cp.Variable(n), cp.Variable(), cp.Variable(nonneg=True)
     data = {name: cp.Parameter(n) for name in ("tension", "tension_y", "lowest", "lowest_y")}
-    data |= {name: cp.Parameter(n, nonneg=True) for name in ("bend", "least", "trust")}
+    data |= {name: cp.Parameter(n, nonneg=True) for name in ("bend", "least", "trust", "room")}
     data |= {name: cp.Parameter(dof) for name in ("rest", "load")}
     data["wrench_y"] = cp.Parameter((dof, n))
     balance = data["rest"] + data["wrench_y"] @ step - c * data["load"]
@@ -317,7 +338,8 @@ def _programme(dof: int, n: int) -> dict[str, Any]:
         -balance <= gap,
         data["tension"] + cp.multiply(data["tension_y"], step) - 1.0 <= gap,
         c * data["least"] - data["lowest"] - cp.multiply(data["lowest_y"], step) <= gap,
-        cp.abs(step) <= data["trust"],
+        step <= data["trust"],
+        step >= -data["room"],
     ]
     curved = 0.5 * cp.sum_squares(cp.multiply(data["bend"], step))
     problem = cp.Problem(cp.Minimize(curved - c + _PRICE * gap), constraints)
@@ -336,6 +358,7 @@ def _solve(
         "load": problem.load,
         "least": problem.least,
         "trust": trust * y,
+        "room": np.clip(y - problem.floor, 0.0, trust * y),
     }
     for name, parameter in programme["data"].items():
         parameter.value = values[name] if name in values else getattr(state, name)

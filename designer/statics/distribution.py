@@ -122,6 +122,8 @@ def distribute_evenly(
     separation = _separation(shares, -multiplier)
     solved = verdict == Verdict.SOLVED
     verdict[solved & ~(residual < _PROVEN)] = Verdict.NOT_CONVERGED
+    # Of a cable without direction nothing is said.
+    verdict[np.isnan(shares.matrix).any(axis=(1, 2))] = Verdict.NOT_CONVERGED
     verdict[solved & (scaled.max(axis=1) > shares.high * (1.0 + 1e-12))] = Verdict.OUTSIDE_HULL
     return _shaped(poses.shape, shares, verdict, scaled, residual, -multiplier, separation)
 
@@ -131,7 +133,8 @@ def _shares(
 ) -> _Shares:
     run = straight_run(robot, poses)
     geometry = cable_geometry(robot, poses, run.exit_points_m)
-    matrix = density_matrix(robot, geometry) / geometry.chord_m[..., None, :]
+    with np.errstate(invalid="ignore"):  # a cable of no length has no direction
+        matrix = density_matrix(robot, geometry) / geometry.chord_m[..., None, :]
     wrench = load_wrench_N(robot, poses, force_N)
     reach = float(np.abs(robot.attachments_m).sum(axis=1).max()) or 1.0
     rows = np.where(robot.balance_rows < 3, 1.0, reach)

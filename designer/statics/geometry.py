@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -97,6 +97,11 @@ def cable_geometry(
     return CableGeometry(distance, -chord[..., 2], outward, lever)
 
 
+def level_geometry(robot: Robot, poses: Poses) -> CableGeometry:
+    """Return the chords from the exit points in the frame whose z axis is the true vertical."""
+    return cable_geometry(replace(robot, cable_load_direction=None), poses)
+
+
 def structure_matrix(robot: Robot, geometry: CableGeometry) -> FloatArray:
     """Return W_f of eq. (9), (..., degrees of freedom, 2 n_cables), one row a balanced direction.
 
@@ -152,3 +157,26 @@ def load_wrench_N(robot: Robot, poses: Poses, force_N: FloatArray | None = None)
     moment = moment + np.cross(centre_of_mass_arm_m(robot, poses), -robot.centre_pull_N)
     parts = [np.broadcast_to(force, shape), np.broadcast_to(moment, shape)]
     return np.asarray(np.concatenate(parts, axis=-1)[..., robot.balance_rows])
+
+
+def plane_vector(x: FloatArray, z: FloatArray, outward: FloatArray) -> FloatArray:
+    """Return vectors (..., 3) of a part along ``outward`` (..., 2) and one along z."""
+    return np.concatenate([x[..., None] * outward, z[..., None]], axis=-1)
+
+
+def in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
+    """Turn stiffness in the vertical plane and across it into three dimensions."""
+    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
+    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
+    axes = np.stack([out, up], axis=-1)
+    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
+    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
+    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
+
+
+def cross_matrix(vector: FloatArray) -> FloatArray:
+    """Return the matrices of ``vector ×`` (..., 3, 3)."""
+    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -85,7 +85,7 @@ class Statics:
         if self.robot.cable_load_direction is None:
             return hanging_cables(self.force_z_N, -self._chords_m()[..., 2])
         chord = self.geometry()
-        *plan, up = self.robot.upright @ self.robot.level[2]
+        *plan, up = self.robot.leaning[:, 2]
         along = chord.outward @ plan
         return hanging_cables(
             along * self.force_x_N + up * self.force_z_N,
@@ -133,8 +133,20 @@ class Statics:
 
     @property
     def lowest_m(self) -> FloatArray:
-        """Height of the lowest point of each cable's true shape (..., n_cables), upright [m]."""
-        return self.run.exit_points_m[..., 2] + catenary.lowest_z_m(*self.catenaries)
+        """Height of the lowest point of each cable's true shape (..., n_cables), level frame [m].
+
+        Where the load on the cables is not vertical, it is lowest where its tension is level.
+        """
+        if self.robot.cable_load_direction is None:
+            return self.run.exit_points_m[..., 2] + catenary.lowest_z_m(*self.catenaries)
+        *plan, up = self.robot.leaning[:, 2]
+        length, force_x, force_z, stiffness, weight = self.catenaries
+        along = self.geometry().outward @ plan
+        below = length - force_z / weight - along * force_x / (up * weight)
+        s = np.clip(below, 0.0, length)
+        x, z = catenary.position_m(s, length, force_x, force_z, stiffness, weight)
+        start = self.run.exit_points_m @ self.robot.leaning[:, 2]
+        return np.asarray(start + along * x + up * z)
 
     @property
     def catenaries(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -255,6 +267,7 @@ def solve_sagging(
         inverse_weight_m_per_N=1.0 / heaviest,
         force_N=force_N,
         relative_weights=weight / heaviest,
+        sag_max=robot.sag_max,
     )
     solution, run = solve_task(robot, poses, task, seeks_better=seeks_better)
     solved = solution.verdict[:, None] == Verdict.SOLVED

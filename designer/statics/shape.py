@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
 from designer.physics import catenary
 from designer.statics.inverse import Statics
 
@@ -21,19 +22,17 @@ def exit_angle_rad(statics: Statics) -> FloatArray:
 
 
 def sag_m(statics: Statics) -> FloatArray:
-    """Return how far each cable strays from the line between its ends (..., n_cables) [m].
+    """Return how far each cable strays from its chord (..., n_cables) [m]; see `physics.catenary`.
 
-    It is farthest where it is parallel to that line, at the unstrained length s with
-    V(s) / F_x = -D / X, where V(s) = F_z + w (s - l). A vertical cable does not stray.
+    Below the lower end is along the load on the cables, of weight and wind.
     """
-    length, force_x, force_z, stiffness, weight = statics.catenaries
     chord = statics.geometry()
-    X, D = chord.horizontal_distance_m, chord.drop_m
-    with np.errstate(invalid="ignore", divide="ignore"):
-        s = length - (force_z + force_x * D / X) / weight
-        s = np.where(X > 0.0, np.clip(s, 0.0, length), 0.0)
-        x, z = catenary.position_m(s, length, force_x, force_z, stiffness, weight)
-        return np.asarray(np.abs(x * D + z * X) / chord.chord_m)
+    return catenary.sag_m(*statics.catenaries, chord.horizontal_distance_m, chord.drop_m)
+
+
+def sag_ratio(statics: Statics) -> FloatArray:
+    """Return the sag of each cable over its chord (..., n_cables), which `Robot.sag_max` limits."""
+    return sag_m(statics) / statics.geometry().chord_m
 
 
 def stretch_m(statics: Statics) -> FloatArray:
@@ -46,3 +45,15 @@ def stretch_m(statics: Statics) -> FloatArray:
     s = 0.5 * (1.0 + _POINTS) * length
     tension = np.hypot(force_x, force_z + weight * (s - length))
     return np.asarray((tension * _WEIGHTS).sum(axis=-1) * (0.5 * length / stiffness)[..., 0])
+
+
+def string_frequency_Hz(loaded: Loaded, statics: Statics) -> FloatArray:
+    """Return the lowest frequency of each cable as a string (..., n_cables), with ice [Hz].
+
+    sqrt(T / m) / (2 l), of the mean T of its end tensions and its free length l.
+    """
+    cable, ice = loaded.bare[1], loaded.case.ice
+    around = 0.0 if ice is None else ice.linear_density_kg_per_m(cable.diameter_m)
+    mass = cable.linear_density_kg_per_m + around
+    mean = 0.5 * (statics.exit_tension_N + statics.platform_tension_N)
+    return np.asarray(np.sqrt(mean / mass) / (2.0 * statics.free_length_m))

@@ -3,13 +3,15 @@ r"""How the largest utilisation in a pose answers to small changes of cables, lo
 Each cable has a tangent stiffness K and a pull F on it that follow from its end, its length l, its
 EA and the load w on its length. The state is one in which the balance :math:`\sum W_i F_i = P`
 holds and, with more cables than degrees of freedom, the largest utilisation is as small as it can
-be above the least tension asked for. With multipliers μ of the balance, σ of the cables that are
-used most (their sum is 1) and ρ of those at their least tension τ,
+be above the least tension asked for and with no more sag than allowed. With multipliers μ of the
+balance, σ of the cables that are used most (their sum is 1), ρ of those at their least tension τ
+and ς of those at their largest sag s,
 
 .. math::
 
     h_i = σ_i \frac{∂T_i/∂F_i}{A_i} - ρ_i \frac{∂τ_i}{∂F_i} + W_i^\mathsf{T} μ, \qquad
-    h_i · \frac{∂F_i}{∂l_i} + \frac{σ_i}{A_i} \frac{∂T_i}{∂l_i} - ρ_i \frac{∂τ_i}{∂l_i} = 0
+    h_i · \frac{∂F_i}{∂l_i} + \frac{σ_i}{A_i} \frac{∂T_i}{∂l_i} - ρ_i \frac{∂τ_i}{∂l_i}
+    + ς_i \frac{ds_i}{dl_i} = 0
 
 which is linear in the multipliers. The slope of the utilisation in anything else is then that of
 the same sum with the lengths held: :math:`-K_i h_i` in an exit point, :math:`-μ` in the load. With
@@ -17,7 +19,8 @@ as many cables as degrees of freedom this is the adjoint of the implicit functio
 it is the envelope theorem, and μ, σ and ρ are the multipliers of the optimum.
 
 That F turns with everything else gives its slope in the load across the cable's plane:
-:math:`δF = δω × F - K (δω × e)`, e being the chord and δω the turn of the load.
+:math:`δF = δω × F - K (δω × e)`, e being the chord and δω the turn of the load; a pulley stays
+upright (`designer.statics.pull_slopes`).
 """
 
 from __future__ import annotations
@@ -28,17 +31,18 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Robot
-from designer.physics import tangent
-from designer.statics.geometry import cable_geometry
+from designer.statics.geometry import cross_matrix, plane_vector
 from designer.statics.inverse import Statics
-from designer.statics.stiffness import cross_matrix, in_space, per_reach
+from designer.statics.pull_slopes import pull_slopes
+from designer.statics.sag_slopes import SagSlopes, sag_slopes
+from designer.statics.shape import sag_ratio
+from designer.statics.stiffness import per_reach
 
-_TIED, _ACTIVE = 1e-7, 1e-5
-"""Relative: tensions of the most used cables that are one, and what is at a limit of an optimum."""
+_TIED, _ACTIVE, _AT_SAG = 1e-7, 1e-5, 1e-4
+"""Relative: tensions of the most used cables that are one, and what is at a limit of an optimum;
+the limit of the sag is kept with a margin where cables stretch."""
 _RANK, _LEFT, _NEGATIVE = 1e-9, 1e-4, -1e-6
 """Smallest singular value over the largest; what may be left of the conditions; no multiplier."""
-_VERTICAL = 1e-12
-"""Horizontal distance over the chord of a cable that hangs straight down."""
 _UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -90,23 +94,25 @@ class _Cables:
     """The cables of a pose in the upright frame: pull, chord, load, stiffness, and slopes of F."""
 
     pull: FloatArray  # (n, 3) [N]
-    chord: FloatArray  # (n, 3) [m]
     weight: FloatArray  # (n,), load per unstrained length, along -z [N/m]
     length: FloatArray  # (n,), free of its pulley [m]
     K: FloatArray  # (n, 3, 3), at fixed free length [N/m]
+    by_turn: FloatArray  # (n, 3, 3), in a turn of the load [N]
     by_length: FloatArray  # (n, 3) [N/m]
     by_stiffness: FloatArray  # (n, 3), in the logarithm of EA [N]
     by_weight: FloatArray  # (n, 3), in the logarithm of w [N]
     wrench: FloatArray  # (n, dof, 3), from a pull to its wrench
+    sag: SagSlopes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Multipliers:
-    """Of the balance (dof,) [1/N, 1/(N·m)], of the most used cables and of the least tension."""
+    """Of the balance (dof,) [1/N, 1/(N·m)], most used cables, least tensions and largest sags."""
 
     balance: FloatArray
     top: FloatArray  # (n,) over the allowable tension [1/N]
     low: FloatArray  # (n,) [1/N]
+    sag: FloatArray  # (n,)
 
 
 def utilisation_slopes(
@@ -125,14 +131,17 @@ def utilisation_slopes(
     top, low = _top_tension(cables), _least_tension(cables)
     used, least = top.value / allowable, robot.tension_min_N
     most = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
+    sags = _largest_sags(statics)
     slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
     if cable is not None and robot.is_redundant and not most[cable - 1]:
+        return ()
+    if robot.pulley_radius_m != 0.0 and sags.any():  # that follow the tangent points
         return ()
     each = np.flatnonzero(most) if cable is None else [cable - 1]
     one_by_one = [np.arange(robot.n_cables) == k for k in each]
     found = []
     for tops in [most] if robot.is_redundant else one_by_one:
-        solved = _multipliers(robot, cables, (top, low), (tops, slack), allowable)
+        solved = _multipliers(robot, cables, (top, low), (tops, slack, sags), allowable)
         if solved is None:
             return ()
         found.append(_slopes(robot, cables, top, low, solved, used))
@@ -143,7 +152,7 @@ def _multipliers(
     robot: Robot,
     cables: _Cables,
     tensions: tuple[_Tension, _Tension],
-    active: tuple[BoolArray, BoolArray],
+    active: tuple[BoolArray, BoolArray, BoolArray],
     allowable_N: FloatArray,
 ) -> _Multipliers | None:
     """Solve the conditions of the lengths; None where they leave a choice, or cannot be met."""
@@ -151,9 +160,12 @@ def _multipliers(
     tops = int(active[0].sum())
     columns = [np.einsum("ndk,nk->nd", cables.wrench, cables.by_length) * per_reach(robot)]
     sizes = scale_N / allowable_N, -np.ones(n)
-    for one, is_active, size in zip(tensions, active, sizes, strict=True):
+    for one, is_active, size in zip(tensions, active[:2], sizes, strict=True):
         growth = np.einsum("nk,nk->n", one.by_pull, cables.by_length) + one.by_length
         columns.append(np.diag(size * growth)[:, is_active])
+    columns.append(np.diag(scale_N * cables.sag.by_length)[:, active[2]])
+    if not np.isfinite(columns[0]).all():  # a cable that hangs folded
+        return None
     rows = np.hstack(columns) / np.linalg.norm(cables.by_length, axis=1, keepdims=True)
     shares = np.zeros(rows.shape[1])
     shares[dof : dof + tops] = 1.0
@@ -162,10 +174,11 @@ def _multipliers(
     left = float(np.abs(matrix @ solved - right).max())
     if rank < len(shares) or not left <= _LEFT or (solved[dof:] < _NEGATIVE).any():
         return None
-    top, low = np.zeros((2, n))
-    top[active[0]], low[active[1]] = solved[dof : dof + tops], solved[dof + tops :]
+    each = np.zeros((3, n))
+    each[np.nonzero(active)] = solved[dof:]
+    top, low, sag = each
     balance = solved[:dof] * per_reach(robot)
-    return _Multipliers(balance / scale_N, top / allowable_N, low / scale_N)
+    return _Multipliers(balance / scale_N, top / allowable_N, low / scale_N, sag)
 
 
 def _slopes(
@@ -182,65 +195,55 @@ def _slopes(
     h = h + np.einsum("ndk,d->nk", cables.wrench, at.balance)
     by_load = own_top * top.by_load - own_low * low.by_load
     by_load[:, 2] -= np.einsum("nk,nk->n", h, cables.by_weight) / cables.weight
-    for axis in range(2):  # across the load the whole cable turns about its exit point
-        turn = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis]) / cables.weight[:, None]
-        moved = np.cross(turn, cables.pull)
-        moved -= np.einsum("nij,nj->ni", cables.K, np.cross(turn, cables.chord))
+    for axis in range(2):  # across the load, which turns
+        turn = np.cross([0.0, 0.0, -1.0], np.eye(3)[axis])
+        moved = cables.by_turn @ turn / cables.weight[:, None]
         by_load[:, axis] += np.einsum("nk,nk->n", h, moved)
+    own_sag, sag = at.sag[:, None], cables.sag
+    by_load += own_sag * sag.by_load
+    by_exit_point = -np.einsum("nij,ni->nj", cables.K, h) - own_sag * sag.by_chord
     cable = int(np.where(at.top > 0.0, used, 0.0).argmax())
     return Slopes(
         cable=cable + 1,
         utilisation=float(used[cable]),
         load=-at.balance,
-        stiffness=np.einsum("nk,nk->n", h, cables.by_stiffness),
+        stiffness=np.einsum("nk,nk->n", h, cables.by_stiffness) + at.sag * sag.by_stiffness,
         cable_load_m_per_N=by_load @ robot.upright,
-        exit_points_per_m=-np.einsum("nij,ni->nj", cables.K, h) @ robot.upright,
+        exit_points_per_m=by_exit_point @ robot.upright,
     )
 
 
 def _cables(statics: Statics) -> _Cables:
     """Return the cables of a pose (1,) with the slopes of their pulls."""
-    robot = statics.robot
+    robot, geometry = statics.robot, statics.geometry()
     length, F_x, F_z, EA, w = (
         np.broadcast_to(v, (1, robot.n_cables))[0] for v in statics.catenaries
     )
-    chord = cable_geometry(robot, statics.poses)
-    outward = np.where(chord.horizontal_distance_m[0, :, None] > 0.0, chord.outward[0], [1.0, 0.0])
-
-    def in_base(plane: FloatArray) -> FloatArray:
-        return np.column_stack([plane[:, :1] * outward, plane[:, 1]])
-
-    V_0 = F_z - w * length
-    T_0 = np.hypot(F_x, V_0)
-    along = np.stack([F_x, V_0], axis=-1) / T_0[:, None]
-    elastic = tangent.flexibility_m_per_N(length, F_x, F_z, EA, w)
-    stretch = -np.stack([F_x, F_z - 0.5 * w * length], axis=-1) * (length / EA)[:, None]
-    # The position does not change where forces, EA and weight all grow alike.
-    sag = -np.einsum("nij,nj->ni", elastic, np.stack([F_x, F_z], axis=-1)) - stretch
-    longer = (1.0 + T_0 / EA)[:, None] * along
-    K = tangent.stiffness_N_per_m(length, F_x, F_z, EA, w)
-    if robot.pulley_radius_m != 0.0:  # the point where the cable leaves its pulley moves along it
-        roll = robot.pulley_radius_m * along / T_0[:, None] ** 2
-        by_force = np.stack([V_0, -F_x], axis=-1)
-        K = np.linalg.inv(elastic + roll[:, :, None] * by_force[:, None, :])
-        longer, sag = longer + roll * (F_x * w)[:, None], sag + roll * (F_x * w * length)[:, None]
-    plan = np.where(chord.horizontal_distance_m[0] > _VERTICAL * chord.chord_m[0], 1.0, np.nan)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        swing = F_x / (plan * chord.horizontal_distance_m[0])
-    by = [-in_base(np.einsum("nij,nj->ni", K, moved)) for moved in (longer, stretch, sag)]
-    turn = cross_matrix(statics.geometry().lever_m[0])
+    turn = cross_matrix(geometry.lever_m[0])
     wrench = np.concatenate([np.broadcast_to(np.eye(3), turn.shape), turn], axis=1)
+    slopes = pull_slopes(statics)
+    across, down = geometry.horizontal_distance_m[0], -geometry.drop_m[0]
+    vector = plane_vector(across, down, geometry.outward[0])
     return _Cables(
-        pull=in_base(np.stack([F_x, F_z], axis=-1)),
-        chord=in_base(np.stack([chord.horizontal_distance_m[0], -chord.drop_m[0]], axis=-1)),
+        pull=plane_vector(F_x, F_z, geometry.outward[0]),
         weight=w,
         length=length,
-        K=in_space(K, np.where(np.isnan(swing), K[:, 0, 0], swing), outward),
-        by_length=by[0],
-        by_stiffness=by[1],
-        by_weight=by[2],
+        K=slopes.by_end[0],
+        by_turn=slopes.by_turn[0],
+        by_length=slopes.by_length[0],
+        by_stiffness=slopes.by_stiffness[0],
+        by_weight=slopes.by_weight[0],
         wrench=wrench[:, robot.balance_rows],
+        sag=sag_slopes(length, vector, EA, -w[:, None] * _UP),
     )
+
+
+def _largest_sags(statics: Statics) -> BoolArray:
+    """Tell which cables (n,) of a pose (1,) are at the largest sag that is allowed."""
+    robot = statics.robot
+    if not robot.is_redundant or robot.sag_max is None:
+        return np.zeros(robot.n_cables, dtype=np.bool_)
+    return np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
 
 
 def _top_tension(cables: _Cables) -> _Tension:

@@ -22,8 +22,15 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.robot import Robot
 from designer.physics import tangent
-from designer.statics.geometry import cable_geometry, centre_of_mass_arm_m
+from designer.statics.geometry import (
+    cable_geometry,
+    centre_of_mass_arm_m,
+    cross_matrix,
+    in_space,
+    plane_vector,
+)
 from designer.statics.inverse import Statics
+from designer.statics.pull_slopes import pull_slopes
 
 _SOFT = 1e-12
 """Over the stiffest, or over the chord: what rounding leaves of nothing."""
@@ -34,9 +41,12 @@ def cable_tangent_stiffness_N_per_m(statics: Statics) -> FloatArray:
 
     Upright frame, at fixed unstrained length. In the cable's vertical plane this is the closed form
     of `designer.physics.tangent`; across it a cable swings about the vertical through its exit
-    point with the stiffness F_x / X.
+    point with the stiffness F_x / X. Over a pulley it does so only where the load is vertical; see
+    `designer.statics.pull_slopes` for any other.
     """
     robot = statics.robot
+    if robot.pulley_radius_m != 0.0 and robot.cable_load_direction is not None:
+        return pull_slopes(statics).by_end_at_total
     if robot.pulley_radius_m == 0.0:
         plane = tangent.stiffness_N_per_m(*statics.catenaries)
     else:
@@ -72,10 +82,9 @@ def upright_stiffness(statics: Statics) -> FloatArray:
     K = cable_tangent_stiffness_N_per_m(statics)
     if robot.is_point_mass:
         return _balanced(robot, K.sum(axis=-3))
-    lever = statics.geometry().lever_m
-    B = cross_matrix(lever)
-    plan = statics.force_x_N[..., None] * statics.geometry().outward
-    F = cross_matrix(np.concatenate([plan, statics.force_z_N[..., None]], axis=-1))
+    geometry = statics.geometry()
+    B = cross_matrix(geometry.lever_m)
+    F = cross_matrix(plane_vector(statics.force_x_N, statics.force_z_N, geometry.outward))
     turn = -K @ B
     moment = B @ K
     arm = centre_of_mass_arm_m(robot, statics.poses)
@@ -133,24 +142,6 @@ def largest_displacement_m_per_N(statics: Statics) -> FloatArray:
     good = np.asarray(np.isfinite(C).all(axis=(-2, -1)))
     largest = np.linalg.norm(np.where(good[..., None, None], C, 0.0), ord=2, axis=(-2, -1))
     return np.where(good, largest, np.nan)
-
-
-def in_space(plane: FloatArray, swing: FloatArray, outward: FloatArray) -> FloatArray:
-    """Turn stiffness in the vertical plane and across it into three dimensions."""
-    out = np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1)
-    up = np.broadcast_to([0.0, 0.0, 1.0], out.shape)
-    axes = np.stack([out, up], axis=-1)
-    across = np.stack([-out[..., 1], out[..., 0], out[..., 2]], axis=-1)
-    sideways = swing[..., None, None] * across[..., :, None] * across[..., None, :]
-    return np.asarray(axes @ plane @ np.swapaxes(axes, -1, -2) + sideways)
-
-
-def cross_matrix(vector: FloatArray) -> FloatArray:
-    """Return the matrices of ``vector ×`` (..., 3, 3)."""
-    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    zero = np.zeros_like(x)
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 def _balanced(robot: Robot, stiffness: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.kernel.calling import Situation, plain
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import OPEN, Verdict
 from designer.physics import pulley
@@ -16,6 +17,7 @@ from designer.progress import checkpoint
 from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
+    level_geometry,
     upright_exit_points_m,
     upright_situation,
 )
@@ -83,6 +85,8 @@ class Task:
         Force on the platform beside its weight, base frame [N].
     relative_weights : float or array (n_cables,)
         Weight of the cables relative to w.
+    sag_max : float or None
+        Largest sag over chord, of more cables than degrees of freedom.
     """
 
     kappa_per_m: float | FloatArray
@@ -90,6 +94,7 @@ class Task:
     inverse_weight_m_per_N: float | None
     force_N: FloatArray | None = None
     relative_weights: float | FloatArray = 1.0
+    sag_max: float | None = None
 
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
@@ -100,7 +105,7 @@ def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
     """Return how straight cables run over the pulleys in poses (...)."""
     if robot.pulley_radius_m == 0.0:
         return PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-    geometry = cable_geometry(robot, poses)
+    geometry = level_geometry(robot, poses)
     return _run(robot, geometry, _straight_slope_rad(robot, geometry))
 
 
@@ -110,12 +115,28 @@ def _straight_slope_rad(robot: Robot, geometry: CableGeometry) -> FloatArray:
     )
 
 
-def _run(robot: Robot, geometry: CableGeometry, slope_rad: FloatArray) -> PulleyRun:
-    radius, exits = robot.pulley_radius_m, upright_exit_points_m(robot)
-    return PulleyRun(
-        pulley.tangent_point_m(exits, geometry.outward, slope_rad, radius),
-        pulley.wrap_length_m(slope_rad, radius),
-    )
+def _run(robot: Robot, level: CableGeometry, slope_rad: FloatArray) -> PulleyRun:
+    """Return the run over pulleys, which stand upright however the load on the cables points."""
+    radius, exits = robot.pulley_radius_m, robot.exit_points_m @ robot.level.T
+    points = pulley.tangent_point_m(exits, level.outward, slope_rad, radius)
+    if robot.cable_load_direction is not None:
+        points = points @ robot.leaning.T
+    return PulleyRun(points, pulley.wrap_length_m(slope_rad, radius))
+
+
+def _slope_over_pulley_rad(
+    robot: Robot, poses: Poses, level: CableGeometry, run: PulleyRun, slope_rad: FloatArray
+) -> FloatArray:
+    """Return the angle at which cables leave in their pulleys' planes (...), from true horizontal.
+
+    ``slope_rad`` (...) is that in the plane of load and chord, from across the load.
+    """
+    if robot.cable_load_direction is None:
+        return slope_rad
+    outward = cable_geometry(robot, poses, run.exit_points_m).outward
+    down = -np.sin(slope_rad)[..., None]
+    along = np.concatenate([np.cos(slope_rad)[..., None] * outward, down], axis=-1) @ robot.leaning
+    return np.asarray(np.arctan2(-along[..., 2], (along[..., :2] * level.outward).sum(axis=-1)))
 
 
 def flat_poses(poses: Poses) -> Poses:
@@ -133,7 +154,7 @@ def solve_task(
     """Solve poses (...), flattened to one axis.
 
     Other branches are tried where nothing is found and, if it ``seeks_better``, where one may be
-    better than what is.
+    better than what is. Where none keeps the largest sag, the answer is one that does not.
     """
     checkpoint()
     flat = flat_poses(poses)
@@ -145,7 +166,13 @@ def solve_task(
         robot, flat, task, is_thorough=False, rates_branches=seeks_better
     )
     _judge_unsolved(robot, flat, solution, task)
-    _try_other_branches(robot, flat, solution, run, task)
+    limits_sag = robot.is_redundant and task.sag_max is not None
+    hangs = np.zeros(count, dtype=np.bool_)
+    if limits_sag and not seeks_better:
+        hangs = _let_hang(robot, flat, solution, run, task, seeks_better)
+    _try_other_branches(robot, flat, solution, run, task, ~hangs)
+    if limits_sag:
+        _let_hang(robot, flat, solution, run, task, seeks_better, ~hangs)
     if robot.pulley_radius_m == 0.0:
         return solution, run
     shape = (*poses.shape, robot.n_cables)
@@ -175,6 +202,7 @@ def _solve_over_pulleys(
             task.relative_weights * each,
             task.strength_m * each,
             task.inverse_weight_m_per_N,
+            sag_max=task.sag_max,
             is_thorough=is_thorough,
             rates_branches=rates_branches,
         )
@@ -229,15 +257,16 @@ def _try_other_branches(
     solution: Solution,
     run: PulleyRun,
     task: Task,
+    among: BoolArray,
 ) -> None:
-    """Search again where nothing is found or proved, or another branch is rated to be better.
+    """Search ``among`` poses again where nothing is found or another branch is rated better.
 
     Of branches that are as good, one without cables far longer than their chords is preferred.
 
     Writes what is better into the solution and the run of the cables.
     """
     hard = np.logical_or.reduce([solution.verdict == verdict for verdict in OPEN])
-    at = np.flatnonzero(hard | (solution.potential > _WORTH_A_SEARCH))
+    at = np.flatnonzero(among & (hard | (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
     some = part_of(flat, at)
@@ -262,6 +291,29 @@ def _try_other_branches(
         solution.verdict[proved] = Verdict.NO_FINITE_CABLE
 
 
+def _let_hang(
+    robot: Robot,
+    flat: Poses,
+    solution: Solution,
+    run: PulleyRun,
+    task: Task,
+    seeks_better: bool,
+    among: BoolArray | bool = True,
+) -> BoolArray:
+    """Solve poses that have no answer again, whatever the sag: what is found exceeds it.
+
+    Where no better branch is sought, before other branches are tried within the limit, which takes
+    long and rarely finds one. Tells which poses (n_poses,) these were.
+    """
+    hangs = np.isin(solution.verdict, OPEN) & among
+    at = np.flatnonzero(hangs)
+    if len(at) > 0:
+        slack = replace(task.part(at), sag_max=None)
+        some = part_of(flat, at)
+        _replace(solution, run, at, *solve_task(robot, some, slack, seeks_better=seeks_better))
+    return hangs
+
+
 def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -> None:
     """Replace the verdicts of poses without a solution by what is proved of them."""
     from designer.kernel.batch import refuse_batch
@@ -271,12 +323,30 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
         return
     some = part_of(flat, left)
     points = straight_run(robot, some).exit_points_m
-    force_N = task.part(left).force_N
-    verdict, _, _ = refuse_batch(robot, upright_situation(robot, some, points, force_N))
+    situation = upright_situation(robot, some, points, task.part(left).force_N)
+    near, least_N = np.zeros(len(left), dtype=np.bool_), robot.tension_min_N
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
-        near = cable_geometry(robot, some).horizontal_distance_m < 2.0 * robot.pulley_radius_m
-        verdict[near.any(axis=1)] = Verdict.NOT_CONVERGED
+        level = level_geometry(robot, some)
+        near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
+        if robot.cable_load_direction is not None:
+            situation, least_N = _between_tangents(robot, level, situation), 0.0
+    verdict, _, _ = refuse_batch(situation, least_N if robot.is_redundant else 0.0)
+    verdict[near] = Verdict.NOT_CONVERGED
     solution.verdict[left] = verdict
+
+
+def _between_tangents(robot: Robot, level: CableGeometry, situation: Situation) -> Situation:
+    """Return a situation with a second cable from the lower end of each pulley, as it is seen.
+
+    Where the load on a cable is not vertical, its chord may rise more than that of a straight one
+    as seen across the load; but it stays between these two.
+    """
+    slope = pulley.lower_slope_rad(level.horizontal_distance_m, level.drop_m, robot.pulley_radius_m)
+    lower = _run(robot, level, slope).exit_points_m
+    return situation._replace(
+        exit_points=plain(np.concatenate([situation.exit_points, lower], axis=1)),
+        attachments=plain(np.tile(situation.attachments, (2, 1))),
+    )
 
 
 def part_of(poses: Poses, chosen: IntArray) -> Poses:
@@ -315,26 +385,27 @@ def over_pulleys(
     robot, poses
         The robot and its poses (...).
     solve : callable
-        Takes the run of the cables, and returns an answer with the angle below the horizontal at
-        which each cable leaves [rad] and its strain there.
+        Takes the run of the cables, and returns an answer with the angle at which each cable
+        leaves, in its own plane and upright frame below the horizontal [rad], and its strain there.
 
     Returns
     -------
     answer, run
         Of the last turn.
-    settled : array (...)
-        Poses in which every cable leaves its pulley as a tangent.
+    gap_rad : array (...)
+        By how much the angle at which a cable leaves its pulley still changed.
     """
     if robot.pulley_radius_m == 0.0:
         run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
         return solve(run)[0], run, np.zeros(poses.shape)
-    geometry = cable_geometry(robot, poses)
-    slope = straight = _straight_slope_rad(robot, geometry)
+    level = level_geometry(robot, poses)
+    slope = straight = _straight_slope_rad(robot, level)
     strain: FloatArray | float = 0.0
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
     for turn in range(turns):
-        run = _run(robot, geometry, slope).unstrained(strain)
+        run = _run(robot, level, slope).unstrained(strain)
         answer, found, strain = solve(run)
+        found = _slope_over_pulley_rad(robot, poses, level, run, found)
         step = np.where(np.isfinite(found), found, straight) - slope
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= _STILL_RAD):

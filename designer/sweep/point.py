@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from designer.analysis.analyse import analyse, analyse_pose
-from designer.analysis.result_json import Json, size_dict
+from designer.analysis.result_json import Json, evaluates_answer, size_dict
 from designer.documents.document import Document
 from designer.documents.node import Key, Node
 from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
-from designer.errors import DesignerError, InputError
+from designer.errors import DesignerError, InputError, described
 from designer.grades.kept import kept_catalogue
 from designer.grades.registry import Catalogue
 from designer.io.config.reader import checked, study_of
@@ -27,11 +27,9 @@ Change = tuple[tuple[Key, ...], Node]
 
 _EXPLAINING = (
     "verification", "sensitivities", "reserve", "sizes_beside", "first_failures",
-    "workspace.servable", "uncertainty",
+    "workspace.servable", "uncertainty", "pose.rest",
 )  # fmt: skip
 """What changes no answer, and is computed only where it is kept."""
-_OF_THE_CHOICE = ("stiffness", "interference", "hanging")
-"""Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,18 +69,22 @@ class Base:
         if parts <= {"pose", "name"}:
             finds_rest = any(name.startswith("pose.rest") for name in self.keep)
             return size_dict(study, analyse_pose(study, finds_rest=finds_rest))
-        if "pose" not in parts and study.workspace is not None:
-            study = replace(study, pose=None)
-        if parts <= {"pose", "workspace"} and not any(
-            name.split(".")[1:2] == [quality] for name in self.keep for quality in _OF_THE_CHOICE
-        ):
+        is_whole = evaluates_answer(self.keep)
+        if not is_whole:
+            if "pose" not in parts and study.workspace is not None:
+                study = replace(study, pose=None)
             study = replace(study, selection=None, load_cases=())
         # A proof may take its whole budget for each of thousands of studies.
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        explains = any(name.startswith(_EXPLAINING) for name in self.keep)
         grades = self._catalogue(study)
-        return analyse(study, grades, explains=explains).to_dict()
+        result = analyse(study, grades, explains=explains_for(self.keep)).to_dict()
+        return result if is_whole else {**result, "positive": None, "answer": None}
+
+
+def explains_for(keep: Iterable[str]) -> bool:
+    """Tell whether what is kept takes what changes no answer, and is slow to compute."""
+    return any(name.startswith(_EXPLAINING) for name in keep)
 
 
 @cache
@@ -159,14 +161,18 @@ def why_not(error: Exception) -> str:
         return str(error).partition("\n")[0]
     if isinstance(error, KeyError):
         return f"there is no {error.args[0]} in this result"
-    return f"{type(error).__name__}: {error}"
+    return described(error)
 
 
 def why_negative(result: Json) -> str:
     """Return why a result is no answer, in a line; empty where it is one."""
-    pose, workspace = result.get("pose"), result.get("workspace")
+    pose = result.get("pose")
     if pose is not None and pose["sagging"]["status"] != "solved":
         return f"the configured pose: {Verdict[pose['sagging']['status'].upper()].reason}"
-    if workspace is not None and workspace["sagging"] is None:
-        return "no cable holds in all of the workspace"
-    return "" if result.get("positive", True) else "no rope holds as asked"
+    answer, workspace = result.get("answer"), result.get("workspace")
+    if answer is None:  # not evaluated: what is kept does not take it
+        is_held = workspace is None or workspace["sagging"] is not None
+        return "" if is_held else "no cable of the family holds in all of the workspace"
+    unmet = answer["reasons"]
+    parts = [f"{each['id']} in {each['load_case']}: {each['state']}" for each in unmet]
+    return "; ".join(parts)

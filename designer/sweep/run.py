@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from logging import CRITICAL, getLogger
 from multiprocessing import active_children, get_context
 from typing import Any
 
-from designer.errors import DesignerError, OutputError
+from designer.errors import DesignerError, OutputError, described
 from designer.io.process import children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
 from designer.sweep.plan import Plan
@@ -102,8 +104,16 @@ def _run_until_death(
             nothing = [None] * len(plan.keep)
             store.write(points, [(nothing, "its process ended without an answer")] * len(points))
             advance(len(points))
+
+
+@contextmanager
+def _cancelled_at_end(running: Iterable[Future[Solved]]) -> Iterator[None]:
+    """Cancel what has not begun; an executor's own end waits for it, and Dask's cannot cancel."""
+    try:
+        yield
     finally:
-        executor.shutdown(wait=True, cancel_futures=True)
+        for future in running:
+            future.cancel()
 
 
 def _at_once(
@@ -123,12 +133,12 @@ def _result(future: Future[Solved]) -> Solved:
     except BrokenProcessPool:
         raise
     except Exception as error:  # of a cluster: each kind of it tells this in its own way
-        line = f"the workers are gone ({type(error).__name__}: {error})"
+        line = f"the workers are gone ({described(error)})"
         raise OutputError(f"{line}; what is stored stays, and the same command goes on") from error
 
 
-def cluster(address: str) -> MakeExecutor:
-    """Return what hands out the executor of a running Dask cluster.
+def cluster(address: str) -> tuple[MakeExecutor, int]:
+    """Return what hands out the executor of a running Dask cluster, and how many tasks it runs.
 
     Raises
     ------
@@ -140,8 +150,17 @@ def cluster(address: str) -> MakeExecutor:
     except ImportError:
         line = "--cluster needs Dask: pip install 'cdpr-designer[cluster]'"
         raise DesignerError(line) from None
+    # Where the scheduler goes away they write tracebacks, beside the line that the user gets.
+    for library in (
+        "distributed",
+        "distributed.client",
+        "tornado",
+        "tornado.application",
+        "asyncio",
+    ):
+        getLogger(library).setLevel(CRITICAL)
     try:
         client = Client(address, timeout=10)
     except (OSError, ValueError, TypeError) as error:
         raise DesignerError(f"--cluster {address}: nothing answers there ({error})") from None
-    return lambda: client.get_executor(pure=False)
+    return lambda: client.get_executor(pure=False), max(sum(client.nthreads().values()), 1)

@@ -99,6 +99,8 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
         except Timeout:
             raise OutputError(f"{path}: another run fills this store") from None
         with lock:
+            for left in path.rglob("*.partial"):  # of a run that was killed while it wrote them
+                left.unlink(missing_ok=True)
             yield Store(zarr.open_group(path, mode="r+"), plan)
 
 

@@ -35,6 +35,15 @@ _COINCIDENT = 1e-9
 _CHUNK = 256
 
 
+def names_of(pair: tuple[int, int]) -> tuple[str, str]:
+    """Return names of what a pair of numbers stands for, cables counted from 1."""
+    first, second = pair
+    return (
+        f"cable {first + 1}",
+        "the platform" if second == PLATFORM else f"cable {second + 1}",
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Clearance:
     """How near things come in each pose; NaN where it is not solved or nothing is compared."""

@@ -13,10 +13,10 @@ from designer.model.robot import Poses, Robot
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
 from designer.workspace.clearance import (
-    PLATFORM,
     Clearance,
     clearance_among_cables,
     clearance_to_platform,
+    names_of,
 )
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 
@@ -51,11 +51,7 @@ class Nearest:
     @property
     def names(self) -> tuple[str, str]:
         """Names of the two, cables counted from 1."""
-        first, second = self.pair
-        return (
-            f"cable {first + 1}",
-            "the platform" if second == PLATFORM else f"cable {second + 1}",
-        )
+        return names_of(self.pair)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

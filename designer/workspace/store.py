@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from designer.arrays import FloatArray
+from designer.errors import OutputError
 from designer.model.verdict import Verdict
 from designer.sizing.newton import Sizing
 
@@ -49,7 +50,7 @@ def sweep_file(
     """
     import netCDF4
 
-    with netCDF4.Dataset(path, "w") as file:
+    with _write_failures_told(path), netCDF4.Dataset(path, "w") as file:
         file.setncatts(dict(attributes))
         sizes = {"sample": None, "axis": 3, "cable": n_cables}
         for name, size in sizes.items():
@@ -70,6 +71,18 @@ def sweep_file(
                 file[name][start : start + len(places)] = value
 
         yield append
+
+
+@contextmanager
+def _write_failures_told(path: Path) -> Iterator[None]:
+    """Turn the library's own error, which it raises where a disk is full, into one for the user."""
+    try:
+        yield
+    except RuntimeError as error:
+        if not str(error).startswith("NetCDF:"):
+            raise
+        line = f"{path.name}: cannot be written ({error}; is the disk full?)"
+        raise OutputError(line) from error
 
 
 def _values(places: FloatArray, sizing: Sizing) -> Mapping[str, Any]:

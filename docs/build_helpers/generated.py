@@ -1,6 +1,9 @@
 """Pages that the code writes: a line `<!-- generated: NAME -->` is replaced by its text."""
 
+import csv
 import re
+from collections import Counter
+from pathlib import Path
 
 from sphinx.util.logging import getLogger
 from typer.main import get_command
@@ -16,6 +19,8 @@ from designer.resources import data_folder
 _MARK = re.compile(r"^<!-- generated: (\w+) -->$", re.MULTILINE)
 _LOGGER = getLogger(__name__)
 _NOWHERE = {"type": "null"}
+PAIRS = Path(__file__).parents[2] / "tests" / "pairs" / "outcomes.csv"
+PAIRS_HEAD = ("option", "computed with", "refused with", "reported as not covered with")
 
 
 def fill(app, page, source):
@@ -74,8 +79,10 @@ def _sections(schema):
 def _kind(schema):
     """What may stand there, in words."""
     if "x-unit" in schema:
-        number = schema["anyOf"][0]
-        return f"{schema['x-unit'] or 'number'}, {number['minimum']:g} to {number['maximum']:g}"
+        words = [f"`{one['const']}`" for one in schema["anyOf"] if "const" in one]
+        number = next(one for one in schema["anyOf"] if "minimum" in one)
+        bounds = f"{number['minimum']:g} to {number['maximum']:g}"
+        return " or ".join([f"{schema['x-unit'] or 'number'}, {bounds}", *words])
     kinds = [one for one in (*schema.get("anyOf", ()), *schema.get("oneOf", ())) if one != _NOWHERE]
     if kinds:
         return " or ".join(dict.fromkeys(map(_kind, kinds)))
@@ -164,6 +171,39 @@ def nomenclature():
     return f"```{{raw}} html\n{path.read_text(encoding='utf-8')}\n```"
 
 
+def pairs():
+    """Return what becomes of each option of a study with each of the others."""
+    with PAIRS.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = dict.fromkeys(name for row in rows for name in (row["first"], row["second"]))
+    numbers = {why: number for number, why in enumerate(dict.fromkeys(_whys(rows)), 1)}
+    counts = Counter(row["outcome"] for row in rows)
+    total = ", ".join(f"{count} {kind}" for kind, count in counts.most_common())
+    table = _table((_of_option(name, rows, numbers) for name in names), PAIRS_HEAD)
+    reasons = "\n".join(f"{number}. {why}" for why, number in numbers.items())
+    return f"{len(rows)} pairs: {total}.\n\n{table}\n{reasons}\n"
+
+
+def _whys(rows):
+    return (row["why"] for row in rows if row["why"])
+
+
+def _of_option(name, rows, numbers):
+    """Return a row: the option, how often it is computed, and with what it is not."""
+    own = [row for row in rows if name in (row["first"], row["second"])]
+
+    def others(kind):
+        each = (
+            f"`{row['second' if row['first'] == name else 'first']}` ({numbers[row['why']]})"
+            for row in own
+            if row["outcome"] == kind
+        )
+        return ", ".join(each)
+
+    computed = sum(row["outcome"] == "computed" for row in own)
+    return f"`{name}`", str(computed), others("refused"), others("not covered")
+
+
 def verification():
     """Return figures of others beside ours, as `designer verify` writes them; warn if one fails."""
     computed = compute()
@@ -176,6 +216,7 @@ def verification():
 
 WRITERS = {
     "verification": verification,
+    "pairs": pairs,
     "config": config,
     "effects": effects,
     "verdicts": verdicts,

@@ -1,231 +1,381 @@
-"""Reads thousands of spoilt configs and grade files, and analyses those that are accepted.
+"""Random changes of the code, one at a time: which of them does no quick test see?
 
-    python tests/benchmarks/mutants.py [CONFIGS] [GRADES] [ANALYSES] [SEED]
+    python tests/benchmarks/mutants.py [--count 200] [--seed 0] [--jobs 2] [--rooms ROOM ...]
+        [--most 60] [--seconds 300] [--log mutants.jsonl] [--again mutants.jsonl --tests FILE ...]
 
-A mutant may be refused with its faults, or be read; then a pose and a handful of samples of it are
-solved and written as strict JSON. Anything else is printed with the text that did it, and the exit
-status is 1: an exception of another kind, more than `SLOWEST_S`, a number that JSON cannot hold.
+A mutant is the code with one comparison, sign, operation, bound, constant, quantifier or connective
+changed. Places are drawn by seed from all rooms alike. First the quick tests run once, on a copy of
+the checkout that notes which test reaches which place; then each mutant gets a copy, where the
+tests that reach it run, those of its room first, until one fails. For compiled code, where nothing
+can be noted, those are the tests in `COMPILED`. A survivor is printed with its line, to be killed
+by a test or understood as equivalent; ``--again`` tries the survivors of a log on other tests. Ends
+with status 1 if any survives.
+
+Left alone is what no result follows from: texts, errors' messages, annotations, decorators,
+assertions, sizes in pictures; and tolerances (below 1e-4). So is the window, whose tests need a
+screen. mutmut and Cosmic Ray draw no sample by seed, and have one test command for all rooms.
 """
 
 from __future__ import annotations
 
+import argparse
+import ast
 import json
+import os
 import random
-import re
+import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
-import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import asdict, dataclass
 from functools import partial
+from itertools import accumulate, pairwise
 from pathlib import Path
-from types import FrameType
+from typing import NamedTuple
 
-from designer.analysis.analyse import analyse, analyse_pose
-from designer.analysis.result_json import result_dict, size_dict
-from designer.documents.plain import json_text
-from designer.errors import DesignerError
-from designer.grades.files import read_grade
-from designer.grades.registry import Catalogue, load_catalogue
-from designer.io.config import read_study
-from designer.plugins.find import find_plugins
-from designer.progress import Silent
-from designer.resources import data_folder, example_file, example_names
-from designer.study import Study
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "designer"
+WINDOW = "designer/explore/desktop/"
+PICTURES = "designer/report/figures/"
+COMPILED = {
+    "designer/physics/": ("tests/physics", "tests/statics"),
+    "designer/kernel/": ("tests/kernel", "tests/physics", "tests/statics", "tests/sizing"),
+    "designer/proof/enclosure/": ("tests/proof",),
+}
+"""Folders of compiled code and what it is compiled again for, and their tests."""
+SMALLEST = 1e-4
+MEMORY = 8 * 2**30
 
-SLOWEST_S = 20
-"""Processor time for reading; an analysis may take four times as long."""
-NUMBERS = (
-    *(
-        "0",
-        "-1",
-        "1",
-        "-0.0",
-        "1e-300",
-        "1e300",
-        "1e308",
-        "-1e308",
-        "1e999",
-        ".nan",
-        ".inf",
-        "1e-9",
-    ),
-    *("9" * 17, "9" * 18, "9" * 19, "9" * 60, "9" * 64, "9" * 65, "9" * 400, "1" * 5000),
-    *("0." + "0" * 400 + "1", "1e" + "9" * 300, "1" * 300 + "." + "1" * 300, "7" * 900 + "x"),
-    *("0x" + "f" * 400, "1_000", "1e6", "1e9", "-1e9", "1e-6", "12345678", "0.001", "1000", "2.5"),
-    *("true", "null", "''", "text", "[]", "{}", "[1, 2]", "[[1]]", "{a: 1}", "!!int 5", "&a 1"),
-)
-UNITS = ("mm", "km", "m", "kg", "t", "kN", "GPa", "deg", "m^9", "lightyear", "%", "degC", "dB", "°")
+COMPARISONS = {
+    ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "==",
+    ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in",
+}  # fmt: skip
+BOUNDS = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
+OPERATIONS = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
+NAMES = {
+    "any": "all", "all": "any", "min": "max", "max": "min", "minimum": "maximum",
+    "maximum": "minimum", "argmin": "argmax", "argmax": "argmin", "floor": "ceil",
+    "ceil": "floor", "sin": "cos", "cos": "sin", "isposinf": "isneginf", "isneginf": "isposinf",
+}  # fmt: skip
 
 
-def spoilt(text: str, chance: random.Random) -> str:
-    """Return the text with one to three of its values, lines or letters changed."""
-    for _ in range(chance.choice((1, 1, 1, 2, 3))):
-        text = chance.choice(CHANGES)(text, chance)
-    return text
+@dataclass(frozen=True)
+class Mutant:
+    """One change: what stands at an offset of a file, and what is put there."""
+
+    file: str
+    line: int
+    start: int  # In bytes
+    old: str
+    new: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.old} -> {self.new}"
+
+    @property
+    def room(self) -> str:
+        """The room that it is in."""
+        return Path(self.file).parts[1].removesuffix(".py")
+
+    @property
+    def compiled(self) -> str | None:
+        """The folder of compiled code that it is in."""
+        return next((folder for folder in COMPILED if self.file.startswith(folder)), None)
+
+    def put_into(self, folder: Path) -> None:
+        """Change the file of a copy."""
+        path = folder / self.file
+        text, old = path.read_bytes(), self.old.encode()
+        end = self.start + len(old)
+        if text[self.start : end] != old:
+            raise ValueError(f"{self}: the file has changed")
+        path.write_bytes(text[: self.start] + self.new.encode() + text[end:])
 
 
-def _number(text: str, chance: random.Random) -> str:
-    spans = list(_numbers(text))
-    if not spans:
-        return text
-    start, end = chance.choice(spans)
-    new = chance.choice(NUMBERS)
-    if chance.random() < 0.2:
-        new = f"{new} {chance.choice(UNITS)}"
-    return text[:start] + new + text[end:]
+def mutants_of(path: Path) -> Iterator[Mutant]:
+    """Yield every mutant of a file."""
+    source, name = path.read_bytes(), path.relative_to(ROOT).as_posix()
+    starts = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
+    for node in _seen(ast.parse(source)):
+        if isinstance(node, ast.Constant) and name.startswith(PICTURES):
+            continue
+        for change in _changes(node, source, starts):
+            yield Mutant(name, 1 + source[: change.start].count(b"\n"), *change)
 
 
-def _scaled(text: str, chance: random.Random) -> str:
-    spans = list(_numbers(text))
-    if not spans:
-        return text
-    start, end = chance.choice(spans)
-    factor = chance.choice((-1.0, 1e-9, 1e-6, 1e-3, 0.1, 10.0, 1e3, 1e6, 1e9))
-    return f"{text[:start]}{float(text[start:end]) * factor!r}{text[end:]}"
+class Change(NamedTuple):
+    """What stands at an offset, and what is put there."""
+
+    start: int
+    old: str
+    new: str
 
 
-def _line(text: str, chance: random.Random) -> str:
-    lines = text.splitlines()
-    at = chance.randrange(len(lines))
-    change = chance.randrange(4)
-    if change == 0:
-        del lines[at]
-    elif change == 1:
-        lines.insert(at, chance.choice(lines))
-    elif change == 2:
-        lines[at] = " " * chance.randrange(4) + lines[at].lstrip()
-    else:
-        name = lines[at].split(":")[0]
-        lines[at] = f"{name}: {chance.choice(NUMBERS)}"
-    return "\n".join(lines) + "\n"
+def _changes(node: ast.AST, source: bytes, starts: list[int]) -> Iterator[Change]:
+    """Yield the changes of a node; ``starts`` are the offsets of all lines."""
+
+    def place(node: ast.expr) -> tuple[int, int]:
+        return (
+            starts[node.lineno - 1] + node.col_offset,
+            starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0),
+        )
+
+    def put(first: int, end: int, new: str) -> Change:
+        return Change(first, source[first:end].decode(), new)
+
+    for left, right, old, new in _operators(node):
+        first, end = place(left)[1], place(right)[0]
+        at = source[first:end].find(old.encode())
+        if at >= 0 and b"#" not in source[first:end]:
+            yield put(first + at, first + at + len(old), new)
+    match node:
+        case ast.UnaryOp(op=ast.USub() | ast.Not()):
+            yield put(*place(node), f"({ast.unparse(node.operand)})")
+        case ast.IfExp():
+            first, end = place(node.test)
+            yield put(first, end, f"not ({source[first:end].decode()})")
+        case ast.Call():
+            first, end = place(node.func)
+            called = _called(node)
+            if called in NAMES:
+                yield put(end - len(called), end, NAMES[called])
+            elif called in {"abs", "fabs", "absolute"}:
+                yield put(first, end, "")
+        case ast.Constant(value=int() | float() as value):
+            if not (isinstance(value, bool) or 0.0 < value < SMALLEST):
+                new = value + 1 if isinstance(value, int) else 2.0 * value or 1.0
+                yield put(*place(node), repr(new))
 
 
-def _letter(text: str, chance: random.Random) -> str:
-    at = chance.randrange(len(text))
-    letter = chance.choice("0123456789-.,:[]{}'\"#&*!|>%@ \n\te\x00é")
-    return text[:at] + letter + text[at + chance.randrange(2) :]
+def _operators(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr, str, str]]:
+    """Yield the operands of a node's operators, each operator, and what may stand for it."""
+    match node:
+        case ast.Compare():
+            operands = [node.left, *node.comparators]
+            for (left, right), kind in zip(pairwise(operands), map(type, node.ops), strict=True):
+                yield left, right, SYMBOLS[kind], COMPARISONS[kind]
+                if kind in BOUNDS and (_is_whole(left) or _is_whole(right)):
+                    yield left, right, SYMBOLS[kind], BOUNDS[kind]
+        case ast.BoolOp():
+            old, new = ("and", "or") if isinstance(node.op, ast.And) else ("or", "and")
+            for left, right in pairwise(node.values):
+                yield left, right, old, new
+        case ast.BinOp() if type(node.op) in OPERATIONS and not _is_text(node):
+            yield node.left, node.right, SYMBOLS[type(node.op)], OPERATIONS[type(node.op)]
 
 
-CHANGES: tuple[Callable[[str, random.Random], str], ...] = (
-    _number, _number, _number, _scaled, _scaled, _line, _letter,
-)  # fmt: skip
+SYMBOLS: dict[type, str] = {
+    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
+    ast.Is: "is", ast.IsNot: "is not", ast.In: "in", ast.NotIn: "not in",
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
+}  # fmt: skip
 
 
-def _numbers(text: str) -> Iterator[tuple[int, int]]:
-    """Yield where numbers stand, comments left out."""
-    at = 0
-    for line in text.splitlines(keepends=True):
-        for found in re.finditer(r"(?<![\w.])-?\d+\.?\d*(?:e-?\d+)?(?![\w.])", line.split("#")[0]):
-            yield at + found.start(), at + found.end()
-        at += len(line)
+def _seen(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes from which results follow."""
+    if isinstance(node, ast.Raise | ast.Assert | ast.JoinedStr | ast.Import | ast.ImportFrom):
+        return
+    if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+        return
+    if isinstance(node, ast.FunctionDef) and node.name in {"__repr__", "__str__"}:
+        return
+    yield node
+    passed = {"decorator_list", "annotation", "returns", "bases", "type_params"}
+    for name, value in ast.iter_fields(node):
+        if name not in passed:
+            for child in value if isinstance(value, list) else [value]:
+                if isinstance(child, ast.AST):
+                    yield from _seen(child)
 
 
-@contextmanager
-def no_longer_than(seconds: int) -> Iterator[None]:
-    """Raise `TimeoutError` in what takes more processor time."""
+def _called(node: ast.Call) -> str:
+    return getattr(node.func, "attr", "") or getattr(node.func, "id", "")
 
-    def stop(_: int, __: FrameType | None) -> None:
-        raise TimeoutError(f"more than {seconds} s")
 
-    before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)  # processor time
+def _is_whole(node: ast.expr) -> bool:
+    """Tell whether an operand is a whole number for certain, so that equality happens."""
+    if isinstance(node, ast.Call):
+        return _called(node) in {"len", "sum", "count"}
+    return isinstance(node, ast.Constant) and type(node.value) is int
+
+
+def _is_text(node: ast.BinOp) -> bool:
+    return any(
+        isinstance(side, ast.JoinedStr | ast.Constant)
+        and not isinstance(getattr(side, "value", ""), int | float)
+        for side in (node.left, node.right)
+    )
+
+
+NOTES = """
+import os, pathlib
+_seen = set()
+
+def hit(number):
+    test = os.environ.get("PYTEST_CURRENT_TEST", "")
+    if test and (number, test) not in _seen:
+        _seen.add((number, test))
+        with open(pathlib.Path(__file__).with_name("reached.txt"), "a") as file:
+            file.write(f"{number} {test}\\n")
+"""
+
+
+def with_notes(source: bytes, places: dict[int, int]) -> bytes:
+    """Return a source that notes when a test reaches one of these offsets, by their numbers.
+
+    What runs when the module is imported is taken as reached by all that calls its functions.
+    """
+    tree, lines = ast.parse(source), source.splitlines(keepends=True)
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    notes: dict[int, list[int]] = {}
+    for number, offset in places.items():
+        line = 1 + source[:offset].count(b"\n")
+        inside = [f for f in functions if f.body[0].lineno <= line <= (f.end_lineno or 0)]
+        near = inside[-1:] or functions
+        for statement in (f.body[ast.get_docstring(f) is not None :][:1] for f in near):
+            for first in statement:
+                at = min([first.lineno, *(d.lineno for d in getattr(first, "decorator_list", []))])
+                notes.setdefault(at, []).append(number)
+    for at, numbers in notes.items():
+        code = lines[at - 1]
+        indent = code[: len(code) - len(code.lstrip())]
+        calls = b"".join(b'%s__import__("notes").hit(%d)\n' % (indent, n) for n in numbers)
+        lines[at - 1] = calls + code
+    return b"".join(lines)
+
+
+def reached(chosen: list[Mutant], jobs: int, most: int) -> list[list[str]]:
+    """Return of each mutant the tests that reach it, the likeliest to see it first."""
+    tests: list[set[str]] = [set() for _ in chosen]
+    with tempfile.TemporaryDirectory(prefix="reached-") as name:
+        folder = copied(Path(name))
+        (folder / "notes.py").write_text(NOTES)
+        for file in {each.file for each in chosen if not each.compiled}:
+            places = {k: each.start for k, each in enumerate(chosen) if each.file == file}
+            (folder / file).write_bytes(with_notes((ROOT / file).read_bytes(), places))
+        run_tests(folder, ["-n", str(jobs), "tests"], 3600.0)
+        for row in (folder / "reached.txt").read_text(encoding="utf-8").splitlines():
+            number, test = row.split(" ", 1)
+            test, phase = test.rsplit(" ", 1)
+            # What a fixture of many tests reaches is noted for the first of them.
+            tests[int(number)].add(test if phase == "(call)" else test.split("::")[0])
+    breadth = Counter(test for some in tests for test in some)
+
+    def nearest(k: int) -> list[str]:
+        if chosen[k].compiled:
+            return list(COMPILED[chosen[k].compiled or ""])
+        room = f"tests/{chosen[k].room}/"
+        return sorted(tests[k], key=lambda test: (not test.startswith(room), breadth[test], test))
+
+    return [nearest(k)[:most] for k in range(len(chosen))]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the tests said of a mutant."""
+
+    mutant: Mutant
+    ended: str  # survived, killed, timed out
+    by: str  # Test that killed it, or how many did not
+    elapsed_s: float
+
+
+def tried(mutant: Mutant, tests: list[str], seconds: float) -> Outcome:
+    """Run tests on a copy of the checkout with the mutant in it."""
+    if not tests:
+        return Outcome(mutant, "survived", "reached by no test", 0.0)
+    with tempfile.TemporaryDirectory(prefix="mutant-") as name:
+        folder = copied(Path(name))
+        mutant.put_into(folder)
+        began = time.monotonic()
+        status, said = run_tests(folder, ["-x", "-n0", "--tb=no", *tests], seconds)
+        elapsed_s = round(time.monotonic() - began, 1)
+    if status == 4 and "conftest" not in said:
+        raise RuntimeError(f"{mutant}: {said}")
+    if status == 0:
+        return Outcome(mutant, "survived", f"{len(tests)} tests", elapsed_s)
+    if status < 0:
+        return Outcome(mutant, "timed out", "", elapsed_s)
+    lines = [row for row in said.splitlines() if row.startswith(("FAILED", "ERROR"))]
+    return Outcome(mutant, "killed", (lines or said.splitlines()[-1:] or [""])[0], elapsed_s)
+
+
+def copied(folder: Path) -> Path:
+    """Return a copy of the checkout, with what is compiled."""
+    hidden = shutil.ignore_patterns(".*", "build", "dist", "*-report")
+    return Path(shutil.copytree(ROOT, folder / "checkout", ignore=hidden))
+
+
+def run_tests(folder: Path, options: list[str], seconds: float) -> tuple[int, str]:
+    """Return the status of pytest in a copy, negative if it took too long, and what it said."""
+    fixed = ["-q", "-p", "no:cacheprovider", "--hypothesis-seed=0"]
+    limits = f'ulimit -t {seconds:.0f} -d {MEMORY // 1024}; exec "$@"'
+    run = subprocess.Popen(
+        ["sh", "-c", limits, "sh", sys.executable, "-m", "pytest", *fixed, *options],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(folder), "OMP_NUM_THREADS": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        process_group=0,
+    )
     try:
-        yield
+        said, _ = run.communicate(timeout=10 * seconds)
+    except subprocess.TimeoutExpired:
+        said = ""
     finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
+        with suppress(ProcessLookupError):
+            os.killpg(run.pid, signal.SIGKILL)
+        run.wait()
+    return run.returncode, said
 
 
-def small(study: Study) -> Study:
-    """Return the study with a handful of samples and a few grades."""
-    if study.workspace is None:
-        return study
-    workspace = replace(study.workspace, samples=min(study.workspace.samples, 8))
-    return replace(study, workspace=workspace)
+def drawn(count: int, seed: int, rooms: list[str]) -> list[Mutant]:
+    """Return mutants at random, each room as often as it has places for them."""
+    files = [p for p in sorted(PACKAGE.rglob("*.py")) if not p.is_relative_to(ROOT / WINDOW)]
+    every = [each for path in files for each in mutants_of(path)]
+    chosen = [each for each in every if not rooms or each.room in rooms]
+    return random.Random(seed).sample(chosen, min(count, len(chosen)))
 
 
-def solve(study: Study, catalogue: Catalogue, folder: Path) -> None:
-    """Solve the pose and some samples, and write both as strict JSON."""
-    pose = analyse_pose(study)
-    if pose is not None:
-        json.loads(json_text(size_dict(study, pose)))
-    json.loads(json_text(result_dict(analyse(small(study), catalogue, folder, Silent()))))
+def survivors(log: Path) -> list[Mutant]:
+    """Return the mutants that an earlier run left."""
+    outcomes = [json.loads(row) for row in log.read_text(encoding="utf-8").splitlines()]
+    return [Mutant(**one["mutant"]) for one in outcomes if one["ended"] == "survived"]
 
 
-def main(configs: int = 2000, grades: int = 2000, analyses: int = 40, seed: int = 0) -> int:
-    """Try so many mutants; return how many did what none should."""
-    chance = random.Random(seed)
-    plugins = find_plugins(with_plugins=False)
-    full = load_catalogue(plugins=plugins)
-    catalogue = replace(full, grades=tuple(g for g in full.grades if "7x19" in g.id)[:2])
-    studies = [example_file(name) for name in example_names()]
-    with tempfile.TemporaryDirectory() as name:
-        trial = Trial(Path(name))
-        for study in studies[: 8 * bool(analyses)]:  # what is compiled now is not cut off later
-            solve(read_study(study), catalogue, trial.folder)
-        for _ in range(configs):
-            text = spoilt(_text(chance.choice(studies)), chance)
-            study = trial.reads("config", text, lambda p: read_study(p, plugins=plugins))
-            if isinstance(study, Study) and trial.tally["analysis done"] < analyses:
-                trial.does("analysis", text, partial(solve, study, catalogue, trial.folder))
-        tables = sorted(data_folder("catalog").glob("*.yaml"))
-        for _ in range(grades):
-            trial.reads("grade", spoilt(_text(chance.choice(tables)), chance), read_grade)
-    for what, count in sorted(trial.tally.items()):
-        print(f"{count:6} {what}")
-    print(f"slowest to read: {trial.slowest_s:.2f} s")
-    return sum(count for what, count in trial.tally.items() if "FAILED" in what)
-
-
-class Trial:
-    """Counts what becomes of mutants, and keeps those that do what none should."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.tally: Counter[str] = Counter()
-        self.slowest_s = 0.0
-
-    def reads(self, kind: str, text: str, read: Callable[[Path], object]) -> object:
-        """Return what is read from a text; None where it is refused."""
-        path = self.folder / "mutant.yaml"
-        path.write_text(text, encoding="utf-8", errors="surrogatepass")
-        began = time.process_time()
-        found = self.does(kind, text, partial(read, path), SLOWEST_S)
-        self.slowest_s = max(self.slowest_s, time.process_time() - began)
-        return found
-
-    def does(
-        self, kind: str, text: str, action: Callable[[], object], most_s: int = 4 * SLOWEST_S
-    ) -> object:
-        """Return what an action gives, and count how it ended."""
-        found, outcome = None, "done"
-        try:
-            with no_longer_than(most_s):
-                found = action()
-        except DesignerError:
-            outcome = "refused"
-        except Exception as error:  # whatever it is, it should not have been
-            outcome = "FAILED"
-            _tell(text, error)
-        self.tally[f"{kind} {outcome}"] += 1
-        return found
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8")
-
-
-def _tell(text: str, error: BaseException) -> None:
-    kept = Path(tempfile.mkdtemp(prefix="mutant-")) / "mutant.yaml"
-    kept.write_text(text, encoding="utf-8", errors="surrogatepass")
-    last = "".join(traceback.format_exception(error)[-3:])
-    print(f"{kept}: {type(error).__name__}: {error}\n{last}", flush=True)
+def main() -> int:
+    """Try mutants; return how many survived."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--rooms", nargs="*", default=[])
+    parser.add_argument("--most", type=int, default=60, help="tests tried on each")
+    parser.add_argument("--seconds", type=float, default=300.0, help="processor time of each")
+    parser.add_argument("--log", type=Path, default=Path("mutants.jsonl"))
+    parser.add_argument("--again", type=Path)
+    parser.add_argument("--tests", nargs="*", default=[])
+    asked = parser.parse_args()
+    chosen = survivors(asked.again) if asked.again else drawn(asked.count, asked.seed, asked.rooms)
+    given = [asked.tests] * len(chosen) if asked.tests else None
+    tests = given or reached(chosen, asked.jobs, asked.most)
+    tally: Counter[str] = Counter()
+    with ThreadPoolExecutor(asked.jobs) as pool, asked.log.open("a", encoding="utf-8") as log:
+        for outcome in pool.map(partial(tried, seconds=asked.seconds), chosen, tests):
+            tally[outcome.ended] += 1
+            log.write(json.dumps(asdict(outcome)) + "\n")
+            log.flush()
+            print(f"{outcome.ended:9} {outcome.elapsed_s:6.1f} s  {outcome.mutant}", flush=True)
+    print(", ".join(f"{count} {ended}" for ended, count in sorted(tally.items())))
+    return tally["survived"]
 
 
 if __name__ == "__main__":
-    sys.exit(min(main(*map(int, sys.argv[1:])), 1))
+    sys.exit(min(main(), 1))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 import pytest
-from benchmarks.mutants import NUMBERS, no_longer_than, spoilt
+from benchmarks.damaged_inputs import NUMBERS, no_longer_than, spoilt
 
 from designer.documents.bounds import BOUNDS
 from designer.documents.fields import QuantityField, ReadAs
@@ -127,7 +127,7 @@ def test_a_text_as_long_as_a_file_may_be_is_no_hang(faults_of: FaultsOf, tail: s
 
 @pytest.mark.parametrize("number", [n for n in NUMBERS if len(n) > 16])
 def test_long_numbers_are_settled_at_once(tmp_path: Path, number: str) -> None:
-    path = tmp_path / "mutant.yaml"
+    path = tmp_path / "damaged.yaml"
     for place in ("180 kg", "30,", "198 MPa", "3 m", "4\n"):
         path.write_text(FLAT.replace(place, place.replace(place.split()[0], number)))
         with no_longer_than(10):
@@ -138,8 +138,8 @@ def test_long_numbers_are_settled_at_once(tmp_path: Path, number: str) -> None:
         assert math.isfinite(study.robot.platform.mass_kg)
 
 
-def test_mutants_are_read_or_refused(tmp_path: Path) -> None:
-    chance, path, refused = random.Random(7), tmp_path / "mutant.yaml", 0
+def test_damaged_files_are_read_or_refused(tmp_path: Path) -> None:
+    chance, path, refused = random.Random(7), tmp_path / "damaged.yaml", 0
     studies = [example_file(name).read_text(encoding="utf-8") for name in example_names()]
     tables = [p.read_text(encoding="utf-8") for p in sorted(data_folder("catalog").glob("*.yaml"))]
     for sources, read in (

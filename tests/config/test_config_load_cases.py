@@ -88,6 +88,18 @@ def test_directions_are_spread_from_x(windy: str, study_of: StudyOf) -> None:
     )
 
 
+@pytest.mark.parametrize("given", ["", ", directions: all"])
+def test_wind_comes_from_its_worst_direction(windy: str, study_of: StudyOf, given: str) -> None:
+    study = study_of(windy + f"load_cases: [{{name: a, wind: {{speed: 1{given}}}}}]\n")
+    assert study.load_cases[0].searches_wind(study.robot)
+
+
+def test_given_directions_of_wind_are_kept(windy: str, study_of: StudyOf) -> None:
+    for given in ("directions: 8", "direction: [1, 0, 0]"):
+        study = study_of(windy + f"load_cases: [{{name: a, wind: {{speed: 1, {given}}}}}]\n")
+        assert not study.load_cases[0].searches_wind(study.robot)
+
+
 @pytest.mark.parametrize(
     ("case", "field", "problem"),
     [
@@ -103,6 +115,11 @@ def test_directions_are_spread_from_x(windy: str, study_of: StudyOf) -> None:
             "'30 degC' has the unit degree_Celsius, of which 0 is no change of 0 K",
         ),
         ("{name: a, ice: {density: 900}}", "load_cases[1].ice.thickness", "missing"),
+        (
+            "{name: a, wind: {speed: 1, directions: both}}",
+            "load_cases[1].wind.directions",
+            "'both' is not known",
+        ),
         (
             "{name: a, wind: {speed: 1, direction: [1, 0, 0], directions: 2}}",
             "load_cases[1].wind",

@@ -170,6 +170,7 @@ def test_entries_hold_every_field_as_given_and_in_SI(valid: str, study_of: Study
         Entry("workspace.hangs_below", "default", "include"),
         Entry("workspace.clearance", "default", "none"),
         Entry("workspace.floor", "default", "none"),
+        Entry("workspace.sag", "default", "0.2"),
         Entry("workspace.proof", "default", "20 s"),
         Entry("workspace.orientation", "default", "none"),
         Entry("workspace.orientations", "default", "none"),

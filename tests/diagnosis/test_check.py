@@ -17,6 +17,7 @@ from designer.arrays import frozen_array
 from designer.cli.commands import main
 from designer.diagnosis.check import Check, check
 from designer.io.config import read_study
+from designer.measured import rows
 from designer.measured.read import read_measured
 
 HEAVIER = {"platform_mass": {"offset_kg": 8.0}}
@@ -111,3 +112,33 @@ def test_what_cannot_act_is_told(config) -> None:
     told = checked(declare(config, {**HEAVIER, **clock}))
     assert [key for key, _ in told.idle] == ["clock_offset"]
     assert [s.effect.id for s in told.declared.settings] == ["platform_mass"]
+
+
+def test_terminal_page_and_numbers_say_that_a_long_log_was_thinned(
+    config, monkeypatch, capsys
+) -> None:
+    declare(config, HEAVIER)
+    monkeypatch.setattr(rows, "MOST_ROWS", 24)
+    monkeypatch.setattr(rows, "_RUN", 4)
+    assert run(monkeypatch, "--check", str(config)) == 0
+    told = "24 of 48 rows are used, 4 rows of each 8"
+    assert told in " ".join(capsys.readouterr().out.split())
+    assert told in Path("config-check/check.html").read_text(encoding="utf-8")
+    numbers = json.loads(Path("config-check/diagnosis.json").read_text(encoding="utf-8"))
+    assert told in numbers["rows"]["notes"][0]
+    assert numbers["rows"]["all"] == 24
+
+
+def test_where_no_pdf_can_be_made_the_page_comes_alone_and_says_so(
+    config, monkeypatch, capsys
+) -> None:
+    """As on Linux for arm64, for which PlutoPrint has no wheel."""
+    monkeypatch.setitem(sys.modules, "plutoprint", None)
+    declare(config, HEAVIER)
+    assert run(monkeypatch, "--check", str(config)) == 0
+    written = sorted(path.name for path in Path("config-check").iterdir())
+    assert written == ["check.html", "diagnosis.json"]
+    assert "The PDF is left out" in capsys.readouterr().out
+    page = Path("config-check/check.html").read_text(encoding="utf-8")
+    assert "The PDF is left out" in page
+    assert "plutoprint" not in page

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.clusters import lasting, score_covariances
+from designer.diagnosis.clusters import Lasting, lasting, score_covariances
 
 ROWS, CHANNELS = 120, 6
 
@@ -47,3 +47,22 @@ def test_deviation_of_an_offset_under_lasting_noise() -> None:
         stated.append(np.sqrt(max(one[0, 0] for one in score_covariances(slopes, left))) / ROWS)
     assert np.median(stated) == pytest.approx(np.std(means), rel=0.35)
     assert np.std(means) > 3.0 / np.sqrt(ROWS)  # three times what independent rows would have
+
+
+def test_a_correlation_between_rows_is_applied_and_drawn_without_its_matrix() -> None:
+    lasts = Lasting(0.6, 0.9)
+    apart = np.abs(np.subtract.outer(np.arange(40), np.arange(40)))
+    matrix = np.where(apart == 0, 1.0, 0.6 * 0.9**apart)
+    rng = np.random.default_rng(3)
+    columns = rng.normal(size=(40, 5))
+    assert lasts.correlated(columns) == pytest.approx(matrix @ columns, rel=1e-12)
+    drawn = lasts.draw(rng, (40, 20_000))
+    assert np.cov(drawn) == pytest.approx(matrix, abs=0.05)
+
+
+def test_rows_whose_square_fills_no_memory() -> None:
+    """Of 200 000 rows a matrix between all of them would take 320 GB."""
+    noise = np.random.default_rng(4).normal(size=(200_000, 2))
+    noise = np.asarray(lfilter([1.0], [1.0, -0.9], noise, axis=0))
+    *_, found = score_covariances(np.ones((len(noise), 2, 1)), noise)
+    assert found[0, 0] == pytest.approx(2 * len(noise) / (1.0 - 0.9) ** 2, rel=0.1)

@@ -24,6 +24,7 @@ from designer.io.config import read_study
 from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.robot import Poses
+from designer.report.diagnosis.design import consequence
 from designer.statics.inverse import solve_sagging
 from designer.study import Study, as_built_by
 
@@ -177,13 +178,20 @@ def diagnosed(effect: str, folder: Path) -> tuple[Diagnosis, Study]:
 
 @pytest.mark.parametrize("effect", ["pulley_radius", "elastic_modulus", "linear_mass"])
 def test_the_design_follows_what_was_found(effect, tmp_path) -> None:
-    """The diagnosed config gives the tensions that the other physics gives with the effect."""
+    """The diagnosed config gives the tensions that the other physics gives with the effect.
+
+    What was found of the rope is of the rope on the machine; a rope of the catalogue is as its
+    data sheet says.
+    """
     found, better = diagnosed(effect, tmp_path)
     assert [one.id for one in better.effects] == [effect]
     assert read_measured(better).n_rows == found.measured.n_rows
-    built = as_built_by(better)
+    built = as_built_by(better, mounted=True)
     grade = load_catalogue(with_plugins=False).grade("unirope-7x19-galvanised")
-    cable = built.cable(grade.cable(grade.sizes[4], 5.0))
+    sheet = grade.cable(grade.sizes[4], 5.0)
+    cable = built.cable(sheet)
+    assert as_built_by(better).cable(sheet) == sheet
+    assert as_built_by(better).of_products.cable(sheet) == sheet
     pose = np.array([[13.0, 9.0, 6.0]])
     ours = solve_sagging(built.robot, Poses.at(pose), cable)
     values = found.settings[0].values
@@ -203,16 +211,35 @@ def test_the_design_follows_what_was_found(effect, tmp_path) -> None:
     assert ours.length_m == pytest.approx(other.length_m, rel=1e-6)
 
 
-def test_heavier_cables_change_the_choice(tmp_path) -> None:
-    found, better = diagnosed("linear_mass", tmp_path)
+def told_of(found: Diagnosis) -> Diagnosis:
+    assert found.study.measurements is not None
+    rope = replace(found.study.measurements, minimum_breaking_load_N=40e3)
+    study = replace(found.study, measurements=rope)
     grades = load_catalogue(with_plugins=False).grades[:3]
-    told = with_design(found, grades)
+    return with_design(replace(found, study=study), grades)
+
+
+def test_a_heavy_rope_on_the_machine_changes_no_other_rope(tmp_path) -> None:
+    """It was found of that rope: a new one, and the configured family, are not heavier."""
+    told = told_of(diagnosed("linear_mass", tmp_path)[0])
+    assert told.design_before is not None
+    assert told.design_after == told.design_before
+    assert told.mounted_before is not None
+    assert told.mounted_after is not None
+    assert told.mounted_after.max_tension_N > told.mounted_before.max_tension_N
+    assert "Linear_mass belongs to the rope on the machine" in consequence(told)
+    assert json.dumps(told.to_dict(), allow_nan=False)
+
+
+def test_what_is_found_of_the_machine_changes_the_design(tmp_path) -> None:
+    found, better = diagnosed("platform_mass", tmp_path)
+    told = told_of(found)
     assert told.design_before is not None
     assert told.design_after is not None
-    assert told.design_after.optimum_m > told.design_before.optimum_m
-    again = with_design(replace(found, study=better, findings=(), given=()), grades)
+    heavier = found.settings[0].values["offset_kg"] > 0.0
+    assert (told.design_after.optimum_m > told.design_before.optimum_m) is heavier
+    again = told_of(replace(found, study=better, findings=(), given=()))
     assert told.design_after == again.design_before
-    assert json.dumps(told.to_dict(), allow_nan=False)
 
 
 @needs_shared(*TWINS)

@@ -87,3 +87,15 @@ def test_readings_that_stand_off_together_have_something_in_common() -> None:
     assert found is not None
     assert found.text.startswith("the 20 readings that stand off: 20 are of length 3, ")
     assert "20 of 20 rows from 71 to 90" in found.text
+
+
+def test_many_readings_that_stand_off_are_looked_at_in_flat_memory() -> None:
+    """Of 100 000 rows that stand off all pairs would take 40 GB."""
+    rng = np.random.default_rng(5)
+    rows = 300_000
+    residual = rng.normal(size=(rows, 2 * CABLES))
+    residual[50_000:150_000, 1] += 40.0
+    event = find_common(residual, {"x_m": rng.uniform(0.0, 1.0, rows)}, np.arange(1, rows + 1))
+    assert event is not None
+    assert "100000 rows from 50001 to 150000" in event.text
+    assert "quarter of x_m" not in event.text

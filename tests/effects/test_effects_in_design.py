@@ -24,13 +24,14 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.machine import Machine
+from designer.model.measurements import Measurements
 from designer.model.robot import Poses
 from designer.progress import Silent
 from designer.report.design import assumptions
 from designer.report.design.source import Source
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Study, as_built_by
+from designer.study import Study, as_built_by, rope_effects
 from designer.units import LINEAR_DENSITY
 
 ROPE = Cable(0.0085, 0.253, 3.5e6, 8e3)
@@ -153,9 +154,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
         own = candidate.size.linear_density_kg_per_m
         assert candidate.cable.linear_density_kg_per_m == pytest.approx(own + 0.2, rel=1e-12)
     chosen = iced.selection.chosen
-    found = solve_sagging(
-        iced.study.robot, Poses.at(chosen.verification.worst_position_m), chosen.cable
-    )
+    found = solve_sagging(iced.study.robot, Poses.at(chosen.verification.worst_place), chosen.cable)
     assert float(found.largest_tension_N) == pytest.approx(chosen.verification.max_tension_N)
     (outcome,) = iced.selection.outcomes
     row = selection_dict(iced.selection)["chosen"]
@@ -213,3 +212,19 @@ def test_a_cable_that_cannot_be_is_told_with_the_plugin(tmp_path, law: Law, word
     path.write_text(STUDY.format(more=ICE), encoding="utf-8")
     with pytest.raises(EffectError, match=words):
         as_built_by(read_study(path, knowing(law, guarded))).cable(ROPE)
+
+
+def test_what_belongs_to_a_rope_is_not_put_on_another(tmp_path) -> None:
+    """Without measurements it is of the configured family, with them of the rope measured."""
+    one = study(tmp_path, "effects: {linear_mass: {scale: 1.5}, elastic_modulus: {scale: 0.7}}")
+    family, built = one.material.cable(0.01), as_built_by(one)
+    assert built.cable(family).axial_stiffness_N == 0.7 * family.axial_stiffness_N
+    assert built.of_products.cable(ROPE) == ROPE
+    assert rope_effects(one) == ("elastic_modulus", "linear_mass")
+    rope = Measurements(tmp_path / "log.csv", 0.253, 3.5e6)
+    measured = replace(one, measurements=rope)
+    assert as_built_by(measured).cable(family) == family
+    assert as_built_by(measured).of_products.cable(ROPE) == ROPE
+    mounted = as_built_by(measured, mounted=True).cable(ROPE)
+    assert mounted.axial_stiffness_N == pytest.approx(0.7 * ROPE.axial_stiffness_N)
+    assert mounted.linear_density_kg_per_m == pytest.approx(1.5 * ROPE.linear_density_kg_per_m)

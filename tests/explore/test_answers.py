@@ -136,7 +136,7 @@ def test_worst_pose_and_ropes_are_those_of_the_report(edited: Question) -> None:
     assert with_rope is not None
     assert with_rope.rope is not None
     assert with_rope.rope.utilisation == pytest.approx(chosen.verification.utilisation, rel=1e-9)
-    assert np.allclose(with_rope.place[:3], chosen.verification.worst_position_m, atol=1e-3)
+    assert np.allclose(with_rope.place[:3], chosen.verification.worst_place, atol=1e-3)
 
 
 def replace_rope(question: Question, rope: Rope | None) -> Question:
@@ -178,6 +178,19 @@ def test_the_best_rope_is_proved_as_in_the_report(yard: Session) -> None:
     best = full.row(full.best)
     assert best is not None
     assert best.utilisation == ours.found
+
+
+def test_a_rope_that_is_too_thick_for_the_sheave_does_not_count_as_holding(yard: Session) -> None:
+    yard.edit("workspace.samples", "100")
+    yard.edit("selection.sheave_diameter", "90 mm")
+    quick = quick_ropes(question_of(yard))
+    assert quick is not None
+    rejected = [row for row in quick.rows if row.standing == "rejected"]
+    assert rejected
+    assert all(row.utilisation <= 1.0 and not row.holds for row in rejected)
+    assert {row.reason.split()[0] for row in rejected} == {"sheave"}
+    best = quick.row(quick.best)
+    assert best is None or best.holds
 
 
 @pytest.mark.slow

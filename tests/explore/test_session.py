@@ -14,7 +14,7 @@ from designer.explore.fields import Field
 from designer.explore.question import Rope
 from designer.explore.session import Session
 from designer.plugins.find import Plugins
-from designer.resources import example_file, example_names
+from designer.resources import data_folder, example_file, example_names
 
 MASS = "robot.platform.mass"
 LOW, HIGH = "workspace.region.z[0]", "workspace.region.z[1]"
@@ -243,8 +243,7 @@ def test_a_file_that_cannot_be_written_is_told(yard: Session, tmp_path: Path) ->
 
 
 def test_relative_paths_go_along(file: Path, no_plugins: Plugins, tmp_path: Path) -> None:
-    grade = example_file("yard").parents[2] / "catalog"
-    one = next(path for path in sorted(grade.glob("*.yaml")))
+    one = min(data_folder("catalog").glob("*.yaml"))
     (tmp_path / "ropes").mkdir()
     (tmp_path / "ropes" / "own.yaml").write_bytes(
         one.read_bytes().replace(b"\nid: ", b"\nid: own-").replace(b"id: own-own-", b"id: own-")

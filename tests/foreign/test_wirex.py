@@ -49,6 +49,14 @@ def test_pulleys_that_no_study_has_are_told(tmp_path, more: str) -> None:
     assert "0.03 m" in robot.remarks["effects"][0]
 
 
+@pytest.mark.parametrize("a33", ["-1", "0.7"])
+def test_one_pulley_that_hangs_otherwise_is_enough_to_be_told(tmp_path, a33: str) -> None:
+    upright = 'a33="1" radius="0.03"'
+    robot = read(tmp_path, wirex(more=upright).replace('a33="1"', f'a33="{a33}"', 1))
+    assert robot.pulley_radius_m is None
+    assert "0.03 m" in robot.remarks["effects"][0]
+
+
 def test_winch_data_are_told(tmp_path) -> None:
     winch = '<winch><cable f_max="900"/><drum r_drum="0.25"/></winch></models>'
     robot = read(tmp_path, wirex().replace("</models>", winch))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from designer.documents.xml import DEEPEST_NESTING, LARGEST_FILE_BYTES, MOST_ELEMENTS, read_xml
 from designer.errors import InputError
-from designer.foreign.xml import DEEPEST_NESTING, LARGEST_FILE_BYTES, MOST_ELEMENTS, read_xml
 
 BOMB = (
     '<!DOCTYPE a [<!ENTITY b "x"><!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;">'
@@ -40,7 +40,7 @@ def test_what_is_refused(tmp_path, content: bytes, said: str) -> None:
 def test_no_file_and_a_folder(tmp_path) -> None:
     with pytest.raises(InputError, match="there is no such file"):
         read_xml(tmp_path / "none.xml")
-    with pytest.raises(InputError, match="this is no file"):
+    with pytest.raises(InputError, match="it is a folder, not a file"):
         read_xml(tmp_path)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -83,8 +84,26 @@ def test_a_planted_fault_is_found_in_its_line(tmp_path, old, new, line, field, w
     found, faults = read_grades(write_grade(tmp_path / "acme.yaml", _SOUND.replace(old, new)))
 
     assert found == []
-    (named,) = [fault for fault in faults if fault.field == field and fault.line == line]
+    named, *_ = [fault for fault in faults if fault.field == field and fault.line == line]
     assert words in str(named)
+
+
+@pytest.mark.parametrize(
+    ("construction", "loads", "material"),
+    [("7x19", 1 / 4.4482, "steel"), ("7x19", 4.4482, "steel"), ("8-strand", 1 / 4.4482, "HMPE")],
+)
+def test_kip_and_kN_are_told_apart_without_a_wire_grade(tmp_path, construction, loads, material):
+    text = _SOUND.replace("wire_grade: 1960 N/mm2\n", "").replace("7x19", construction)
+    text = text.replace("material: steel", f"material: {material}")
+    if material == "HMPE":
+        text = re.sub(r"mass: (0\.\d+)", lambda m: f"mass: {0.15 * float(m[1]):.4f}", text)
+    assert read_grades(write_grade(tmp_path / "sound.yaml", text))[1] == []
+    wrong = re.sub(r"load: ([\d.]+)", lambda m: f"load: {loads * float(m[1]):.4f}", text)
+    found, (fault,) = read_grades(write_grade(tmp_path / "wrong.yaml", wrong))
+
+    assert found == []
+    assert fault.field == "sizes"
+    assert "minimum_breaking_load over the nominal circle" in fault.problem
 
 
 def test_two_files_with_the_same_grade_are_found(tmp_path):

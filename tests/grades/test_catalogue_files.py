@@ -98,6 +98,26 @@ def test_a_figure_may_carry_its_own_unit(tmp_path):
     assert size.minimum_breaking_load_N == pytest.approx(25_000.0)
 
 
+@pytest.mark.parametrize("quoted", ["'25.0'", '" 25.0 "', "'2.5e1'"])
+def test_a_quoted_figure_has_the_declared_unit(tmp_path, quoted):
+    text = GRADE_TEXT.replace("25.0", quoted)
+    size = read_grade(write_grade(tmp_path / "acme.yaml", text)).sizes[1]
+
+    assert size.minimum_breaking_load_N == pytest.approx(25_000.0)
+
+
+def test_units_of_rope_tables(tmp_path):
+    text = GRADE_TEXT.replace("kN, linear_mass: kg/m", "tonf, linear_mass: kg/100m")
+    for shown, in_table in (("11.2", "1.142"), ("25.0", "2.549"), ("43.9", "4.477"), ("68.6", "7")):
+        text = text.replace(shown, in_table)
+    for shown in ("0.061", "0.137", "0.244", "0.381"):
+        text = text.replace(shown, f"{100 * float(shown):.1f}")
+    size = read_grade(write_grade(tmp_path / "acme.yaml", text)).sizes[0]
+
+    assert size.minimum_breaking_load_N == pytest.approx(1.142 * 9806.65)
+    assert size.linear_density_kg_per_m == pytest.approx(0.061)
+
+
 def test_without_declared_units_bare_numbers_are_si(tmp_path):
     lines = [line for line in GRADE_TEXT.splitlines() if not line.startswith(("units", "  - "))]
     rows = ["  - {id: 6 mm, diameter: 0.006, minimum_breaking_load: 25e3, linear_mass: 0.137}"]

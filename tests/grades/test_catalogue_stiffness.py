@@ -36,14 +36,20 @@ def test_one_figure_holds_at_every_load(load):
     assert _stiffness((56.0,), (0.2,)).at(load) == 56.0
 
 
-def test_a_cable_is_as_stiff_as_the_rope_is_at_the_load_it_is_designed_for():
+def test_a_cable_is_as_stiff_as_at_its_tension_whatever_its_safety_factor():
     grade = _fibre(_stiffness((10.0, 30.0), (0.1, 0.3)))
     size = grade.sizes[2]
 
-    for safety_factor, ratio in ((10.0, 10.0), (5.0, 20.0), (2.0, 30.0)):
+    for safety_factor in (10.0, 5.0, 2.0):
         cable = grade.cable(size, safety_factor)
-        assert cable.axial_stiffness_N == pytest.approx(ratio * size.minimum_breaking_load_N)
-        strain = cable.allowable_tension_N / cable.axial_stiffness_N
+        assert cable.allowable_tension_N == size.minimum_breaking_load_N / safety_factor
+        for load, ratio in ((0.05, 10.0), (0.2, 20.0), (0.4, 30.0)):
+            at_load = cable.at_tension(load * size.minimum_breaking_load_N)
+            expected = ratio * size.minimum_breaking_load_N
+            assert at_load.axial_stiffness_N == pytest.approx(expected, rel=1e-12)
+    for safety_factor, ratio in ((10.0, 10.0), (5.0, 20.0), (2.0, 30.0)):
+        family = grade.family(safety_factor)  # whose thinnest member is used to the full
+        strain = family.allowable_stress_Pa / family.youngs_modulus_Pa
         assert strain == pytest.approx(1.0 / (safety_factor * ratio))
 
 

@@ -1,4 +1,4 @@
-"""The note that the solver is being compiled comes when it is, and only then."""
+"""Compiling is told; what is compiled is kept on disk, and compiled again if it is damaged."""
 
 from __future__ import annotations
 
@@ -7,26 +7,79 @@ import subprocess
 import sys
 from pathlib import Path
 
+import llvmlite.binding
+import numba
+import pytest
+
+from designer import __version__
+from designer.kernel import compiling
+
 CODE = """
 import numpy as np
 from designer.kernel.compiling import tell_of_compiling
 from designer.kernel.linear import solve_small
-tell_of_compiling(lambda: print("compiling"))
+tell_of_compiling(lambda: print("compiling"), lambda file: print("damaged"))
 solve_small(np.eye(2), np.ones(2))
 solve_small(np.eye(3), np.ones(3))
 """
 
 
+def told(**environment: str) -> list[str]:
+    return subprocess.run(
+        [sys.executable, "-c", CODE],
+        env={**os.environ, **environment},
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
+
+
 def test_once_where_nothing_is_cached_and_never_after(tmp_path: Path) -> None:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    said = [
-        subprocess.run(
-            [sys.executable, "-c", CODE],
-            env=environment,
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout.split()
-        for _ in range(2)
-    ]
-    assert said == [["compiling"], []]
+    assert [told(NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2)] == [["compiling"], []]
+
+
+def _twice(x: float) -> float:
+    return 2.0 * x
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", ["empty", "cut off", "another byte", "a folder"])
+def test_a_damaged_file_is_compiled_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str, damage: str
+) -> None:
+    damaged: list[str] = []
+    monkeypatch.setattr(compiling._Damage, "tell", staticmethod(damaged.append))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+
+    def is_found() -> bool:
+        function = compiling.kernel(_twice)
+        assert function(21.0) == 42.0
+        return bool(function.stats.cache_hits)  # type: ignore[attr-defined]
+
+    assert [is_found(), is_found()] == [False, True]
+    (file,) = tmp_path.rglob(f"*.{suffix}")
+    whole = file.read_bytes()
+    half = len(whole) // 2
+    other = whole[:half] + bytes([whole[half] ^ 255]) + whole[half + 1 :]
+    file.unlink()
+    if damage == "a folder":  # as a file that nobody may read, also for root
+        file.mkdir()
+    else:
+        file.write_bytes({"empty": b"", "cut off": whole[:half], "another byte": other}[damage])
+    assert not is_found()
+    if damage != "a folder":
+        assert damaged
+        assert is_found()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="XDG folders")
+def test_it_is_kept_by_version_and_processor(tmp_path: Path) -> None:
+    environment = {"NUMBA_CACHE_DIR": "", "XDG_CACHE_HOME": str(tmp_path)}
+    assert [told(**environment) for _ in range(2)] == [["compiling"], []]
+    (folder,) = (tmp_path / "cdpr-designer").iterdir()
+    assert folder.name == f"{__version__}-{llvmlite.binding.get_host_cpu_name()}"
+
+
+def test_where_no_folder_takes_it_each_process_compiles(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("numba.core.caching.CacheImpl._locator_classes", [])
+    assert compiling.kernel(_twice)(21.0) == 42.0

@@ -114,9 +114,9 @@ def test_kernels_are_cached_on_disk(fast_robot, steel) -> None:
     from designer.sizing.newton import size_poses
 
     size_poses(fast_robot, Poses.at([250.0, 200, -50]), steel)
-    assert solve_range._cache._cache_file._load_index()
+    assert solve_range._cache._cache_file._files._load_index()
     code = (
         "from designer.kernel.square import solve_range as f;"
-        "assert f._cache._cache_file._load_index()"
+        "assert f._cache._cache_file._files._load_index()"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

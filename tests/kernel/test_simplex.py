@@ -91,3 +91,10 @@ def test_duals_are_the_change_of_the_optimum_with_the_bounds() -> None:
 def test_dependent_rows_are_told() -> None:
     table = np.ones((3, 6))
     assert solve(table, np.ones(4), np.zeros(4), False)[0] == -1
+
+
+def test_a_goal_that_no_equation_contains_is_told() -> None:
+    """The rows are independent, but s is in none of them: it has no bound."""
+    table = np.random.default_rng(3).normal(size=(3, 6))
+    table[:, 4] = 0.0
+    assert solve(table, np.ones(4), np.zeros(4), False)[0] == -1

@@ -11,8 +11,9 @@ from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
 from designer.io.config import read_study
 from designer.measured.read import read_measured
+from designer.resources import example_file
 
-GUIDE = Path(__file__).parents[2] / "designer" / "examples" / "measured-logs.md"
+GUIDE = example_file("fast").with_name("measured-logs.md")
 
 
 def study_in_guide(name: str) -> str:

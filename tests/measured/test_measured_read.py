@@ -7,6 +7,8 @@ import pytest
 from measured_log import Log
 from scipy.spatial.transform import Rotation
 
+from designer.measured import rows
+
 RISING = [f"{value:.2f}" for value in np.linspace(15.0, 25.0, 30)]
 
 
@@ -317,3 +319,37 @@ def test_many_rows_are_read_in_blocks(log: Log) -> None:
     found = log.read()
     np.testing.assert_array_equal(found.poses.position_m[:, 0], np.arange(10_000.0))
     assert np.flatnonzero(np.isnan(found.length_m[:, 0])).tolist() == [8_999]
+
+
+@pytest.mark.parametrize("settled", [True, False])
+def test_of_a_long_log_rows_from_all_over_it_are_used(
+    log: Log, monkeypatch: pytest.MonkeyPatch, settled: bool
+) -> None:
+    monkeypatch.setattr(rows, "MOST_ROWS", 10)
+    monkeypatch.setattr(rows, "_RUN", 2)
+    log.settled = settled
+    log.set(2, "x_m", "")
+    log.set(2, "y_m", "")
+    log.set(2, "z_m", "")
+    measured = log.read()
+    if settled:  # neighbours, of the 29 that have a pose
+        among = np.delete(np.arange(1, 31), 1).tolist()
+        at = [among.index(row) for row in measured.row_numbers]
+        assert all(second == first + 1 for first, second in zip(at[::2], at[1::2], strict=False))
+        assert [first // 6 for first in at[::2]] == [0, 1, 2, 3, 4][: len(at[::2])]
+        assert f"{len(at)} of 29 rows are used, 2 rows of each 6" in measured.thinned
+    else:
+        assert measured.row_numbers.tolist() == [1, *range(5, 31, 3)]
+        assert measured.thinned.startswith("10 of 29 rows are used, one row of each 3")
+    assert measured.thinned in measured.notes
+    assert measured.length_m[:, 0] == pytest.approx(
+        log.numbers("length_1_m")[measured.row_numbers - 1]
+    )
+
+
+def test_rows_that_are_not_used_are_checked(log: Log, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rows, "MOST_ROWS", 10)
+    log.settled = False
+    log.set(3, "length_1_m", "wide")
+    (fault,) = log.faults()
+    assert fault.line == 4

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -52,6 +53,24 @@ def test_nothing_better_is_no_gain(tmp_path: Path) -> None:
     found = optimum(tmp_path, plan.replace("150", "40"))
     assert not found.is_better and found.holds
     assert headline(found).startswith("Nothing better was found")
+
+
+def test_a_gain_that_reads_zero_is_no_better(tmp_path: Path) -> None:
+    found = optimum(tmp_path, OF_POSE.replace("150", "10"))
+    assert found.before is not None and found.holds
+    for gain, is_better in ((5e-5, False), (2e-4, True)):
+        same = replace(found, after=found.before * (1.0 - gain))
+        assert same.is_better is same.to_dict()["better"] is is_better
+        assert headline(same).startswith("Nothing better") is not is_better
+
+
+def test_a_design_that_asks_for_less_says_so(tmp_path: Path) -> None:
+    plan = OF_POSE.replace("robot.anchors[*][2]: [6 m, 12 m]", "robot.platform.mass: [80 kg, 1 t]")
+    found = optimum(tmp_path, plan.replace("1 t", "100 kg").replace("150", "10"))
+    (line,) = (one for one in trust_lines(found) if "what the study asks for" in one)
+    assert line.startswith("robot.platform.mass ")
+    assert "asks for less than the study, " in line and line.endswith("in place of 100 kg.")
+    assert [one["asks_for"] for one in found.to_dict()["variables"]] == [None, "less"]
 
 
 def test_the_answer_keeps_the_bounds_even_where_the_robot_as_given_does_not(

@@ -12,6 +12,11 @@ from designer.optimum.optimise import optimised_text
 from designer.optimum.read import read_optimisation
 from designer.resources import example_file, example_names
 
+WINDY = YARD.replace("galvanised]", "galvanised], safety_factor: 5")
+WINDY = WINDY.replace("100 kg}", "100 kg, drag: {area: 1 m^2, coefficient: 1}}")
+WINDY = WINDY.replace("200 MPa}", "200 MPa, drag_coefficient: 1.2}")
+WINDY += "load_cases: [{name: gale, wind: {speed: 20 m/s}}]\n"
+
 
 def lines(path: Path) -> list[str]:
     with pytest.raises(InputError) as caught:
@@ -93,6 +98,48 @@ def test_a_mistake_gets_one_line(tmp_path: Path, old: str, new: str, line: str) 
     assert old in OF_POSE
     found = lines(written(tmp_path, OF_POSE.replace(old, new)))
     assert any(line in one for one in found), found
+
+
+@pytest.mark.parametrize(
+    ("field", "bounds", "expected"),
+    [
+        ("workspace.samples", "[100, 300]", "1 to "),
+        ("workspace.seed", "[0, 9]", "0 to 4294967295"),
+        ("load_cases.0.wind.directions", "[4, 16]", "1 to 72"),
+        ("selection.max_distinct_products", "[1, 3]", "a whole number"),
+    ],
+)
+def test_a_whole_number_is_no_variable(
+    tmp_path: Path, field: str, bounds: str, expected: str
+) -> None:
+    """Its bounds are whole, what lies between them is not."""
+    plan = f"study: crane.yaml\nobjective: rope_mass\nvariables:\n  {field}: {bounds}\n"
+    (line,) = lines(written(tmp_path, plan, WINDY))
+    assert line.startswith("4: variables.")
+    assert "is not a whole number" in line
+    assert expected in line
+
+
+@pytest.mark.parametrize(
+    ("field", "bounds", "value", "asks"),
+    [
+        ("selection.safety_factor", "[3, 6]", 4.0, "less"),
+        ("selection.safety_factor", "[3, 6]", 6.0, "more"),
+        ("selection.safety_factor", "[3, 6]", 5.0, ""),
+        ("workspace.region.inset", "[1 m, 4 m]", 3.0, "less"),
+        ("load_cases.0.wind.speed", "[5 m/s, 20 m/s]", 10.0, "less"),
+        ("robot.platform.mass", "[50 kg, 100 kg]", 60.0, "less"),
+        ("workspace.region.z.0", "[1 m, 4 m]", 2.0, "other"),
+        ("robot.anchors.0.2", "[8 m, 12 m]", 9.0, ""),
+        ("cable.density", "[5000 kg/m^3, 8000 kg/m^3]", 6000.0, ""),
+    ],
+)
+def test_a_demand_as_a_variable_is_known_for_one(
+    tmp_path: Path, field: str, bounds: str, value: float, asks: str
+) -> None:
+    plan = f"study: crane.yaml\nobjective: rope_mass\nvariables:\n  {field}: {bounds}\n"
+    (variable,) = plan_of(tmp_path, plan, WINDY).variables
+    assert variable.asks_for(value) == asks
 
 
 def test_a_price_is_asked_of_grades_that_have_none(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,9 @@ from designer.errors import DesignerError
 from designer.grades.registry import load_catalogue
 from designer.optimum.measures import MEASURES, Quick, promising
 from designer.optimum.optimise import optimum_of
-from designer.optimum.search import search
-from designer.optimum.trial import NO_STUDY, Examiner
+from designer.optimum.plan import Values
+from designer.optimum.search import _OverError, _Run, search
+from designer.optimum.trial import NO_STUDY, Examiner, Trial
 
 
 def test_it_finds_what_symmetry_and_reason_say(tmp_path: Path) -> None:
@@ -100,3 +102,46 @@ def test_quick_measures_are_those_of_the_whole_result(tmp_path: Path) -> None:
         measure = MEASURES[name]
         assert measure.quick is not None
         assert measure.quick(quick) == pytest.approx(measure.value(result), rel=2e-3), name
+
+
+def test_requirements_beside_strength_constrain_the_search(tmp_path: Path) -> None:
+    """A design that is far too soft is further from holding than one that is a bit too soft."""
+    grades = load_catalogue((), False).grades
+    far = []
+    for stiffness in ("100 kN/m", "1 GN/m"):
+        soft = YARD.replace("galvanised]", f"galvanised], limits: {{stiffness: {stiffness}}}")
+        plan = plan_of(tmp_path, OF_YARD.replace("100", "20"), soft)
+        trial = Examiner(plan, promising(plan.base.study(), grades)).trial((0.0,))
+        assert trial.reason == "stiffness in static: fails"
+        far.append(trial.violation)
+    assert 0.0 < far[0] < far[1] <= 1.0
+
+
+def test_the_cable_of_a_family_is_held_to_the_floor(tmp_path: Path) -> None:
+    study = YARD.replace("  samples: 200", "  floor: 5 m\n  samples: 20").partition("selection")[0]
+    plan = plan_of(tmp_path, OF_YARD.replace("rope_mass", "diameter"), study)
+    trial = Examiner(plan, ()).trial((0.0,))
+    assert trial.reason == "floor in static: fails"
+    assert 0.0 < trial.violation < 1.0
+
+
+class Formula(Examiner):
+    """Designs whose value is a formula of the shares of the ranges, which takes no time."""
+
+    def trial(self, values: Values | None) -> Trial:
+        shown = self.plan.given if values is None else values
+        assert shown is not None
+        pairs = zip(self.plan.variables, shown, strict=True)
+        shares = np.array([variable.share(value) for variable, value in pairs])
+        return Trial(shown, 1.0 + float(((shares - [0.93, 0.5]) ** 2).sum()), 0.0, "")
+
+
+def test_the_simplex_comes_down_from_an_upper_border(tmp_path: Path) -> None:
+    """The first step, of 0.05, from 0.975 across the border would be turned back onto the start."""
+    plan = plan_of(tmp_path, OF_POSE.replace("[-4 m, 6 m]", "[-3.9 m, 0.1 m]"))
+    assert plan.variables[0].share(0.0) == pytest.approx(0.975, abs=1e-12)
+    run = _Run(Formula(plan, ()), lambda _: None, lambda: False)
+    run._left = 60
+    with suppress(_OverError):
+        run._polish()
+    assert run._best().value == pytest.approx(1.0, abs=1e-5)

@@ -264,6 +264,7 @@ FAULTS = [
 ]
 
 
+@pytest.mark.slow  # each starts a process for the plugin
 @pytest.mark.parametrize(("item", "words"), FAULTS)
 def test_a_faulty_effect_is_one_line_and_the_rest_works(site, item, words) -> None:
     install_plugin(site, "acme-faulty", plugin(DRIFT, item))

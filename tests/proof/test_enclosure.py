@@ -9,6 +9,7 @@ from flint import arb, ctx
 
 from designer.proof.enclosure.cable import enclose, sag
 from designer.proof.enclosure.interval import add, divide, down, multiply, root, subtract, up
+from designer.proof.enclosure.sag import bound_sag
 
 pytestmark = pytest.mark.slow  # compiles for some ten seconds
 
@@ -16,6 +17,11 @@ pytestmark = pytest.mark.slow  # compiles for some ten seconds
 @numba.njit
 def _sag(theta):
     return sag(theta)
+
+
+@numba.njit
+def _bound_sag(p, slope):
+    return bound_sag(p, slope)
 
 
 @numba.njit
@@ -141,3 +147,36 @@ def test_slopes_have_the_signs_that_the_bound_of_three_cables_rests_on() -> None
         assert _l_p[0] < 0.0 < min(_l_X2[1], v_p[1], v_D[1], t_X2[1], t_D[1])
         assert v_X2[0] < 0.0
         assert v_p[0] > -1e-9 * abs(v_p[1])
+
+
+def _true_sag(p: float, slope: float) -> tuple[arb, arb]:
+    """Sag across and below over chord of a rigid cable, in 60 digits; the latter where it hangs."""
+    ctx.dps = 60
+    theta, m = 1 / (2 * arb(p)), arb(slope)
+    u, chord = (m * theta / theta.sinh()).asinh(), (1 + m * m).sqrt()
+    high = u.cosh() * theta.cosh() + m * (m.asinh() - u) - chord
+    return high / (2 * theta * chord**2), ((theta - u).cosh() - 1) / (2 * theta * chord)
+
+
+def test_bounds_of_the_sag_hold_closely() -> None:
+    rng = np.random.default_rng(3)
+    for p, slope in zip(
+        10.0 ** rng.uniform(-1.5, 2.0, 300), np.sinh(rng.uniform(0, 8, 300)), strict=True
+    ):
+        for bound, truth in zip(_bound_sag(p, slope), _true_sag(p, slope), strict=True):
+            assert bound >= truth
+            assert bound <= float(truth) * (1.0 + 1e-6) + 1e-9
+
+
+def test_sag_falls_as_the_pull_grows_and_the_chord_gets_steeper() -> None:
+    """What a box rests on: its smallest pull and flattest chord."""
+    pulls = 10.0 ** np.linspace(-1.5, 2.0, 60)
+    slopes = np.append(0.0, np.sinh(np.linspace(0.05, 10.0, 60)))
+    theta, m = 0.5 / pulls[:, None], slopes[None]
+    u, chord = np.arcsinh(m * theta / np.sinh(theta)), np.hypot(1.0, m)
+    high = np.cosh(u) * np.cosh(theta) + m * (np.arcsinh(m) - u) - chord
+    across = high / (2.0 * theta * chord**2)
+    below = np.where(u < theta, np.sinh(0.5 * (theta - u)) ** 2 / (theta * chord), 0.0)
+    for far in (across, below):
+        for axis in (0, 1):
+            assert (np.diff(far, axis=axis) <= 1e-12 * np.abs(far).max()).all()

@@ -14,6 +14,7 @@ from designer.model.region import PointList, Prism, Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.cover import covers_of
+from designer.proof.encloser import Encloser
 from designer.proof.prove import Budget, _Search, prove
 from designer.proof.servable import servable
 from designer.statics.inverse import solve_sagging
@@ -121,10 +122,10 @@ def test_a_range_of_turns_stays_below_its_bound() -> None:
     assert used.max() <= proof.found <= proof.bound <= 1.05 * proof.found
 
 
-@pytest.mark.parametrize("least_N", [0.0, 200.0])
-def test_a_redundant_robot_stays_below_its_bound(least_N: float) -> None:
+@pytest.mark.parametrize(("least_N", "sag_max"), [(0.0, None), (200.0, None), (0.0, 0.05)])
+def test_a_redundant_robot_stays_below_its_bound(least_N: float, sag_max: float | None) -> None:
     exits = frozen_array([[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]])
-    robot = Robot(exits, Platform(1000.0), tension_min_N=least_N)
+    robot = Robot(exits, Platform(1000.0), tension_min_N=least_N, sag_max=sag_max)
     space = Space(Prism.box((30.0, 70.0), (20.0, 60.0), (-40.0, -20.0)), LEVEL)
     cable = Cable(0.01, 0.4, 6e6, 12_000.0)
     points = space.region.inside_m(np.random.default_rng(1), 1000)
@@ -178,6 +179,24 @@ def test_volumes_that_no_rope_serves_are_bounded_from_both_sides(fast_robot: Rob
     inward_m = np.minimum(steep * x, steep * (500.0 - x)) - 0.5 * y
     assert len(inward_m) > 300
     assert -60.0 < inward_m.min() <= inward_m.max() < 1e-2  # outside the outline, and near
+
+
+def test_the_budget_of_volumes_begins_when_all_is_compiled(
+    fast_robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first box takes as long as compiling does, longer than the budget."""
+    region = Prism.box((0.0, 500.0), (0.0, 433.01), (-200.0, -100.0))
+    bound, passed_s = Encloser.bound, [0.0]
+
+    def slow_at_first(*arguments: object) -> object:
+        passed_s[0] += 0.01 if passed_s[0] else 60.0
+        return bound(*arguments)
+
+    monkeypatch.setattr(Encloser, "bound", slow_at_first)
+    monkeypatch.setattr("designer.proof.servable.time.monotonic", lambda: passed_s[0])
+    found = servable(fast_robot, Space(region, LEVEL), Budget(boxes=400, seconds=20.0))
+    assert found is not None
+    assert found.boxes == 400
 
 
 def test_a_planar_platform_on_three_cables_is_no_point_mass() -> None:

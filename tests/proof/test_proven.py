@@ -44,7 +44,7 @@ def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.Monk
                 one,
                 verification=replace(
                     one.verification,
-                    worst_position_m=np.array([15.0, 9.0, 4.0]),
+                    worst_place=np.array([15.0, 9.0, 4.0]),
                     max_tension_N=0.5 * one.verification.max_tension_N,
                     utilisation=0.5 * one.verification.utilisation,
                     is_refined=True,

@@ -165,7 +165,7 @@ class TestServed:
         served = maps_of("partly").served
         share = fmt.number(100.0 * served.unserved, 2)
         found = texts(served_chart(served))
-        assert f"no cable serves {share} %" in found
+        assert f"not served {share} %" in found
         assert not any(text.startswith("serves all") for text in found)
 
     def test_where_neither_serves_all(self) -> None:

@@ -89,7 +89,7 @@ def test_first_failures_are_failures_and_no_nearer_than_the_reserve(found: Analy
     for failure in one.failures:
         if np.isfinite(failure.distance_m):
             beyond = failure.position_m + 1e-3 * failure.direction
-            met = replace(one.governing.verification, worst_position_m=beyond)
+            met = replace(one.governing.verification, worst_place=beyond)
             used = replace(one.governing, verification=met).tension_N(one.governing.loaded)
             assert used >= one.governing.loaded.cable.allowable_tension_N
 

@@ -100,11 +100,11 @@ def test_limits_of_the_grade_are_cautions(
 def test_a_violated_clearance_is_on_the_first_page(solve: Solve, selection: str) -> None:
     analysis = solve(SIX.format(region=PRISM, clearance="2 m", selection=selection))
     page = page_of(analysis)
-    assert page.verdict.title == "In part"
-    assert page.verdict.text.endswith("But the clearance is not kept.")
-    assert [reason.title for reason in page.reasons] == ["The clearance is not kept"]
-    assert "2\u202f000\u00a0mm asked for" in page.reasons[0].text
-    assert "ask for less clearance" in page.actions[0]
+    assert page.verdict.title == "No"
+    assert page.verdict.text.endswith("ut clearance does not hold.")
+    assert [reason.title for reason in page.reasons] == ["Clearance does not hold"]
+    assert "demand 2.00\u00a0m" in page.reasons[0].text
+    assert "require less clearance" in page.actions[0]
 
 
 def test_a_kept_clearance_is_no_objection(solve: Solve) -> None:

@@ -31,7 +31,7 @@ from designer.report.blocks import (
     Subheading,
     Table,
 )
-from designer.report.design import first_page, pose
+from designer.report.design import pose
 from designer.report.design.candidates import best_table, thin_table
 from designer.report.design.first_page import FirstPage
 from designer.report.design.report import design_report
@@ -268,15 +268,6 @@ def test_numbers_of_sections_count_up(reports: dict[str, Report[FirstPage]]) -> 
         "nomenclature",
         "provenance",
     ]
-
-
-def test_where_most_is_left_out_the_answer_is_one_in_part(
-    analyses: dict[str, Analysis], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(first_page, "_MOSTLY", 0.001)
-    verdict = design_report(analyses["exclude"], draws=False).first_page.verdict
-    assert verdict.title == "In part"
-    assert "left out, as configured: there a cable hangs below the platform" in verdict.text
 
 
 def test_first_page_says_how_much_is_left_out(reports: dict[str, Report[FirstPage]]) -> None:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import base64
+import io
+import os
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from pypdf import PdfReader
 
 import designer
@@ -30,6 +33,17 @@ document:
   logo: logo.svg
 """
 LOGO = b'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M0 0h9v9z"/></svg>'
+
+
+def svg(inside: str) -> bytes:
+    start = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">'
+    return f"{start}{inside}</svg>".encode()
+
+
+def png(side: int) -> bytes:
+    stream = io.BytesIO()
+    Image.new("1", (side, side)).save(stream, "PNG")
+    return stream.getvalue()
 
 
 def study(tmp_path: Path, logo: bytes | None = LOGO, text: str = STUDY + CONTROL) -> Path:
@@ -66,7 +80,19 @@ def test_nothing_is_shown_where_nothing_is_given(tmp_path) -> None:
     [
         (None, "there is no file"),
         (b"GIF89a", "logo.svg is no such picture (expected a PNG, JPEG or SVG file)"),
-        (b"\x89PNG\r\n\x1a\n" + bytes(1_000_000), "the file is too large"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(10**6), "is too large (expected at most 1,000,000 bytes)"),
+        (png(5000), "has more than 20 million pixels (expected fewer)"),
+        (png(40_000), "has more than 20 million pixels (expected fewer)"),
+        (png(99)[:-30], "cannot be decoded (expected a PNG, JPEG or SVG file)"),
+        (svg("<g>" * 60_000 + "</g>" * 60_000), "is no plain SVG in line 1: more than 100000 elem"),
+        (svg("<g>" * 65 + "</g>" * 65), "nested more than 64 deep"),
+        (b"<!DOCTYPE svg [<!ENTITY a 'x'>]>" + svg("&a;"), "the file declares entities"),
+        (svg("<path"), "is no plain SVG in line 1: this is not valid XML"),
+        (svg('<image href="http://a.example/a.png"/>'), "refers to 'http://a.example/a.png'"),
+        (svg('<use xlink:href="file:///etc/passwd#a"/>'), "refers to 'file:///etc/passwd#a'"),
+        (svg('<rect style="fill: url( &quot;a.svg#a&quot;)"/>'), "refers to 'a.svg#a"),
+        (svg('<style>@import "a.css";</style>'), "refers to '\"a.css\";'"),
+        (b'<?xml-stylesheet href="a.css"?>' + svg(""), "refers to 'a style sheet'"),
     ],
 )
 def test_a_logo_that_no_page_can_show(tmp_path, logo, words) -> None:
@@ -75,6 +101,22 @@ def test_a_logo_that_no_page_can_show(tmp_path, logo, words) -> None:
     (line,) = str(caught.value).splitlines()
     assert line.startswith(f"{tmp_path / 'study.yaml'}:12: document.logo: ")
     assert words in line
+
+
+@pytest.mark.parametrize(
+    "logo", [png(40), svg('<g id="a"/><use href="#a"/><rect fill="url(#a)"/>'), LOGO]
+)
+def test_a_picture_that_holds_all_it_shows_is_taken(tmp_path, logo) -> None:
+    assert control_of(designer.read_study(study(tmp_path, logo))).logo
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+def test_a_picture_that_takes_too_long_or_too_much_is_ended(tmp_path) -> None:
+    tenfold = (f'<g id="a{k + 1}">' + f'<use href="#a{k}"/>' * 10 + "</g>" for k in range(9))
+    logo = svg(f'<path id="a0" d="M0 0h9v9z"/>{"".join(tenfold)}<use href="#a9"/>')
+    with pytest.raises(InputError, match=r"(not drawn within|cannot be drawn).*a simpler picture"):
+        designer.read_study(study(tmp_path, logo))
 
 
 def test_the_digest_of_grades_is_theirs_alone(tmp_path) -> None:

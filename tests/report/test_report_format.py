@@ -30,7 +30,9 @@ def plain(text: str) -> str:
         (fmt.kilograms(3217.4), "3 217 kg"),
         (fmt.kilograms_per_metre(0.042), "0.042 kg/m"),
         (fmt.cubic_metres(14_925_468.0), "14 930 000 m³"),
-        (fmt.metres(-0.001), "0.00 m"),
+        (fmt.metres(-0.001), "-0.001 m"),
+        (fmt.metres(8.9e-7), "8.9 × 10⁻⁷ m"),
+        (fmt.metres(-1e-12), "0.00 m"),
         (fmt.position([256.5154, 10.35, -40.0]), "(256.52, 10.35, -40.00) m"),
         (fmt.count(20_000), "20 000"),
         (fmt.percent(0.0405), "4.05 %"),
@@ -85,7 +87,7 @@ def test_utilisation_never_hides_an_excess(fraction: float, expected: str) -> No
 
 
 def test_utilisation_of_a_cable_that_cannot_hold() -> None:
-    assert fmt.utilisation(math.inf) == "cannot hold"
+    assert fmt.utilisation(math.inf) == "not held"
 
 
 @pytest.mark.parametrize(

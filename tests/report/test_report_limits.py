@@ -1,4 +1,4 @@
-"""Checks of the chosen rope that only a study with limits has."""
+"""Requirements of the chosen rope that only a study with limits has."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from report_parts import said, table
 from test_report_qualities import SIX
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.checks import Check, checks_of
 from designer.analysis.result_json import result_dict
 from designer.model.limits import Limits
+from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.report.design import checks
 from designer.report.design.source import source_of
+from designer.selection.criteria import criteria_of
+from designer.selection.requirements import drum_of, evaluate, loads_of
 from designer.statics.inverse import solve_sagging
 
 pytestmark = pytest.mark.slow
@@ -39,13 +41,16 @@ def found(solve: Callable[[str], Analysis]) -> Analysis:
     return solve(YARD)
 
 
-def with_limits(found: Analysis, limits: Limits) -> dict[str, Check]:
-    assert found.selection is not None
-    assert found.selection.chosen is not None
+def with_limits(found: Analysis, limits: Limits) -> dict[str, Requirement]:
+    chosen, workspace = found.chosen, found.study.workspace
+    assert chosen is not None and workspace is not None
     assert found.study.selection is not None
     selection = replace(found.study.selection, limits=limits)
-    each = checks_of(found.selection.chosen, selection, 0.0, found.qualities)
-    return {one.id: one for one in each}
+    criteria = criteria_of(found.built.robot, workspace, selection)
+    evaluations = evaluate(loads_of(chosen.cases), criteria)
+    lengths = chosen.verification.longest_m, chosen.verification.shortest_m
+    requirements = [*(each.requirement for each in evaluations), *drum_of(*lengths, selection)]
+    return {requirement.id: requirement for requirement in requirements}
 
 
 def test_result_has_the_limits(found: Analysis) -> None:
@@ -102,9 +107,9 @@ def test_a_cable_that_swings_within_the_band_does_not_hold(found: Analysis) -> N
 def test_the_report_tells_what_is_checked_and_what_not(found: Analysis) -> None:
     section = checks.section(source_of(found, draws=False))
     assert section is not None
-    names = [row.cells[0] for row in table(section, "Checks of the chosen rope.").groups[0].rows]
-    assert names[-3:] == ["Stiffness", "Excitation", "Drum"]
-    assert any(isinstance(block, str) and "Not checked: D/d" in block for block in section.blocks)
+    rows = table(section, "All that the study asks for").groups[0].rows
+    assert {"Stiffness", "Excitation", "Drum"} <= {row.cells[0] for row in rows}
+    assert any(isinstance(block, str) and "Not evaluated: D/d" in block for block in section.blocks)
     assert not any("excitation" in block for block in section.blocks if isinstance(block, str))
 
 
@@ -120,4 +125,4 @@ def test_a_study_that_asks_for_every_check_lacks_none(solve: Callable[[str], Ana
     assert {"sheave_ratio", "clearance", "stiffness", "excitation", "drum_capacity"} <= done
     section = checks.section(source_of(analysis, draws=False))
     assert section is not None
-    assert "Not checked" not in said(section)
+    assert "Not evaluated: height over a floor (none is given)." in said(section)

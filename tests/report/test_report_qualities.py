@@ -79,7 +79,6 @@ def test_result_json(kept: Analysis, not_kept: Analysis) -> None:
         found = json.loads(json.dumps(result_dict(analysis)["workspace"], allow_nan=False))
         interference = found["interference"]
         assert interference["violated"] is violated
-        assert analysis.has_cable
         assert analysis.is_positive is not violated
         assert (interference["min_distance_m"] < interference["clearance_m"]) is violated
         assert (interference["violating"] > 0) is violated

@@ -73,9 +73,10 @@ def used() -> np.ndarray:
 
 def test_the_first_page_has_one_line(used: np.ndarray) -> None:
     text = statement(found_of(used)).text.replace("\u00a0", " ")
-    assert text.startswith("Enough with 99.")
+    assert text.startswith("Strong enough with 99.")
     assert "(95 % confidence: 99." in text
-    assert text.endswith("payload carries 61 % of the spread.")
+    assert "payload carries 61 % of the spread; " in text
+    assert text.endswith("; this is strength alone, without the other requirements.")
     assert statement(found_of(used)).tone == "good"
     assert statement(found_of(1.05 * used)).tone == "doubt"
     assert statement(found_of(1.2 * used)).tone == "bad"
@@ -84,7 +85,7 @@ def test_the_first_page_has_one_line(used: np.ndarray) -> None:
 def test_an_estimate_of_more_than_all_is_shown_as_all(used: np.ndarray) -> None:
     over = (replace(SHARES[0], first_order=1.014), replace(SHARES[1], first_order=-0.003))
     found = found_of(used, shares=over)
-    assert statement(found).text.replace("\u00a0", " ").endswith("carries 100 % of the spread.")
+    assert statement(found).text.replace("\u00a0", " ").count("carries 100 % of the spread;") == 1
     whole = shown(found, draws=False)
     assert whole is not None
     cells = [
@@ -137,7 +138,10 @@ def test_a_borrowed_modulus_alone_takes_a_paragraph(used: np.ndarray) -> None:
     assert whole is not None
     first, how = whole.blocks
     assert isinstance(first, Statement)
-    assert "90.0\u00a0% throughout: the rope is enough with 100\u00a0% probability" in first.text
+    assert (
+        "90.0\u00a0% throughout: the rope is strong enough with 100\u00a0% probability"
+        in first.text
+    )
     assert first.tone == ""
     assert "not searched again" in str(how)
 

@@ -19,7 +19,7 @@ from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses
 from designer.resources import example_file
-from designer.selection.cases import CaseFound, Cases, searched_all, together
+from designer.selection.cases import CaseFound, Cases, governing, searched_all, together
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.verify import verify
@@ -268,3 +268,24 @@ def test_poses_are_left_out_in_each_direction_of_a_case_by_itself() -> None:
     assert 0 < counts.sum() < len(places)
     used = loss.largest_tension_N[counts].max() / cable.allowable_tension_N
     assert after.utilisation == pytest.approx(used, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_wind_is_searched_to_its_worst_direction() -> None:
+    study = study_of("yard", 60)
+    assert study.workspace is not None
+    points = np.array([[11.0, 6.0, 4.0], [18.0, 7.0, 5.0]])
+    workspace = replace(study.workspace, region=PointList(points), hangs_below="include")
+    robot, cable = replace(study.robot, pulley_radius_m=0.2), Cable(0.006, 0.13, 1.5e6, 2e4)
+    (found,) = Cases(robot, workspace, (LoadCase("gust", wind=Wind(12.0, 1.2)),)).sampled(
+        [[cable]], lambda _: None
+    )
+    most = governing(searched_all(found))
+    used = [
+        solve_sagging(one.robot, Poses.at(points), one.cable).largest_tension_N.max()
+        for one in LoadCase("gust", wind=Wind(12.0, 1.2, count=72)).on(robot, cable)
+    ]
+    assert len(found) == 8
+    assert most.utilisation > governing(found).utilisation * (1.0 + 1e-5)
+    assert most.utilisation * cable.allowable_tension_N >= max(used) * (1.0 - 1e-9)
+    assert most.utilisation * cable.allowable_tension_N <= max(used) * 1.002

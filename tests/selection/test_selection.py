@@ -55,7 +55,7 @@ def test_verification_holds_at_the_worst_pose_found_by_other_means(fast_robot, w
     grade = rope("a", [24.0])
     cable = grade.cable(grade.sizes[0], 2.0)
     result = verify(fast_robot, workspace, cable)
-    at_worst = solve_sagging(fast_robot, Poses.at(result.worst_position_m), cable)
+    at_worst = solve_sagging(fast_robot, Poses.at(result.worst_place), cable)
     assert at_worst.largest_tension_N == pytest.approx(result.max_tension_N, rel=1e-9)
     rng = np.random.default_rng(9)
     low, high = workspace.region.bounds_m

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,9 +15,10 @@ from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
 from designer.selection.compare import dominator_of, is_undominated
+from designer.selection.objectives import MEANINGS, Figures
 from designer.selection.products import common_currency
 from designer.selection.select import best_product, select
-from designer.study import Selection, Workspace
+from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
@@ -47,6 +49,13 @@ def test_whoever_is_dominated_is_so_by_a_member_of_the_set(table: list[tuple[flo
         assert (number is None) == member
         if number is not None:
             assert beats(tuple(front[number]), tuple(row))
+
+
+@pytest.mark.parametrize("objective", sorted(MEANINGS))
+def test_a_figure_that_is_not_known_is_worse_than_any(objective: Objective) -> None:
+    known = Figures(*5 * [1e300])
+    unknown = replace(known, **{MEANINGS[objective].field: np.nan})
+    assert unknown.burden(objective) == np.inf > known.burden(objective)
 
 
 @pytest.fixture(scope="module")

@@ -52,7 +52,7 @@ def test_sizing_at_the_worst_pose_finds_the_product_again(candidates, fast_robot
     assert len(candidates) == 11
     for candidate in candidates:
         found = candidate.verification
-        sizing = size_poses(fast_robot, Poses.at(found.worst_position_m), as_material(candidate))
+        sizing = size_poses(fast_robot, Poses.at(found.worst_place), as_material(candidate))
         assert float(sizing.diameter_m) == pytest.approx(candidate.size.diameter_m, rel=1e-8)
         tension = float(sizing.statics.largest_tension_N)
         assert tension == pytest.approx(found.max_tension_N, rel=1e-8)
@@ -72,7 +72,7 @@ def test_command_line_finds_it_too(candidates, tmp_path: Path, monkeypatch, caps
         f"cable: {{density: {material.density_kg_per_m3!r}, "
         f"youngs_modulus: {material.youngs_modulus_Pa!r}, "
         f"allowable_stress: {material.allowable_stress_Pa!r}}}\n"
-        f"pose: {[float(x) for x in found.worst_position_m]}\n",
+        f"pose: {[float(x) for x in found.worst_place]}\n",
         encoding="utf-8",
     )
     monkeypatch.setattr(sys, "argv", ["designer", "size", str(config), "--json"])

@@ -78,7 +78,7 @@ def test_agrees_with_one_size_at_a_time(name: str, fast_robot, six_cable_robot) 
             assert np.isinf(one.utilisation)
         else:
             assert one.utilisation == pytest.approx(used.max(), rel=1e-9)
-            assert one.worst_m[0] == pytest.approx(everywhere[counts][np.argmax(used)])
+            assert one.worst_places[0] == pytest.approx(everywhere[counts][np.argmax(used)])
 
 
 def test_the_two_cases_that_exclude_differ(fast_robot, six_cable_robot) -> None:
@@ -94,7 +94,7 @@ def test_order_of_the_cables_does_not_matter(fast_robot) -> None:
     back = verify_sizes(fast_robot, workspace, tried[::-1])[::-1]
     for one, other in zip(found, back, strict=True):
         assert one.utilisation == pytest.approx(other.utilisation, rel=1e-12)
-        assert one.worst_m == pytest.approx(other.worst_m)
+        assert one.worst_places == pytest.approx(other.worst_places)
 
 
 def test_chunks_add_up(fast_robot) -> None:
@@ -116,7 +116,7 @@ def test_pose_outside_the_hull_ends_every_cable(fast_robot) -> None:
     for one in verify_sizes(fast_robot, Workspace(points), cables()):
         assert one.not_held == 1
         assert np.isinf(one.utilisation)
-        assert one.worst_m[0] == pytest.approx([250, -60, -50])
+        assert one.worst_places[0] == pytest.approx([250, -60, -50])
         assert one.served <= 2 / 3
 
 
@@ -124,7 +124,7 @@ def test_worst_poses_are_from_all_over_and_the_search_ends_where_it_did(fast_rob
     workspace = Workspace(LOW, samples=2000)
     for cable in cables()[3:6]:
         (one,) = verify_sizes(fast_robot, workspace, [cable])
-        assert len(np.unique(one.worst_m, axis=0)) == len(one.worst_m) > 100
+        assert len(np.unique(one.worst_places, axis=0)) == len(one.worst_places) > 100
         searched, alone = (
             refined(fast_robot, workspace, cable, one),
             verify(fast_robot, workspace, cable),

@@ -363,3 +363,20 @@ def test_one_turn_is_not_taken_for_an_optimum() -> None:
     early = size_by_scp(COGIRO, one(cogiro_poses(1), 0), steel(60.0), max_turns=1)
     assert not early.has_converged
     assert np.isnan(early.diameter_m)
+
+
+@pytest.mark.parametrize("away_m", [1e-3, 1e-6, 1e-9])
+def test_pose_beside_an_exit_point(away_m: float) -> None:
+    """A cable of almost no length closes to its own length, not to that of the others."""
+    exits = np.array([[0.0, 0, 30], [40, 0, 32], [18, 35, 29], [30, 30, 33]])
+    robot = Robot(exits, Platform(300.0))
+    along = np.array([0.3, 0.2, -1.0]) / np.linalg.norm([0.3, 0.2, -1.0])
+    for statics in (
+        size_poses(robot, Poses.at(exits[:1] + away_m * along), steel()).statics,
+        solve_sagging(robot, Poses.at(exits[:1] + away_m * along), steel().cable(0.01)),
+    ):
+        assert statics.is_solved[0]
+        # The short cable lifts nearly all; its tension changes little with its length.
+        assert statics.largest_tension_N[0] == pytest.approx(statics.cable_tension_N[0, 0])
+        assert 3000.0 < statics.largest_tension_N[0] < 3500.0
+        assert np.abs(statics.equilibrium_residual_N()).max() < 1e-6

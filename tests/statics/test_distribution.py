@@ -185,3 +185,11 @@ def test_senseless_ranges_are_refused() -> None:
         distribute(SEVEN, seven_poses(1), 5.0)
     with pytest.raises(ValueError, match="no middle"):
         distribute(SEVEN, seven_poses(1), np.inf, "centred")
+
+
+def test_a_pose_at_an_exit_point_is_told_without_a_warning() -> None:
+    exits = np.array([[0.0, 0, 30], [40, 0, 32], [18, 35, 29], [30, 30, 33]])
+    with np.errstate(invalid="raise"):
+        found = distribute_evenly(Robot(exits, Platform(300.0)), Poses.at(exits[:1]))
+    assert found.verdict[0] == Verdict.NOT_CONVERGED
+    assert np.isnan(found.tension_N).all()

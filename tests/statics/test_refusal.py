@@ -30,7 +30,8 @@ OUTSIDE, NOT_FOUND = Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND
 
 def refuse(robot: Robot, poses: Poses) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points = straight_run(robot, poses).exit_points_m
-    return refuse_batch(robot, upright_situation(robot, poses, points))
+    least_N = robot.tension_min_N if robot.is_redundant else 0.0
+    return refuse_batch(upright_situation(robot, poses, points), least_N)
 
 
 def random_robot(rng: np.random.Generator, kind: str) -> Robot:

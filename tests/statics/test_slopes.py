@@ -15,6 +15,7 @@ from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.robot import Platform, Poses, Robot
 from designer.statics.geometry import load_wrench_N
 from designer.statics.inverse import solve_sagging
+from designer.statics.shape import sag_ratio
 from designer.statics.slopes import Slopes, utilisation_slopes
 
 _STEP = 1e-5
@@ -51,6 +52,10 @@ def in_wind(robot: Robot) -> Robot:
 
 def over_pulleys(robot: Robot) -> Robot:
     return replace(robot, pulley_radius_m=0.3)
+
+
+def over_pulleys_in_wind(robot: Robot) -> Robot:
+    return over_pulleys(in_wind(robot))
 
 
 def used(robot: Robot, poses: Poses, cable: Cable) -> float:
@@ -141,7 +146,7 @@ def check(robot: Robot, pose: Poses, cable: Cable, slopes: Slopes) -> None:
 
 
 @pytest.mark.parametrize("make", [point_mass, body, planar])
-@pytest.mark.parametrize("change", [lambda r: r, in_wind, over_pulleys])
+@pytest.mark.parametrize("change", [lambda r: r, in_wind, over_pulleys, over_pulleys_in_wind])
 def test_square_robots(
     make: Callable[[np.random.Generator], Robot], change: Callable[[Robot], Robot]
 ) -> None:
@@ -157,3 +162,13 @@ def test_redundant_robots() -> None:
     assert compare(COGIRO, cogiro_poses(3), COGIRO_CABLE) >= 2
     assert compare(FOUR, four_poses(3), steel().cable(0.012)) >= 2
     assert compare(SEVEN, seven_poses(3), steel().cable(0.003)) >= 2
+
+
+@pytest.mark.parametrize("change", [lambda r: r, in_wind])
+def test_cables_at_their_largest_sag(change: Callable[[Robot], Robot]) -> None:
+    robot, cable = change(replace(FOUR, sag_max=0.06)), steel(2.0).cable(0.012)
+    statics = solve_sagging(robot, four_poses(6), cable)
+    at_limit = (sag_ratio(statics) > 0.06 * (1.0 - 1e-5)).any(axis=1)
+    assert at_limit.sum() >= 2
+    some = Poses(four_poses(6).position_m[at_limit][:2], np.eye(3))
+    assert compare(robot, some, cable) >= 1

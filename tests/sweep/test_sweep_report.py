@@ -12,7 +12,7 @@ from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
 from designer.report.blocks import Picture, Report, Statement, Table
-from designer.report.sweep import pareto_front, sweep_report
+from designer.report.sweep import NOT_EVALUATED, pareto_front, sweep_report
 from designer.sweep.store import read_store
 
 
@@ -70,7 +70,8 @@ def test_numbers_and_texts_have_their_place(tmp_path: Path) -> None:
     assert [section.id for section in page.sections] == ["answer", "fields", "reasons"]
     head = page.section("answer").blocks[0]
     assert isinstance(head, Statement)
-    assert head.title == "66.7\N{NO-BREAK SPACE}% of the studies have an answer"
+    assert head.title == "66.7\N{NO-BREAK SPACE}% of the studies are solved"
+    assert NOT_EVALUATED in str(head.text)
     picture = page.section("fields").blocks[0]
     assert isinstance(picture, Picture)
     assert "5 m" in picture.svg

@@ -20,11 +20,15 @@ from sweep_cases import STUDY, SWEEP, written
 
 import designer
 from designer.cli.commands import main
+from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
+from designer.resources import example_file
+from designer.study import Study
+from designer.sweep import point as points
 from designer.sweep import run as running
 from designer.sweep import store as stores
 from designer.sweep.plan import Plan
-from designer.sweep.point import Base
+from designer.sweep.point import Base, value_at, why_negative
 from designer.sweep.read import read_sweep
 from designer.sweep.run import run
 from designer.sweep.store import Store, opened, read_store
@@ -73,6 +77,63 @@ keep: [pose.optimum.diameter_m, pose.sagging.lengths_m.3]
     assert found["pose.optimum.diameter_m"].notnull().all()
     assert found["pose.sagging.lengths_m.3"].isnull().values.tolist() == [True, False]
     assert found.reason.values.tolist() == ["there is no pose.sagging.lengths_m.3 here", ""]
+
+
+@pytest.mark.parametrize(
+    ("keep", "chooses"),
+    [
+        (("workspace.sagging.diameter_m",), False),
+        (("workspace.sagging.diameter_m", "pose.sagging.status"), False),
+        (("workspace.stiffness.unstable",), True),
+        (("workspace.sagging.diameter_m", "workspace.stiffness.unstable"), True),
+        (("workspace.hanging.below_floor.samples", "workspace.samples"), True),
+        (("workspace.samples", "answer.total_mass_kg"), True),
+    ],
+)
+def test_a_rope_is_chosen_where_something_that_is_kept_depends_on_it(
+    keep: tuple[str, ...], chooses: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class AskedError(Exception):
+        pass
+
+    def analyse(study: Study, *_: object, **__: object) -> None:
+        raise AskedError(study.selection is not None)
+
+    monkeypatch.setattr(points, "analyse", analyse)
+    base = Base(read_document(example_file("yard")), keep, with_plugins=False)
+    with pytest.raises(AskedError) as asked:
+        base.result(base.study())
+    assert asked.value.args == (chooses,)
+
+
+@pytest.mark.parametrize(
+    ("keep", "verdict", "has_pose"),
+    [
+        ("workspace.sagging.diameter_m", None, False),
+        ("answer.verdict", "yes", True),
+        ("selection.chosen.size_id", "yes", True),
+    ],
+)
+def test_no_answer_is_told_that_was_not_evaluated_whole(
+    keep: str, verdict: str | None, has_pose: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Found:
+        def __init__(self, study: Study, *_: object, **__: object) -> None:
+            assert (study.pose is not None) is has_pose
+
+        def to_dict(self) -> dict[str, Any]:
+            answer = {"verdict": "yes", "reasons": []}
+            return {"positive": True, "answer": answer, "workspace": {"sagging": None}}
+
+    region = "workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}}\nselection: {}\n"
+    (tmp_path / "crane.yaml").write_text(STUDY + region)
+    monkeypatch.setattr(points, "analyse", Found)
+    base = Base(read_document(tmp_path / "crane.yaml"), (keep,), with_plugins=False)
+    result = base.result(base.study())
+    assert value_at(result, "answer.verdict") == verdict
+    assert (value_at(result, "positive") is None) is (verdict is None)
+    told = "no cable of the family holds in all of the workspace" if verdict is None else ""
+    assert why_negative(result) == told
 
 
 def test_what_a_study_of_one_pose_has_not_is_left_empty(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ has the tension T(s) = T(0) - q s and follows dr/ds = (1 + |T|/EA) T/|T|, in wha
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 G = 9.81
 AIR = 1.25
-NODE, SHARE = np.polynomial.legendre.leggauss(48)
+NODE, SHARE = np.polynomial.legendre.leggauss(240)
 NODE, SHARE = (1 + NODE) / 2, SHARE / 2
 
 
@@ -34,6 +34,7 @@ class Twin:
     wrench_N: np.ndarray = field(default_factory=lambda: np.zeros(6))
     drag_area_m2: float = 0.0
     cable_drag: float = 0.0
+    pulley_radius_m: float = 0.0
 
     @property
     def arms(self) -> np.ndarray:
@@ -144,6 +145,42 @@ def held(
     found = root(residual, np.concatenate([pull.ravel() / size, np.ones(len(cables))]), tol=1e-14)
     assert abs(found.fun).max() < 1e-11, found.message
     return size * found.x[: 3 * len(cables)].reshape(-1, 3), found.x[3 * len(cables) :] * length
+
+
+def held_over_pulleys(
+    twin: Twin, load: Acting, position: np.ndarray, turn: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return pulls, free lengths and points where cables leave, of as many as degrees of freedom.
+
+    A pulley's axis is horizontal, its plane has the attachment point in it, and the cable is where
+    it leaves square to the spoke, in that plane.
+    """
+    n, size, radius = len(twin.exit_m), np.linalg.norm(load.at_centre_N), twin.pulley_radius_m
+    pull, length = _start(twin, position, turn, load)
+    toward = position + twin.arms @ turn.T - twin.exit_m
+    toward[:, 2] = 0.0
+    toward /= np.linalg.norm(toward, axis=1)[:, None]
+    up = np.array([0.0, 0.0, 1.0])
+
+    def unpack(x: np.ndarray) -> tuple[np.ndarray, ...]:
+        some, long, angle = size * x[: 3 * n].reshape(n, 3), x[3 * n : 4 * n] * length, x[4 * n :]
+        spoke = np.sin(angle)[:, None] * toward + np.cos(angle)[:, None] * up
+        return some, long, spoke, twin.exit_m + radius * (toward + spoke)
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        some, long, spoke, points = unpack(x)
+        gap, balance = left_over(
+            replace(twin, exit_m=points), load, position, turn, some, long, np.arange(n)
+        )
+        top = some - load.q * long[:, None]
+        square = np.sum(top * spoke, axis=1) / np.linalg.norm(top, axis=1)
+        return np.concatenate([gap.ravel() / length.mean(), square, balance / size])
+
+    slope = np.arcsin(pull[:, 2] / np.linalg.norm(pull, axis=1))
+    found = root(residual, np.concatenate([pull.ravel() / size, np.ones(n), slope]), tol=1e-14)
+    assert abs(found.fun).max() < 1e-11, found.message
+    some, long, _, points = unpack(found.x)
+    return some, long, points
 
 
 def least_largest(

@@ -123,4 +123,4 @@ def test_a_cable_is_verified_in_every_orientation(six_cable_robot: Robot, steel:
     tilted = verify(six_cable_robot, workspace_in(Orientations(TILTS)), steel.cable(0.03))
     assert tilted.max_tension_N > level.max_tension_N
     assert (tilted.longest_m >= level.longest_m - 1e-9).all()
-    assert tilted.worst_position_m.shape == (6,)
+    assert tilted.worst_place.shape == (6,)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from designer.analysis.sensitivities import payload_case
+from designer.analysis.sensitivities import payload_scaled
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Robot
@@ -47,6 +47,7 @@ class Draws:
 
     def on(self, one: Loaded, k: int) -> Loaded:
         """Return a load case with the inputs of one draw."""
+        one = payload_scaled(one, float(self.payload[k]))
         robot, rope = one.bare
         drawn = replace(
             rope,
@@ -55,7 +56,7 @@ class Draws:
             allowable_tension_N=self.breaking_load[k] * rope.allowable_tension_N,
         )
         moved = replace(robot, exit_points_m=robot.exit_points_m + self.exit_points_m[k])
-        return replace(one, case=payload_case(one, float(self.payload[k]))).on(moved, drawn)
+        return one.on(moved, drawn)
 
 
 def columns_of(spreads: Mapping[Input, Spread], robot: Robot) -> dict[Input, slice]:

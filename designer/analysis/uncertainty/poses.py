@@ -164,11 +164,11 @@ def may_govern(
 def _all_of(found: CaseFound, rope: Cable) -> Iterator[Asked]:
     """Yield a case in the direction that asked for most, at many poses; in the others at one."""
     robot, space = found.loaded.bare[0], found.workspace.space
-    worst = found.verification.worst_position_m[None]
+    worst = found.verification.worst_place[None]
     settles = found.loaded.keeps_lengths
     most = _STARTS_SETTLING if settles else _STARTS
     rest = [] if settles else [space.landmarks()]
-    places = np.unique(np.concatenate([worst, found.sampled.worst_m[:most], *rest]), axis=0)
+    places = np.unique(np.concatenate([worst, found.sampled.worst_places[:most], *rest]), axis=0)
     yield Asked(found.loaded.on(robot, rope), found.workspace, places)
     for other in found.case.on(robot, rope):
         if other.words != found.loaded.words:

@@ -54,6 +54,7 @@ def utilisation_of_rows(
         each,
         cable.allowable_tension_N / weight * each,
         1.0 / weight,
+        sag_max=robot.sag_max,
     )
     solved = solution.verdict == Verdict.SOLVED
     used = np.where(solved, solution.load_factor, np.nan).reshape(len(draws), count)

@@ -202,7 +202,9 @@ class _Trial:
     def poses_of(self, size: Candidate) -> list[Asked]:
         def rope_in(case: LoadCase) -> Cable:
             allowance = Allowance.of(self.selection.under(case))
-            return self.built.cable(allowance.cable(size.grade, size.size))
+            cable = self.built.of_products.cable(allowance.cable(size.grade, size.size))
+            met = next(one for one in (*size.cases, *self.chosen.cases) if one.case is case)
+            return cable.at_tension(met.verification.max_tension_N)
 
         return may_govern(self.chosen.cases, rope_in, self.probes())
 

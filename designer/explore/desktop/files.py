@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from designer.errors import DesignerError
+from designer.explore.desktop.live import LONG, NAMES
 from designer.explore.session import Session
+from designer.report import format as fmt
 from designer.resources import example_file, example_names
 
 if TYPE_CHECKING:
@@ -121,7 +123,26 @@ class Files:
         self._window.changed()
 
     def may_leave(self) -> bool:
-        """Ask what becomes of changes that are not saved; tells whether to go on."""
+        """Ask what becomes of long work and of changes; tells whether to go on."""
+        return self._may_end_work() and self._may_drop_changes()
+
+    def _may_end_work(self) -> bool:
+        """Ask whether work of minutes that goes on may end without a result."""
+        going_on = [NAMES[kind] for kind in LONG if kind in self._window.live.busy]
+        if self._window.session is None or not going_on:
+            return True
+        button = QMessageBox.StandardButton
+        asked = QMessageBox(self._window)
+        asked.setObjectName("unfinished")
+        asked.setIcon(QMessageBox.Icon.Question)
+        is_or_are = "is" if len(going_on) == 1 else "are"
+        asked.setText(f"{fmt.capital(fmt.listing(going_on))} {is_or_are} not finished. End it?")
+        asked.setStandardButtons(button.Yes | button.Cancel)
+        asked.setDefaultButton(button.Cancel)
+        return bool(asked.exec() == button.Yes)
+
+    def _may_drop_changes(self) -> bool:
+        """Ask what becomes of changes that are not saved."""
         session = self._window.session
         if session is None or not session.is_modified:
             return True

@@ -32,7 +32,8 @@ class Legend(QWidget):
         super().__init__(parent)
         self.setObjectName("legend")
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.title = ""
+        self.title = self.note = ""
+        self.is_old = False
         self.steps: Steps | None = None
         self.keys: tuple[Key, ...] = ()
         self._theme = LIGHT
@@ -41,13 +42,22 @@ class Legend(QWidget):
     def texts(self) -> list[str]:
         """All that is written, from the top."""
         labels = [] if self.steps is None else [fmt.trimmed(float(t), 6) for t in self.steps.ticks]
-        return [self.title, *labels[::-1], *(key.meaning for key in self.keys)]
+        notes = filter(None, [self.note])
+        return [self.title, *notes, *labels[::-1], *(key.meaning for key in self.keys)]
 
     def show_meaning(
-        self, title: str, steps: Steps | None, keys: Sequence[Key], theme: Theme
+        self,
+        title: str,
+        steps: Steps | None,
+        keys: Sequence[Key],
+        theme: Theme,
+        note: str = "",
+        *,
+        is_old: bool = False,
     ) -> None:
-        """Show the title with its unit, a scale if there is one, and other colours."""
+        """Show the title with its unit, a note, a scale if there is one, and other colours."""
         self.title, self.steps, self.keys, self._theme = title, steps, tuple(keys), theme
+        self.note, self.is_old = note, is_old
         self.setVisible(bool(title))
         self.resize(self.sizeHint())
         self.update()
@@ -55,7 +65,7 @@ class Legend(QWidget):
     def sizeHint(self) -> QSize:
         """As high as what is written."""
         line = self.fontMetrics().height()
-        title = self._title_box().height()
+        title = self._note_box().bottom() - _MARGIN
         bar = 0.0 if self.steps is None else self._bar_height() + 1.2 * line
         keys = sum(self._key_height(key) for key in self.keys)
         return QSize(_WIDTH, round(2 * _MARGIN + title + bar + keys + 8))
@@ -74,6 +84,9 @@ class Legend(QWidget):
         painter.setFont(self._bold())
         painter.drawText(box, Qt.TextFlag.TextWordWrap, self.title)
         painter.setFont(self.font())
+        box = self._note_box()
+        painter.setPen(QColor(self._theme.muted))
+        painter.drawText(box, Qt.TextFlag.TextWordWrap, self.note)
         top = box.bottom() + 8
         if self.steps is not None:
             top = self._draw_bar(painter, self.steps, top + 0.5 * self.fontMetrics().height())
@@ -91,7 +104,7 @@ class Legend(QWidget):
         for number in range(count):
             red, green, blue, _ = colours(number)
             painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor.fromRgbF(red, green, blue))
+            painter.setBrush(self._tint(QColor.fromRgbF(red, green, blue)))
             painter.drawRect(QRectF(_MARGIN, at(number + 1), _BAR, height / count + 0.5))
         painter.setPen(QColor(self._theme.ink))
         ticks = set(steps.ticks.tolist())
@@ -106,10 +119,10 @@ class Legend(QWidget):
 
     def _draw_key(self, painter: QPainter, key: Key, top: float) -> float:
         swatch = QRectF(_MARGIN, top + 3, _BAR, 11)
-        painter.fillRect(swatch, QColor(key.colour))
+        painter.fillRect(swatch, self._tint(QColor(key.colour)))
         if key.stripes:
             painter.setBrush(Qt.BrushStyle.BDiagPattern)
-            painter.fillRect(swatch, QColor(key.colour))
+            painter.fillRect(swatch, self._tint(QColor(key.colour)))
             stripes = painter.brush()
             stripes.setColor(QColor(key.stripes))
             painter.fillRect(swatch, stripes)
@@ -121,6 +134,11 @@ class Legend(QWidget):
             key.meaning,
         )
         return top + height
+
+    def _tint(self, colour: QColor) -> QColor:
+        """Return a colour of the map; grey where that is of an older state."""
+        grey = 0.2126 * colour.redF() + 0.7152 * colour.greenF() + 0.0722 * colour.blueF()
+        return QColor.fromRgbF(grey, grey, grey) if self.is_old else colour
 
     def _bar_height(self) -> float:
         lines = 0 if self.steps is None else len(self.steps.ticks)
@@ -136,6 +154,13 @@ class Legend(QWidget):
     def _title_box(self) -> QRectF:
         room = QRectF(_MARGIN, _MARGIN, _WIDTH - 2 * _MARGIN, 1000)
         return QFontMetricsF(self._bold()).boundingRect(room, Qt.TextFlag.TextWordWrap, self.title)
+
+    def _note_box(self) -> QRectF:
+        title = self._title_box()
+        room = QRectF(_MARGIN, title.bottom() + 2, _WIDTH - 2 * _MARGIN, 1000)
+        flags = Qt.TextFlag.TextWordWrap
+        box = QFontMetricsF(self.font()).boundingRect(room, flags, self.note)
+        return box if self.note else QRectF(title.bottomLeft(), title.bottomLeft())
 
     def _bold(self) -> QFont:
         font = QFont(self.font())

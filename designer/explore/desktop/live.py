@@ -7,6 +7,7 @@ the whole map and the candidates.
 from __future__ import annotations
 
 import sys
+import time
 from typing import Any, get_args
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
@@ -16,8 +17,28 @@ from designer.explore.requests import Delivery, Done, Failed, Kind, Long, Progre
 from designer.explore.worker import Worker
 
 _REST_MS = 250
+_OLD_MS = 200
+"""A shorter time of an older state is no matter: answers come many times a second."""
+_SHOWN_AS: dict[Kind, tuple[str, ...]] = {
+    "coarse": ("map",),
+    "fine": ("map",),
+    "select": ("select", "ropes"),
+}
+"""What an answer is shown as, where that is not its kind."""
 LONG: tuple[Long, ...] = get_args(Long)
 """What takes long: with progress, and cancelled by hand."""
+NAMES: dict[str, str] = {
+    "here": "the pose",
+    "coarse": "the map",
+    "fine": "the map",
+    "worst": "the worst pose",
+    "ropes": "the candidates",
+    "select": "the full selection",
+    "residuals": "the residuals",
+    "diagnose": "the diagnosis",
+    "export": "the export",
+}
+"""As a user is told of them."""
 
 
 class Live(QObject):
@@ -43,9 +64,13 @@ class Live(QObject):
         self.against: Question | None = None
         self._pending: dict[Kind, int] = {}
         self._newest: dict[Kind, int] = {}
+        self._states: dict[str, object] = {}
+        self._old_since_s: dict[str, float] = {}
         self._last = self._since = 0
         self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
         self._rest.timeout.connect(self._ask_whole)
+        self._aging = QTimer(self, singleShot=True, interval=_OLD_MS)
+        self._aging.timeout.connect(self.busy_changed)
 
     @property
     def busy(self) -> frozenset[Kind]:
@@ -55,13 +80,23 @@ class Live(QObject):
     @property
     def is_at_rest(self) -> bool:
         """Whether everything that was asked has been answered, and nothing will be asked."""
-        return not self._pending and not self._rest.isActive()
+        timers = self._rest, self._aging
+        return not self._pending and not any(timer.isActive() for timer in timers)
+
+    @property
+    def outdated(self) -> frozenset[str]:
+        """What is shown of an older state of the study, and has been for a while."""
+        now_s = time.monotonic() + 0.01  # timers are no more exact
+        since = self._old_since_s.items()
+        return frozenset(shown for shown, since_s in since if now_s - since_s >= _OLD_MS * 1e-3)
 
     def ask_about(self, question: Question | None, *, moving: bool) -> None:
         """Ask for all that may be different now."""
         before, self.question = self.question, question
         if question is None:
             return
+        for shown in self._states:
+            self._see_age(shown)
         if before is not None and before.text != question.text and "select" in self._pending:
             self._worker.cancel("select")
             self._newest["select"] = self._pending.pop("select")
@@ -99,14 +134,19 @@ class Live(QObject):
         """Drop all that was asked: another study is open."""
         self.question = None
         self._rest.stop()
+        self._aging.stop()
         for kind in tuple(self._pending):
             self._worker.cancel(kind)
         self._pending.clear()
+        self._states.clear()
+        self._old_since_s.clear()
         self._since = self._last
+        self.busy_changed.emit()
 
     def close(self) -> None:
         """End all work; returns at once."""
         self._rest.stop()
+        self._aging.stop()
         self._delivered.disconnect(self._take)
         self._since = sys.maxsize
         self._worker.close()
@@ -129,6 +169,15 @@ class Live(QObject):
         self._last = self._pending[kind] = self._worker.ask(kind, question, **options)
         self.busy_changed.emit()
 
+    def _see_age(self, shown: str) -> None:
+        """Note since when what is shown is of an older state than the present one."""
+        assert self.question is not None
+        if self._states[shown] == _state_of(shown, self.question):
+            self._old_since_s.pop(shown, None)
+        elif shown not in self._old_since_s:
+            self._old_since_s[shown] = time.monotonic()
+            self._aging.start()
+
     def _take(self, delivery: Delivery) -> None:
         """In the window's thread: hand on what is newer than what was handed on of its kind.
 
@@ -144,7 +193,21 @@ class Live(QObject):
             del self._pending[kind]
         if isinstance(delivery, Done):
             self._newest[kind] = number
+            for shown in _SHOWN_AS.get(kind, (kind,)):
+                self._states[shown] = _state_of(shown, delivery.question)
+                self._old_since_s.pop(shown, None)
+                if self.question is not None:
+                    self._see_age(shown)
             self.answered.emit(kind, delivery.answer)
         elif isinstance(delivery, Failed):
             self.failed.emit(kind, delivery.text)
         self.busy_changed.emit()
+
+
+def _state_of(shown: str, question: Question) -> object:
+    """Return what an answer depends on of the state of the window."""
+    if shown == "here":
+        return question.text, question.rope, question.place.tobytes()
+    if shown in ("map", "worst"):
+        return question.text, question.rope
+    return question.text

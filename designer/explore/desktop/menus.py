@@ -197,5 +197,7 @@ class Menus:
             self.actions["redo"].setText(f"&Redo {session.redo_label.lower()}".rstrip())
         for action in self.quantities.values():
             action.setEnabled(at_work)
+        has_rope = session is not None and session.state.rope is not None
+        self.quantities["utilisation"].setEnabled(bool(at_work and has_rope))
         self.quantities[str(window.work.quantity.currentData())].setChecked(True)
         self.themes[window.settings.theme].setChecked(True)

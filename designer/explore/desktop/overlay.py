@@ -30,6 +30,7 @@ class Overlay(QWidget):
         self.names: list[tuple[str, FloatArray]] = []
         self.platform_m: FloatArray | None = None
         self.worst: tuple[FloatArray, str] | None = None
+        self.is_worst_old = False
         self.pointed: tuple[QPointF, str] | None = None
         self.note = ""
         self.legend_px = 0  # Width of what covers the right side
@@ -73,12 +74,13 @@ class Overlay(QWidget):
             return
         place, text = self.worst
         x, y = self._camera.pixels(place)
-        for width, colour in ((5.0, self.theme.base), (2.0, self.theme.warning)):
+        marked = self.theme.muted if self.is_worst_old else self.theme.warning
+        for width, colour in ((5.0, self.theme.base), (2.0, marked)):
             painter.setPen(QPen(QColor(colour), width))
             painter.drawEllipse(QPointF(x, y), 8, 8)
             painter.drawLine(QPointF(x - 13, y), QPointF(x - 4, y))
             painter.drawLine(QPointF(x + 4, y), QPointF(x + 13, y))
-        painter.setPen(QColor(self.theme.warning))
+        painter.setPen(QColor(marked))
         self._write(painter, QPointF(x + 16, y - 8), text)
 
     def _draw_handle(self, painter: QPainter) -> None:

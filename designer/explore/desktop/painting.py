@@ -13,6 +13,7 @@ from designer.arrays import BoolArray, FloatArray
 from designer.explore.desktop.legend import Key
 from designer.explore.desktop.theme import Theme
 from designer.explore.quantities import category_labels
+from designer.explore.question import cables_words
 from designer.model.verdict import Verdict
 from designer.report.figures.colours import Steps, steps_for
 from designer.report.figures.palette import DIFFERENCES
@@ -25,6 +26,8 @@ CATEGORIES = (
     "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#7F7F7F",
 )  # fmt: skip
 """Told apart by every kind of colour vision; M. Okabe and K. Ito, Color Universal Design, 2008."""
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Of red, green and blue; ITU-R BT.709."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,11 +41,15 @@ class Values:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Painting:
-    """A quantity or its difference to A, and its scale: steps, or colours of categories."""
+    """A quantity or its difference to A, and its scale: steps, or colours of categories.
+
+    Grey where it ``is_old``: of an older state of the study.
+    """
 
     quantity: Quantity
     steps: Steps | None
     is_difference: bool = False
+    is_old: bool = False
 
     @classmethod
     def over(cls, answer: MapAnswer, quantity: Quantity, held: Steps | None = None) -> Painting:
@@ -81,6 +88,13 @@ class Painting:
         title = f"{self.quantity.title} [{unit}]" if unit else self.quantity.title
         return f"{title}, now less A" if self.is_difference else title
 
+    def note(self, answer: MapAnswer) -> str:
+        """Return which cables the values are of, and whether of an older state."""
+        cables = cables_words(None if self.quantity.key == "diameter" else answer.rope)
+        if self.is_difference and answer.rope != answer.rope_before:
+            cables = f"{cables}; A: {cables_words(answer.rope_before)}"
+        return f"{cables}; of an older state" if self.is_old else cables
+
     @property
     def span(self) -> tuple[float, float]:
         """Of the values that have a colour of their own."""
@@ -103,6 +117,9 @@ class Painting:
             colours = matplotlib.colormaps["viridis"].resampled(2)
         else:
             colours = self.steps.colormap
+        if self.is_old:
+            shares = colours(np.arange(colours.N))[:, :3] @ _LUMINANCE
+            colours = ListedColormap(np.repeat(shares[:, None], 3, axis=1))
         return pyvista.LookupTable(colours, n_values=colours.N)
 
     def of(self, answer: MapAnswer, grids: Sequence[str]) -> Values:

@@ -80,6 +80,11 @@ class PanelCompare(QWidget):
         rows.addWidget(self.table, 1)
         self.show_differences(None)
 
+    @property
+    def results(self) -> tuple[QWidget, ...]:
+        """What is grey where it is of an older state of the study."""
+        return self._told, self.table
+
     def show_differences(self, found: Differences | None) -> None:
         """Show what is otherwise; None where nothing is pinned."""
         is_pinned = found is not None

@@ -19,9 +19,10 @@ from PySide6.QtWidgets import (
 
 from designer.arrays import FloatArray
 from designer.explore.desktop.entry import Entry
-from designer.explore.desktop.tables import Column, RowsModel, ShareBar, table_view
+from designer.explore.desktop.tables import Column, RowsModel, ShareBar, restyle, table_view
 from designer.explore.desktop.theme import Theme
 from designer.explore.here import Here
+from designer.explore.question import cables_words
 from designer.report import format as fmt
 
 
@@ -159,6 +160,8 @@ class PanelHere(QWidget):
         form.setVerticalSpacing(2)
         self.facts: dict[str, QLabel] = {}
         for name, title, definition in (
+            ("cables", "Cables", "What length, tension, sag and utilisation here are of; another "
+             "rope is chosen by a click in its table."),
             ("diameter", "Diameter needed here", "The thinnest cable of the configured family that "
              "holds this pose with its own weight and stretch."),
             ("tension", "Largest tension", "Anywhere in any cable of this pose."),
@@ -173,6 +176,11 @@ class PanelHere(QWidget):
             self.facts[name] = value
         return form
 
+    @property
+    def results(self) -> tuple[QWidget, ...]:
+        """What is grey where it is of an older state of the study, or of another place."""
+        return self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
+
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._bar.theme = theme
@@ -180,10 +188,12 @@ class PanelHere(QWidget):
 
     def show_place(self, place: FloatArray, *, can_turn: bool) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
+        is_elsewhere = not np.array_equal(place, self._place)
         self._place = np.array(place, dtype=np.float64)
         shown = [*place[:3], *np.degrees(place[3:])]
         for number, (entry, value) in enumerate(zip(self._entries, shown, strict=True)):
-            if not (entry.hasFocus() and entry.isModified()):
+            is_written = entry.hasFocus() and entry.isModified()
+            if not is_written and (is_elsewhere or not entry.is_faulty):
                 entry.setText(f"{round(float(value), 4) + 0.0:g}")
                 entry.mark("")
             entry.setVisible(can_turn or number < 3)
@@ -196,19 +206,20 @@ class PanelHere(QWidget):
             self.model.show(())
             return
         self.verdict.setText(here.sentence)
-        good = here.is_solved and not (here.with_rope and here.utilisation > 1.0)
-        _restyle(self.verdict, "good" if good else "fault")
+        good = here.is_solved and not here.is_too_weak
+        restyle(self.verdict, "good" if good else "fault")
         told = " ".join(filter(None, [here.outside, here.caution]))
         self.cautions.setText(told)
         self.cautions.setVisible(bool(told))
         unit, newtons = fmt.force_unit(here.max_tension_N)
         self.model.rename(_columns(unit, 1.0 / newtons))
         self.model.show(here.cables)
+        self.facts["cables"].setText(cables_words(here.rope))
         self.facts["diameter"].setText(fmt.millimetres(here.diameter_m))
         self.facts["tension"].setText(fmt.newtons(here.max_tension_N))
         self.facts["stiffness"].setText(_stiffness(here.stiffness_N_per_m))
         self.stability.setText(here.stability)
-        _restyle(self.stability, "fault" if here.is_stable is False else "")
+        restyle(self.stability, "fault" if here.is_stable is False else "")
 
     def _entered(self) -> None:
         place = self._place.copy()
@@ -242,9 +253,3 @@ def _text(name: str, role: str = "") -> QLabel:
     if role:
         label.setProperty("role", role)
     return label
-
-
-def _restyle(label: QLabel, role: str) -> None:
-    if label.property("role") != role:
-        label.setProperty("role", role)
-        label.style().polish(label)

@@ -214,7 +214,8 @@ class ScatterPlot(QWidget):
         band.setAlpha(40)
         bottom, top = at(np.array([low[0], -reach])), at(np.array([high[0], reach]))
         painter.fillRect(QRectF(bottom, top).normalized(), band)
-        for points, colour in ((self._pale, self.theme.muted), (self.points, self.theme.accent)):
+        fresh = self.theme.muted if self.property("old") else self.theme.accent
+        for points, colour in ((self._pale, self.theme.muted), (self.points, fresh)):
             ink = QColor(colour)
             ink.setAlpha(110 if points is self._pale else 200)
             painter.setBrush(ink)

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
-from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
@@ -19,6 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from designer.explore.desktop.choice import Choice
+from designer.explore.desktop.panel_requirements import answer_words
 from designer.explore.desktop.tables import SORT, Column, Index, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
 from designer.report import format as fmt
@@ -48,7 +48,10 @@ def _key(name: str) -> Callable[[Any], Any]:
     return key
 
 
-_STANDINGS = ("chosen", "undominated", "dominated", "not_comparable", "too_thin", "not_held")
+_STANDINGS = (
+    *("chosen", "undominated", "dominated", "not_comparable"),
+    *("rejected", "too_thin", "not_held"),
+)
 
 
 def _rank(row: RopeRow) -> float:
@@ -184,11 +187,15 @@ class PanelRopes(QWidget):
         if self._ropes is not None and self._ropes.groups is not None:
             self.chosen.emit(self._ropes.groups.assignment)
 
+    @property
+    def results(self) -> tuple[QWidget, ...]:
+        """What is grey where it is of an older state of the study."""
+        return self.answer, self.groups, self.table
+
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._bar.theme = theme
-        self.model.muted_colour = QColor(theme.muted)
-        self.table.viewport().update()
+        self.model.put_on(theme)
 
     def show_ropes(self, ropes: Ropes | None, rope: Rope | Assignment | None) -> None:
         """Show the candidates, and which of them colours the map."""
@@ -262,14 +269,15 @@ class _Filter(QSortFilterProxyModel):
 
 def _answer(ropes: Ropes) -> str:
     """The best rope, and how far to trust it."""
+    lines = [] if ropes.answer is None else [answer_words(ropes)]
     if ropes.best is None:
-        return fmt.capital(ropes.reason)
+        return "\n".join([*lines, fmt.capital(ropes.reason) or _NOTHING])
     sure = "between the samples as well" if ropes.is_final else "at the samples, not proved"
-    text = f"Best: {ropes.best.label} ({sure})"
-    if ropes.proof is None:
-        return text
-    proof = proof_statement(ropes.proof)
-    return f"{text}\n{proof.title}. {proof.text}"
+    lines.append(f"Best: {ropes.best.label} ({sure})")
+    if ropes.proof is not None:
+        proof = proof_statement(ropes.proof)
+        lines.append(f"{proof.title}. {proof.text}")
+    return "\n".join(lines)
 
 
 def _groups_text(groups: Groups) -> str:

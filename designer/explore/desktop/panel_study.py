@@ -57,7 +57,7 @@ class PanelStudy(QWidget):
         self.setMinimumWidth(240)
         self.rows: dict[str, FieldRow] = {}
         self._headings: dict[str, _Heading] = {}
-        self._find = QLineEdit()
+        self._find = Entry()
         self._find.setObjectName("find field")
         self._find.setPlaceholderText("Find a number …")
         self._find.setClearButtonEnabled(True)
@@ -246,13 +246,14 @@ class FieldRow(QWidget):
             self.slider.put(self._share(field.value_SI))
 
     def show_refused(self, refused: Rejected | None) -> None:
-        """Show beside the entry what is wrong with what was entered; nothing where nothing is."""
+        """Show what was refused, to be mended, and what is wrong with it; None for nothing."""
         told = "" if refused is None else " ".join(map(_words, refused.faults))
         self._fault.setText(told)
         self._fault.setVisible(bool(told))
         self.entry.mark(told)
-        if refused is not None and not self.entry.hasFocus():
+        if refused is not None and not (self.entry.hasFocus() and self.entry.isModified()):
             self.entry.setText(refused.text)
+            self.choices.setCurrentText(refused.text)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Escape in the entry gives up what was entered."""

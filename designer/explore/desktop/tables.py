@@ -9,7 +9,13 @@ from typing import Any
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QPainter
-from PySide6.QtWidgets import QStyledItemDelegate, QStyleOptionViewItem, QTableView, QWidget
+from PySide6.QtWidgets import (
+    QLabel,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QTableView,
+    QWidget,
+)
 
 from designer.explore.desktop.theme import Theme
 
@@ -44,6 +50,11 @@ class RowsModel(QAbstractTableModel):
         self.hint: Callable[[Any], str] = lambda _: ""
         self.muted_colour = QColor("grey")
 
+    def put_on(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.muted_colour = QColor(theme.muted)
+        self._tell_changed()
+
     def show(self, rows: Sequence[Any]) -> None:
         """Show other rows; where there are as many as before, selection and place are kept."""
         kept = len(rows) == len(self.rows)
@@ -51,12 +62,14 @@ class RowsModel(QAbstractTableModel):
             self.beginResetModel()
         self.rows = tuple(rows)
         if kept:
-            if not rows:
-                return
-            corner = self.index(len(rows) - 1, len(self.columns) - 1)
-            self.dataChanged.emit(self.index(0, 0), corner)
+            self._tell_changed()
         else:
             self.endResetModel()
+
+    def _tell_changed(self) -> None:
+        if self.rows:
+            corner = self.index(len(self.rows) - 1, len(self.columns) - 1)
+            self.dataChanged.emit(self.index(0, 0), corner)
 
     def rename(self, columns: Sequence[Column]) -> None:
         """Show the same columns in other units."""
@@ -116,13 +129,16 @@ class ShareBar(QStyledItemDelegate):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
+        self._table = parent
         self.theme: Theme | None = None
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         """Draw the bar, then the figure."""
         share = index.data(SHARE)
         if self.theme is not None and isinstance(share, float) and not math.isnan(share):
-            colour = QColor(self.theme.accent if share <= 1.0 else self.theme.warning)
+            is_old = self._table.property("old")
+            fresh = self.theme.accent if share <= 1.0 else self.theme.warning
+            colour = QColor(self.theme.muted if is_old else fresh)
             colour.setAlpha(90)
             area = QRectF(option.rect).adjusted(1, 3, -1, -3)
             area.setWidth(area.width() * min(share, 1.0))
@@ -145,3 +161,19 @@ def table_view(name: str) -> QTableView:
     view.horizontalHeader().setHighlightSections(False)
     view.setTabKeyNavigation(False)
     return view
+
+
+def restyle(label: QLabel, role: str) -> None:
+    """Give a label the colour of a role, see `designer.explore.desktop.theme`."""
+    if label.property("role") != role:
+        label.setProperty("role", role)
+        label.style().polish(label)
+
+
+def grey(is_old: bool, *widgets: QWidget) -> None:
+    """Show what is in widgets in grey where it is of an older state of the study."""
+    for widget in widgets:
+        if bool(widget.property("old")) != is_old:
+            widget.setProperty("old", is_old)
+            widget.style().polish(widget)
+            widget.update()

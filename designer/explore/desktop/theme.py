@@ -127,9 +127,11 @@ QStatusBar {{ border-top: 1px solid {theme.border}; }}
 QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 6px; padding: 3px; }}
 QLabel[role="muted"], QCheckBox[role="muted"] {{ color: {theme.muted}; }}
 QLabel[role="fault"] {{ color: {theme.warning}; }}
+QLabel[role="doubt"] {{ font-style: italic; }}
 QLabel[role="good"] {{ color: {theme.good}; }}
 QLabel[role="heading"] {{ font-weight: 600; }}
 QLabel[role="title"] {{ font-size: 18pt; font-weight: 600; }}
+QLabel[old="true"], QTableView[old="true"] {{ color: {theme.muted}; }}
 QLineEdit[faulty="true"] {{ border: 1px solid {theme.warning}; }}
 QToolButton[role="put-back"] {{ border: none; color: {theme.accent}; padding: 0 2px; }}
 QToolButton[role="section"] {{ border: none; font-weight: 600; padding: 6px 0 2px 0; }}

@@ -23,17 +23,19 @@ from designer.explore.desktop.editing import Editing
 from designer.explore.desktop.files import Files
 from designer.explore.desktop.help import HINT, Help
 from designer.explore.desktop.keeping import Keeping
-from designer.explore.desktop.live import LONG, Live
+from designer.explore.desktop.live import LONG, NAMES, Live
 from designer.explore.desktop.long_work import LongWork
 from designer.explore.desktop.menus import Menus
 from designer.explore.desktop.moving import Moving
 from designer.explore.desktop.panel_compare import PanelCompare
 from designer.explore.desktop.panel_here import PanelHere
 from designer.explore.desktop.panel_measured import PanelMeasured
+from designer.explore.desktop.panel_requirements import PanelRequirements
 from designer.explore.desktop.panel_ropes import PanelRopes
 from designer.explore.desktop.panel_study import PanelStudy
 from designer.explore.desktop.settings import Settings
 from designer.explore.desktop.start_page import StartPage
+from designer.explore.desktop.tables import grey
 from designer.explore.desktop.text_page import TextPage
 from designer.explore.desktop.work_page import WorkPage
 from designer.explore.session import Session
@@ -44,17 +46,6 @@ if TYPE_CHECKING:
     from designer.explore.requests import Kind
 
 _DISK_MS = 2000
-_NAMES = {
-    "here": "the pose",
-    "coarse": "the map",
-    "fine": "the map",
-    "worst": "the worst pose",
-    "ropes": "the candidates",
-    "select": "the full selection",
-    "residuals": "the residuals",
-    "diagnose": "the diagnosis",
-    "export": "the export",
-}
 
 
 class Window(QMainWindow):
@@ -91,7 +82,8 @@ class Window(QMainWindow):
 
     def _make_docks(self) -> None:
         self.here, self.study_panel, self.ropes = PanelHere(), PanelStudy(), PanelRopes()
-        self.compare, self.measured = PanelCompare(), PanelMeasured()
+        self.requirements, self.compare = PanelRequirements(), PanelCompare()
+        self.measured = PanelMeasured()
         self.messages = QPlainTextEdit(readOnly=True)
         self.messages.setObjectName("messages")
         self.messages.setMaximumBlockCount(500)
@@ -100,6 +92,7 @@ class Window(QMainWindow):
             "Study": self.study_panel,
             "Here": self.here,
             "Ropes": self.ropes,
+            "Requirements": self.requirements,
             "Compare": self.compare,
             "Measured data": self.measured,
             "Messages": self.messages,
@@ -121,6 +114,8 @@ class Window(QMainWindow):
         self.study_panel.gave_up.connect(self.editing.give_up)
         self.ropes.chosen.connect(self._choose)
         self.ropes.asks_for_selection.connect(lambda: self.begin_long("select"))
+        self.requirements.asks_for_place.connect(self.moving.to)
+        self.requirements.asks_for_selection.connect(lambda: self.begin_long("select"))
         self.compare.asks_to_pin.connect(self.comparing.pin)
         self.compare.asks_to_release.connect(self.comparing.release)
         self.compare.difference_wanted.connect(self.comparing.want_in_map)
@@ -186,6 +181,7 @@ class Window(QMainWindow):
         self.session, self.answers = session, {}
         self.setWindowTitle(f"{session.name}[*] – cdpr-designer")
         self.ropes.show_ropes(None, None)
+        self.requirements.show_requirements(None)
         self.here.show_here(None)
         self.compare.show_differences(None)
         self.measured.show_residuals(None)
@@ -216,6 +212,7 @@ class Window(QMainWindow):
                 self.editing.show()
             self.work.show_place(state.place)
             self.here.show_place(state.place, can_turn=not study.robot.is_point_mass)
+            self.work.allow_utilisation(state.rope is not None)
         self.menus.refresh()
         self.live.ask_about(session.question(), moving=moving)
 
@@ -226,7 +223,8 @@ class Window(QMainWindow):
         self.session.choose(rope)
         self.ropes.show_ropes(self.answers.get("ropes"), rope)
         self.changed()
-        self.work.choose_quantity("diameter" if rope is None else "utilisation")
+        if rope is not None:
+            self.work.choose_quantity("utilisation")
 
     def _move_slice(self, share: float, moving: bool) -> None:
         self.live.ask_slice(share, moving=moving)
@@ -263,6 +261,8 @@ class Window(QMainWindow):
             self.work.show_worst(answer)
         elif kind in ("ropes", "select"):
             self._take_ropes(answer)
+            if kind == "select":
+                self.requirements.show_requirements(answer)
         elif kind == "residuals":
             self.measured.show_residuals(answer)
             self._show_rows(self.measured.in_scene.isChecked())
@@ -283,10 +283,12 @@ class Window(QMainWindow):
         if is_first and session.state.rope is None and best is not None:
             session.begin_with(best)
             self.changed()
+            if self.work.quantity.currentData() == "diameter":  # nobody chose it
+                self.work.choose_quantity("utilisation")
         self.ropes.show_ropes(ropes, session.state.rope)
 
     def _failed(self, kind: str, text: str) -> None:
-        self.tell(f"{_NAMES.get(kind, kind)}: {text}")
+        self.tell(f"{NAMES.get(kind, kind)}: {text}")
 
     def tell(self, text: str) -> None:
         """Write a message where it stays, and show it."""
@@ -298,15 +300,27 @@ class Window(QMainWindow):
     def begin_long(self, kind: Kind, **options: Any) -> None:
         """Begin long work, with progress and a button that ends it."""
         if self.live.question is not None:
-            self.long.begin(kind, _NAMES[kind])
+            self.long.begin(kind, NAMES[kind])
             self.live.ask_long(kind, **options)
 
     def _show_busy(self) -> None:
         busy = self.live.busy
-        short = sorted({_NAMES[kind] for kind in busy if kind not in LONG})
+        short = sorted({NAMES[kind] for kind in busy if kind not in LONG})
         self.busy.setText(f"solving {', '.join(short)} …" if short else "")
+        self._show_age()
         if self.long.kind and self.long.kind not in busy:
             self.long.end(self.long.kind)
+
+    def _show_age(self) -> None:
+        """Show in grey what is of an older state of the study."""
+        old = self.live.outdated
+        self.work.show_age(is_map_old="map" in old, is_worst_old="worst" in old)
+        grey(old >= {"here"}, *self.here.results)
+        grey(old >= {"ropes"}, *self.ropes.results)
+        grey(old >= {"select"}, *self.requirements.results)
+        grey(bool(old & {"here", "worst", "ropes"}), *self.compare.results)
+        grey(old >= {"diagnose"}, self.measured.told)
+        grey(old >= {"residuals"}, self.measured.plot)
 
     # Look, and the end
 
@@ -324,6 +338,7 @@ class Window(QMainWindow):
         self.work.put_on(theme)
         self.here.put_on(theme)
         self.ropes.put_on(theme)
+        self.requirements.put_on(theme)
         self.measured.put_on(theme)
         self.menus.refresh()
 

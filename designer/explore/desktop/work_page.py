@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QStandardItemModel
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -62,6 +64,7 @@ class WorkPage(QWidget):
         self._held: Steps | None = None
         self._hit: Hit | None = None
         self._rows_note = ""
+        self._is_old = False
         self._where = "home"
         self._notice = _Notice()
         self._notice.answered.connect(self.notice_answered)
@@ -184,6 +187,15 @@ class WorkPage(QWidget):
         self.map = answer
         self._show_map()
 
+    def show_age(self, *, is_map_old: bool, is_worst_old: bool) -> None:
+        """Show in grey what is of an older state of the study."""
+        if is_map_old != self._is_old:
+            self._is_old = is_map_old
+            self._show_map()
+        if is_worst_old != self.scene.overlay.is_worst_old:
+            self.scene.overlay.is_worst_old = is_worst_old
+            self.scene.overlay.update()
+
     def show_worst(self, worst: WorstAnswer | None) -> None:
         """Mark the worst pose."""
         marked = None
@@ -215,11 +227,19 @@ class WorkPage(QWidget):
         quantity = BY_KEY[str(self.quantity.currentData())]
         if any(quantity.key not in values for values in answer.values.values()):
             return  # it was asked for, and comes with the next answer
-        self.painting = Painting.over(answer, quantity, self._held)
+        if quantity.key == "utilisation" and answer.rope is None:
+            return  # of the thinnest cable it is 100 % everywhere; that of the rope comes
+        painting = Painting.over(answer, quantity, self._held)
+        self.painting = replace(painting, is_old=self._is_old)
         self.scene.stage.put_map(answer, self.painting)
         keys = self.painting.keys(answer, self._theme)
         self.scene.colour_legend.show_meaning(
-            self.painting.title, self.painting.steps, keys, self._theme
+            self.painting.title,
+            self.painting.steps,
+            keys,
+            self._theme,
+            self.painting.note(answer),
+            is_old=self._is_old,
         )
         self.scene.place_legend()
         has_slice = "slice" in answer.grids
@@ -241,6 +261,15 @@ class WorkPage(QWidget):
         self.quantity.setToolTip(f"<p>{BY_KEY[self.quantity.currentData()].definition}</p>")
         self._show_map()
         self.quantity_changed.emit(str(self.quantity.currentData()))
+
+    def allow_utilisation(self, has_rope: bool) -> None:
+        """Offer the utilisation where there is a rope; else what the family needs stands there."""
+        index = self.quantity.findData("utilisation")
+        model = self.quantity.model()
+        assert isinstance(model, QStandardItemModel)
+        model.item(index).setEnabled(has_rope)
+        if not has_rope and self.quantity.currentIndex() == index:
+            self.choose_quantity("diameter")
 
     def choose_quantity(self, key: str) -> None:
         """Colour the map by another quantity."""

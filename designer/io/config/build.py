@@ -169,6 +169,8 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
         hangs_below=section.hangs_below,
         clearance_m=section.clearance,
         floor_m=section.floor,
+        sag_max=section.sag,
+        family_sag_max=section.sag if "sag" in section.model_fields_set else None,
         proof_s=section.proof,
         orientations=_orientations(section),
     )

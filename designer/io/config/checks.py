@@ -11,7 +11,8 @@ from scipy.spatial import QhullError
 
 from designer.arrays import FloatArray
 from designer.documents.document import Document
-from designer.documents.picture import picture_type
+from designer.documents.opened import open_input
+from designer.documents.picture import LARGEST_PICTURE_BYTES, why_not_shown
 from designer.documents.section import reader_of
 from designer.effects.effect import ALL_ANCHORS, Effect
 from designer.errors import Fault
@@ -30,7 +31,6 @@ _GROUPS = "selection.groups"
 _COLUMNS = "measurements.columns"
 _UNCERTAINTY = "uncertainty"
 _LOGO = "document.logo"
-LARGEST_LOGO_BYTES = 1_000_000
 _UNKNOWN = "measurements.unknown"
 
 
@@ -275,11 +275,14 @@ def logo_is_a_picture(parts: Parts) -> Iterator[Fault]:
         return
     path = Path(parts.document.name).parent / name
     try:
-        start = path.read_bytes()[:512] if path.stat().st_size <= LARGEST_LOGO_BYTES else None
-    except (OSError, ValueError):
+        with open_input(path) as file:
+            problem = why_not_shown(file.read(LARGEST_PICTURE_BYTES + 1))
+    except FileNotFoundError:
         yield parts.fault(_LOGO, f"there is no file {path}", "a picture, relative to this file")
-        return
-    if start is None:
-        yield parts.fault(_LOGO, "the file is too large", f"at most {LARGEST_LOGO_BYTES:,} bytes")
-    elif picture_type(start) is None:
-        yield parts.fault(_LOGO, f"{path.name} is no such picture", "a PNG, JPEG or SVG file")
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or "its name is not valid").lower()
+        expected = "a picture, relative to this file"
+        yield parts.fault(_LOGO, f"{path} cannot be read: {reason}", expected)
+    else:
+        if problem is not None:
+            yield parts.fault(_LOGO, f"{path.name} {problem[0]}", problem[1])

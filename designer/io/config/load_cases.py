@@ -32,13 +32,14 @@ def load_case(
     wrench, ice, wind = section.wrench, section.ice, section.wind
     along = None if wind is None or wind.direction is None else frozen_array(wind.direction)
     drag = cable.drag_coefficient or 0.0
+    count = None if wind is None or isinstance(wind.directions, str) else wind.directions
     return LoadCase(
         name=section.name,
         mass_kg=section.mass,
         wrench_N=None if wrench is None else frozen_array([*wrench.force, *wrench.moment]),
         dynamic_factor=section.dynamic_factor,
         acceleration_m_per_s2=section.acceleration,
-        wind=None if wind is None else Wind(wind.speed, drag, wind.directions or 8, along),
+        wind=None if wind is None else Wind(wind.speed, drag, count, along),
         ice=None if ice is None else Ice(ice.thickness, ice.density),
         cable_lost=section.cable_lost,
         temperature_change_K=section.temperature_change,

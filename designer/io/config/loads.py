@@ -19,6 +19,12 @@ LostCable = Annotated[
     Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
 ]
 
+Directions = Annotated[
+    Annotated[Literal["all"], only_word("all", "'all' or a number of directions"), Tag("a word")]
+    | Annotated[int, WholeNumber(1, 72), Tag("a number")],
+    Discriminator(lambda given: "a word" if isinstance(given, str) else "a number"),
+]
+
 
 class DragSection(Section):
     """What the wind finds of the platform."""
@@ -28,10 +34,10 @@ class DragSection(Section):
 
 
 class WindSection(Section):
-    """Wind of one speed, horizontal from so many directions or along one."""
+    """Wind of one speed, from the worst horizontal direction, from so many or along one."""
 
     speed: fields.Speed = Field(description="a speed such as '20 m/s'")
-    directions: Annotated[int, WholeNumber(1, 72)] | None = None
+    directions: Directions | None = None
     direction: fields.Direction | None = None
 
     @model_validator(mode="before")

@@ -109,6 +109,11 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "Least distance that cables shall keep from each other and from the platform.",
     ),
     "workspace.floor": ("Floor", "Height that no cable may hang below."),
+    "workspace.sag": (
+        "Largest sag",
+        "Largest distance of a cable from its chord, over the chord. Of ropes to buy, 20 % unless "
+        "given; of the configured cable only if given. The word none lifts it.",
+    ),
     "workspace.proof": (
         "Time for the proof",
         "How long to try to prove that the chosen rope holds in all poses; 0 for not at all.",
@@ -176,7 +181,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     ),
     "load_cases.wind.directions": (
         "Winds in load case",
-        "From how many directions, evenly spread, the wind may come.",
+        "From how many directions, evenly spread, the wind may come; all searches for the worst.",
     ),
     "load_cases.ice.thickness": (
         "Ice in load case",
@@ -317,8 +322,8 @@ WORDS: Mapping[str, str] = {
     "selection.limits": "What else the chosen rope is checked against.",
     "selection.groups": "Cables that may get a rope of their own: names, each with its cable "
     "numbers, counted from 1 in the order of the anchors.",
-    "load_cases": "Load cases, in each of which the rope has to hold everywhere; left out, there "
-    "is one case without wind, ice, motion or loss of a cable.",
+    "load_cases": "Load cases, at most 50, in each of which the rope has to hold everywhere; left "
+    "out, there is one case without wind, ice, motion or loss of a cable.",
     "load_cases.name": "What the report calls the case.",
     "load_cases.wrench": "Constant load on the platform in this case, instead of the robot's.",
     "load_cases.wind": "Wind on the platform and on the cables.",

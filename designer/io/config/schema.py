@@ -54,7 +54,7 @@ from designer.io.config.orientation import (
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import Reading
 from designer.model.region import Sampling
-from designer.study import HangsBelow, Objective
+from designer.study import SAG_MAX, HangsBelow, Objective
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
@@ -267,6 +267,7 @@ class WorkspaceSection(Section):
     hangs_below: HangsBelow = "include"
     clearance: fields.Clearance | None = None
     floor: fields.Length | None = None
+    sag: fields.Sag = SAG_MAX
     proof: fields.ProofTime = 20.0
     orientation: OrientationSection | None = None
     orientations: TurnList | None = None

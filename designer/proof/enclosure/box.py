@@ -96,8 +96,8 @@ def bound_range(start: int, stop: int, scene: Scene, boxes: Boxes, out: FloatArr
     `BOUND` is a bound on the largest tension over the allowable one in an equilibrium that exists
     in every pose of the box, infinite where none was proved; `ESTIMATE` the same at its corners
     without what encloses it, at the coordinates from `TOLD` on; `CUT` the coordinate to halve,
-    `CABLE` the cable that meets the bound, and `SPARE` by how much least tensions are exceeded at
-    least, relative, NaN where that is not known.
+    `CABLE` the cable that meets the bound, and `SPARE` by how much least tensions and pulls are
+    exceeded at least, relative, NaN where that is not known.
     """
     n, k = boxes.follow.shape[1], boxes.half.shape[1]
     work = new_work(n, scene.rows.size, k)

@@ -60,7 +60,7 @@ from designer.proof.enclosure.interval import (
 _DOUBLINGS = 6
 _SMALL = 0.5
 """θ after halving; then what the series leaves out is less than its last term times x/100."""
-_LARGEST_THETA = _SMALL * 2.0**_DOUBLINGS
+LARGEST_THETA = _SMALL * 2.0**_DOUBLINGS
 _TERMS = 12
 _NUMERATORS = tuple(2.0 ** (2 * k + 1) for k in range(1, _TERMS + 1))
 # Factorials up to 26! are below 2⁹⁰, yet not all are doubles: rounded ones are divided outward.
@@ -100,7 +100,7 @@ def _closure(length: float, p: float, X2: float, D: float, kappa: float) -> Inte
     at = point(length)
     stretched = scale(at, kappa)
     theta = scale(subtract(divide(point(1.0), point(p)), stretched), 0.5)
-    if not (theta[0] > 0.0 and theta[1] <= _LARGEST_THETA):
+    if not (theta[0] > 0.0 and theta[1] <= LARGEST_THETA):
         return math.nan, math.nan
     S_low, C_low = sag(theta[0])
     S_high, C_high = sag(theta[1])
@@ -171,7 +171,7 @@ def enclose(
     if not (length[0] > 0.0 and length[1] < math.inf):
         return failed
     theta = scale(subtract(divide(one, p), scale(length, kappa)), 0.5)
-    if not (theta[0] > 0.0 and theta[1] <= _LARGEST_THETA):
+    if not (theta[0] > 0.0 and theta[1] <= LARGEST_THETA):
         return failed
     S_low, C1_low = sag(theta[0])
     S_high, C1_high = sag(theta[1])

@@ -29,6 +29,8 @@ class Scene(NamedTuple):
         Which components of force and moment, 0 … 5, are balanced.
     kappa, strength, least : float
         Weight over stiffness [1/m]; allowable tension and least tension over weight [m].
+    sag : float
+        Largest sag over chord; infinite for any.
     inverse_weight : float
         1 / weight per length [m/N].
     reach : float
@@ -45,6 +47,7 @@ class Scene(NamedTuple):
     kappa: float
     strength: float
     least: float
+    sag: float
     inverse_weight: float
     reach: float
     fuzz: float

@@ -8,17 +8,20 @@ from designer.arrays import FloatArray
 from designer.kernel.compiling import exact
 from designer.proof.enclosure.interval import (
     Interval,
+    absolute,
     add,
     down,
     middle,
     multiply,
     negate,
     point,
+    root,
     scale,
     size,
     square,
     up,
 )
+from designer.proof.enclosure.sag import bound_sag
 from designer.proof.enclosure.tables import (
     BOUND,
     CABLE,
@@ -38,6 +41,9 @@ from designer.proof.enclosure.tables import (
     Work,
     get,
 )
+
+_STEEPEST = 1e8
+"""Slope of a chord that stands for all steeper ones, which sag less."""
 
 
 @exact
@@ -107,6 +113,16 @@ def _lowest_slope(work: Work, i: int, d: int) -> Interval:
 
 
 @exact
+def _most_sag(work: Work, i: int) -> float:
+    """Bound the sag of a cable over its chord."""
+    a = work.at[i]
+    X2 = add(square(get(a[EX])), square(get(a[EY])))
+    slope = down(absolute(get(a[EZ]))[0] / root(X2)[1])
+    across, below = bound_sag(work.cable[i, PULL, 0], min(max(slope, 0.0), _STEEPEST))
+    return across if _upward(work, i, 0)[0] >= 0.0 else max(across, below)
+
+
+@exact
 def _rise(scene: Scene, boxes: Boxes, at: int, work: Work, slope_u: float, i: int) -> tuple[
     float, float, int
 ]:  # fmt: skip
@@ -143,7 +159,10 @@ def _set_tilt(work: Work, d: int, slope: Interval, factor: float) -> None:
 
 @exact
 def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArray) -> None:
-    """Set the bound and the estimate; leave the former infinite where least tensions are missed."""
+    """Set the bound and the estimate; leave the former infinite where limits are missed.
+
+    These are the least tension and the sag.
+    """
     n, k = work.P.shape
     worst, estimate, is_tight, spare = 0.0, -np.inf, True, np.inf
     for i in range(n):
@@ -170,6 +189,10 @@ def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArr
             left = down(start - fall)
             is_tight = is_tight and left >= least
             spare = min(spare, 0.5 * (left / least - 1.0))
+        if scene.sag < np.inf:
+            most = _most_sag(work, i)
+            is_tight = is_tight and most <= scene.sag
+            spare = min(spare, scene.sag / most - 1.0)
     out[SPARE] = spare
     out[ESTIMATE] = estimate / scene.strength
     if is_tight and worst < np.inf:

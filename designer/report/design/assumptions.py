@@ -11,7 +11,7 @@ from designer.model.robot import Robot
 from designer.report import format as fmt
 from designer.report.blocks import Bullets, Section
 from designer.report.design.source import Source
-from designer.study import Selection, Study
+from designer.study import Selection, Study, rope_effects
 
 
 def section(source: Source) -> Section:
@@ -84,12 +84,27 @@ def _effects(analysis: Analysis) -> str:
         "temperature, it is the declared one, "
         f"{fmt.trimmed(study.surroundings.temperature_C)}\u00a0°C."
     )
+    if note := rope_effects_note(study):
+        text += f" {note}"
     if analysis.section_m is None:
         return text
     return (
         f"{text} They do not act alike on all sections. The configured family is computed with "
         f"what they make of its member of {fmt.millimetres(analysis.section_m)}, which is right "
         "for the worst pose; poses that need less are mapped a little too thin."
+    )
+
+
+def rope_effects_note(study: Study) -> str:
+    """Return to which rope the effects of a rope belong; empty where none is declared."""
+    ids = rope_effects(study)
+    if not ids:
+        return ""
+    verb, them = ("belongs", "It is") if len(ids) == 1 else ("belong", "They are")
+    whose = "configured family" if study.measurements is None else "rope on the machine"
+    return (
+        f"{fmt.capital(fmt.listing(ids))} {verb} to the {whose}. {them} not applied to ropes of "
+        "the catalogue, which have the figures of their data sheets."
     )
 
 
@@ -128,6 +143,9 @@ def _loads(robot: Robot) -> str:
     if robot.tension_min_N > 0.0:
         least = fmt.newtons(robot.tension_min_N)
         parts.append(f"No cable has less than {least} anywhere along it.")
+    if robot.is_redundant and robot.sag_max is not None:
+        share = fmt.share(robot.sag_max, 1.0)
+        parts.append(f"Where the cables can keep it, none sags more than {share} of its chord.")
     return " ".join(parts)
 
 

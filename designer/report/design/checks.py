@@ -1,13 +1,12 @@
-"""The checks of the chosen rope as one table, and the pose that governs in figures."""
+"""All requirements as one table, and the pose that governs in figures."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 
-from designer.analysis.analyse import Analysis
-from designer.analysis.checks import Check, checks_of
 from designer.analysis.governing import GoverningPose
+from designer.model.requirement import Requirement, State
 from designer.report import format as fmt
 from designer.report.blocks import (
     Block,
@@ -20,6 +19,7 @@ from designer.report.blocks import (
     Section,
     Statement,
     Table,
+    Tone,
 )
 from designer.report.design.source import Source
 from designer.report.pictures import scene
@@ -27,10 +27,8 @@ from designer.study import Study
 
 
 def section(source: Source) -> Section | None:
-    """Return every check of the chosen rope; None where none is chosen for all cables."""
-    checks = _checks(source.analysis)
-    if not checks:
-        return None
+    """Return all that the study asks for, and whether it holds."""
+    requirements = source.analysis.requirements
     pose = source.governing
     shown: tuple[Block | None, ...] = ()
     if pose is not None:
@@ -38,9 +36,9 @@ def section(source: Source) -> Section | None:
         shown = (Box.of("lead keep", picture, _facts(pose)), _cables(pose), _forces(pose))
     return Section.of(
         "checks",
-        "Checks and the governing pose",
-        _table(checks),
-        _not_checked(source.analysis.study, checks),
+        "Requirements and the governing pose",
+        _table(requirements),
+        _not_asked(source.analysis.study, requirements),
         *shown,
     )
 
@@ -60,84 +58,95 @@ def _picture(pose: GoverningPose) -> Picture:
     return scene(caption, "The robot in the governing pose, in space", drawn, kind="space")
 
 
-def failing_checks(analysis: Analysis) -> Iterator[Statement]:
-    """Yield what page 1 must say of checks that do not hold."""
-    for one in _checks(analysis):
-        if not one.holds and one.id != "clearance":  # which page 1 has as a reason already
-            text = (
-                f"{fmt.capital(one.formula)}: {_value(one.demand, one.unit)} are asked for, "
-                f"{_value(one.capacity, one.unit)} are there."
-            )
-            yield Statement(f"{one.title} does not hold", text, "bad")
+def unmet_statement(requirement: Requirement) -> Statement:
+    """Return what the first page says of a requirement that fails or is open."""
+    is_open = requirement.state is State.OPEN
+    parts = [f"{fmt.capital(requirement.formula)}"]
+    if math.isfinite(requirement.demand) and math.isfinite(requirement.capacity):
+        demand, capacity = (
+            value_words(value, requirement.unit)
+            for value in (requirement.demand, requirement.capacity)
+        )
+        parts.append(f"demand {demand}, capacity {capacity}")
+    parts += filter(None, [requirement.remark, _where(requirement)])
+    state = "is not known to hold" if is_open else "does not hold"
+    title = f"{requirement.title} {state}"
+    return Statement(title, f"{'; '.join(parts)}.", "doubt" if is_open else "bad")
 
 
-def _checks(analysis: Analysis) -> tuple[Check, ...]:
-    """Return the checks; none where no rope is chosen for all cables."""
-    study, found = analysis.study, analysis.selection
-    if found is None or found.chosen is None or study.selection is None or analysis.has_groups:
-        return ()
-    least_N = study.robot.tension_min_N
-    return checks_of(found.chosen, study.selection, least_N, analysis.qualities)
+_TONES: dict[State, Tone] = {State.HOLDS: "", State.OPEN: "doubt", State.FAILS: "bad"}
+STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not hold"}
+"""As a reader is told of them."""
 
 
-def _table(checks: tuple[Check, ...]) -> Table:
+def _table(requirements: tuple[Requirement, ...]) -> Table:
     columns = (
-        *("Check", "Formula and source", Column("Demand"), Column("Capacity"), Column("Used")),
-        *("Where", "Verdict"),
+        *("Requirement", "Formula and source", Column("Demand"), Column("Capacity")),
+        *(Column("Utilisation"), "Where", "State"),
     )
     rows = [
         Row(
             (
-                one.title,
-                f"{fmt.capital(one.formula)} ({one.source}).",
-                _value(one.demand, one.unit),
-                _value(one.capacity, one.unit),
-                "–" if math.isnan(one.utilisation) else fmt.utilisation(one.utilisation),
-                _where(one),
-                "holds" if one.holds else "does not hold",
+                requirement.title,
+                f"{fmt.capital(requirement.formula)} ({requirement.source}).",
+                value_words(requirement.demand, requirement.unit),
+                value_words(requirement.capacity, requirement.unit),
+                "–"
+                if math.isnan(requirement.utilisation)
+                else fmt.utilisation(requirement.utilisation),
+                _where(requirement),
+                STATES[requirement.state],
             ),
-            "" if one.holds else "bad",
+            _TONES[requirement.state],
         )
-        for one in checks
+        for requirement in requirements
     ]
-    return Table.of("Checks of the chosen rope.", columns, *rows)
+    return Table.of("All that the study asks for, in every load case.", columns, *rows)
 
 
-def _value(value: float, unit: str) -> str:
+def value_words(value: float, unit: str) -> str:
+    """Return a demand or a capacity with its unit, as a reader is told of it."""
+    if math.isnan(value):
+        return fmt.MISSING
     if unit == "N":
         return fmt.newtons(value)
     if unit == "m":
-        return fmt.millimetres(value) if value < 1.0 else fmt.metres(value)
+        return fmt.millimetres(value) if abs(value) < 1.0 else fmt.metres(value)
     return f"{fmt.trimmed(value)}\u00a0{unit}".rstrip()
 
 
-def _where(one: Check) -> str:
-    parts = [one.load_case]
-    if one.cable is not None:
-        parts.append(f"cable {one.cable}")
-    if one.place is not None:
-        parts.append(f"at {fmt.position(one.place[:3])}")
+def _where(requirement: Requirement) -> str:
+    parts = [requirement.load_case]
+    if requirement.direction:
+        parts.append(fmt.printed(requirement.direction))
+    if requirement.cable is not None:
+        parts.append(f"cable {requirement.cable}")
+    if requirement.place is not None:
+        parts.append(f"at {fmt.position(requirement.place[:3])}")
     return ", ".join(parts)
 
 
 _LIMITS = {
+    "sag": "sag (any is allowed)",
+    "floor": "height over a floor (none is given)",
+    "clearance": "clearance (none is given)",
     "stiffness": "stiffness (no limit is given)",
     "excitation": "frequencies of cables (no excitation is given)",
     "drum_capacity": "drums (no capacity is given)",
 }
 
 
-def _not_checked(study: Study, checks: tuple[Check, ...]) -> str:
+def _not_asked(study: Study, requirements: tuple[Requirement, ...]) -> str:
     """Return what the study does not ask for, or gives no figures for; empty for nothing."""
-    done = {one.id for one in checks}
+    asked = {requirement.id for requirement in requirements}
     lacking = []
-    if "sheave_ratio" not in done:
-        known = study.selection is not None and study.selection.sheave_diameter_m is not None
-        lacking.append("D/d (no least ratio is known)" if known else "D/d (no sheave is given)")
-    if "clearance" not in done:
-        lacking.append("clearance (none is asked for)")
-    lacking += [words for name, words in _LIMITS.items() if name not in done]
-    return f"Not checked: {fmt.listing(lacking)}." if lacking else ""
+    if "sheave_ratio" not in asked:
+        has_sheave = study.selection is not None and study.selection.sheave_diameter_m is not None
+        lacking.append(
+            "D/d (no least ratio is known)" if has_sheave else "D/d (no sheave is given)"
+        )
+    lacking += [words for name, words in _LIMITS.items() if name not in asked]
+    return f"Not evaluated: {fmt.listing(lacking)}." if lacking else ""
 
 
 def _facts(pose: GoverningPose) -> Facts:
@@ -149,7 +158,7 @@ def _facts(pose: GoverningPose) -> Facts:
     return Facts(
         (
             *facts,
-            Fact("Platform at", fmt.position(found.verification.worst_position_m[:3])),
+            Fact("Platform at", fmt.position(found.verification.worst_place[:3])),
             Fact("Largest closure residual", fmt.power_of_ten(pose.closure_residual_m, "m")),
             Fact("Largest balance residual", fmt.power_of_ten(pose.balance_residual, unit)),
         )

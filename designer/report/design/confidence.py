@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
+from designer.effects.effect import Effect
+from designer.effects.registry import SHIPPED
 from designer.grades.grade import TRUST_MEANING, Grade
 from designer.report import format as fmt
 from designer.report.blocks import Statement
-from designer.report.design.checks import failing_checks
+from designer.report.design.assumptions import rope_effects_note
 from designer.report.design.load_cases import carried_away, loads_statement
 from designer.report.design.proof import proofs
 from designer.report.design.scope import (
@@ -35,11 +37,10 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     used = found.products if found is not None else [chosen] if chosen is not None else []
     ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
     grades = {grade.id: grade for grade, _ in ropes}.values()
-    yield from failing_checks(analysis)
     yield from pose_statement(analysis)
     if analysis.study.selection is not None or analysis.study.load_cases:
         yield loads_statement(analysis.study)
-    if analysis.has_cable:  # else it is among the reasons
+    if analysis.is_positive:  # else it is among the reasons
         yield from carried_away(findings)
     yield from _effects(analysis.study)
     if not all(one.agrees for one in analysis.verification):
@@ -74,10 +75,25 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
 
 def _effects(study: Study) -> Iterator[Statement]:
     """What was measured on the machine is in the answer."""
-    if study.effects:
-        ids = fmt.listing(dict.fromkeys(effect.id for effect in study.effects))
-        text = f"The answer is that of the machine with the effects that the study declares: {ids}."
-        yield Statement("Declared effects", text, "doubt")
+    idle = {one.id for one in study.known_effects.effects if _is_of_data(one)}
+    ids = dict.fromkeys(effect.id for effect in study.effects)
+    acting = [name for name in ids if name not in idle]
+    if acting:
+        text = "The answer is that of the machine with the effects that the study declares: "
+        text += f"{fmt.listing(acting)}. {rope_effects_note(study)}"
+        yield Statement("Declared effects", text.rstrip(), "doubt")
+    left_out = [name for name in ids if name in idle]
+    if left_out:
+        text = "These belong to measured data and change no design, so they are not in the answer: "
+        yield Statement("Effects not covered", f"{text}{fmt.listing(left_out)}.", "doubt")
+
+
+def _is_of_data(effect: Effect) -> bool:
+    """Tell whether an effect belongs to measured data, and no design is computed with it.
+
+    A plugin need not say of one on the machine whether it reaches the design.
+    """
+    return not effect.reaches_design and (effect.on_machine is None or effect in SHIPPED.effects)
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
@@ -193,6 +209,13 @@ def _modulus(chosen: Candidate, findings: Findings) -> Statement:
     elasticity = chosen.grade.elasticity
     known = fmt.plus_minus(elasticity.uncertainty)
     text = f"The modulus is {elasticity.basis}, known to {known}."
+    if chosen.cable.stiffening is not None:
+        stiffness = fmt.newtons(chosen.cable.axial_stiffness_N)
+        text += (
+            f" It depends on the tension: EA is {stiffness}, that at the largest tension of the "
+            "load case that governs; each load case has its own. What is computed for the static "
+            "load beside the load cases, such as maps and lengths, has that EA too."
+        )
     if findings.modulus_utilisation is not None:
         low, high = sorted(findings.modulus_utilisation)
         ends = dict.fromkeys((fmt.utilisation(low), fmt.utilisation(high)))

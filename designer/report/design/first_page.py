@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.arrays import FloatArray
+from designer.model.load_case import STATIC
+from designer.model.requirement import Answer, Requirement, State
 from designer.report import format as fmt
 from designer.report.blocks import Block, Fact, Facts, Picture, Statement
 from designer.report.design.confidence import confidence
 from designer.report.design.groups import groups_hold, groups_statement
-from designer.report.design.negative import actions, objections, reasons
+from designer.report.design.negative import actions, reasons
 from designer.report.design.sag_cost import sag_cost
 from designer.report.design.selection import product_name
 from designer.report.design.source import Source
@@ -28,7 +30,6 @@ from designer.study import CableGroup
 
 _MOST_SIZES = 2
 _TIGHT = 0.97
-_MOSTLY = 0.5  # share that is left out from where on the answer is one in part
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,37 +103,34 @@ def _picture(source: Source) -> Picture | None:
 
 
 def _verdict(analysis: Analysis, findings: Findings) -> Statement:
-    chosen = analysis.chosen
-    found = analysis.groups if analysis.has_groups else None
-    against: list[str] = []
-    if analysis.has_cable:
-        text = _positive(analysis, chosen)
-        workspace = analysis.study.workspace
-        if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
-            left_out = f"{fmt.percent(findings.hanging)} of the volume is left out, as configured"
-            if findings.hanging > _MOSTLY:
-                against.append(f"{left_out}: there a cable hangs below the platform")
-            else:
-                text += f" {left_out}."
-    elif found is not None:
-        text = groups_hold(found)
-    elif chosen is not None and analysis.has_products:
-        text = _holds(chosen)
-    else:
-        return Statement("No", _negative(analysis), "bad")
-    text += "" if found is not None else _of_metal(analysis.selection, chosen)
-    against += [*_open_points(analysis), *objections(analysis)]
-    if against:
-        return Statement("In part", f"{text} But {fmt.listing(against)}.", "doubt")
-    return Statement("Yes", text, "good")
+    text = _summary(analysis)
+    workspace = analysis.study.workspace
+    if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
+        text += f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
+    if analysis.answer is Answer.YES:
+        return Statement("Yes", text, "good")
+    if analysis.chosen is not None or analysis.has_groups:
+        unmet = fmt.listing(dict.fromkeys(_unmet_words(each) for each in analysis.unmet))
+        text += f" But {unmet}."
+    is_no = analysis.answer is Answer.NO
+    return Statement("No", text, "bad") if is_no else Statement("Open", text, "doubt")
 
 
-def _open_points(analysis: Analysis) -> Iterator[str]:
-    pose, workspace = analysis.pose, analysis.workspace
-    if pose is not None and not pose.sizing.statics.is_solved:
-        yield "no cable of the configured family can hold the configured pose"
-    elif workspace is not None and not workspace.is_feasible:
-        yield "no cable of the configured family can serve the whole workspace"
+def _unmet_words(requirement: Requirement) -> str:
+    state = "is not known to hold" if requirement.state is State.OPEN else "does not hold"
+    case = "" if requirement.load_case in ("all", STATIC.name) else f" in '{requirement.load_case}'"
+    return f"{requirement.title[0].lower()}{requirement.title[1:]} {state}{case}"
+
+
+def _summary(analysis: Analysis) -> str:
+    """Return what was chosen and what it meets, or that nothing was."""
+    if analysis.has_groups:
+        assert analysis.groups is not None
+        return groups_hold(analysis.groups)
+    if analysis.chosen is None and not analysis.is_positive:
+        return _negative(analysis)
+    text = _positive(analysis, analysis.chosen)
+    return f"{text}{_of_metal(analysis.selection, analysis.chosen)}"
 
 
 def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
@@ -162,6 +160,8 @@ def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
         return groups_hold(analysis.groups)
     if chosen is not None:
         found = chosen.verification
+        if not found.holds:
+            return _holds(chosen)
         tight = " There is hardly any reserve beyond it." if found.utilisation > _TIGHT else ""
         return (
             f"{_holds(chosen)} Its largest tension is {fmt.newtons(found.max_tension_N)}, "
@@ -190,28 +190,43 @@ def _holds(chosen: Candidate) -> str:
 
 
 def _negative(analysis: Analysis) -> str:
-    workspace, selection = analysis.workspace, analysis.selection
-    if analysis.most_needed is not None and not analysis.most_needed.is_held:
-        name = analysis.most_needed.found.case.name
-        return f"No cable of the configured family holds every pose in the load case '{name}'."
+    """Return what is not held where no rope was chosen, and no more than is known of it."""
+    first = analysis.unmet[0]
+    if analysis.answer is Answer.OPEN:
+        return f"It was not found out: {first.formula}. What is known: {first.remark}."
+    if first.id == "pose" and analysis.workspace is None:
+        return "The configured pose cannot be held by any cable of the configured family."
+    return _no_rope(analysis) if analysis.study.selection is not None else _no_family(analysis)
+
+
+def _no_rope(analysis: Analysis) -> str:
+    workspace = analysis.workspace
     if workspace is not None and not workspace.is_feasible:
-        if selection is not None:
-            return (
-                "The workspace cannot be served as it is: neither a cable of the configured "
-                "family nor a rope of the allowed grades holds every pose."
-            )
-        return "The workspace cannot be served: no cable of the configured family is enough."
+        return (
+            "The workspace is not served as it is: neither a cable of the configured "
+            "family nor a rope of the allowed grades was found to hold every pose."
+        )
     if analysis.groups is not None:
         return "No ropes that the study allows were found that hold every pose of the workspace."
-    if selection is not None:
-        need = ""
-        at_rest = not analysis.study.load_cases
-        if at_rest and workspace is not None and workspace.sagging is not None:
-            worst = workspace.sagging
-            diameter = fmt.millimetres(worst.diameter_m)
-            need = f" A cable of the configured family would need {diameter}."
-        return f"None of the ropes that the study allows holds every pose of the workspace.{need}"
-    return "The configured pose cannot be held by any cable of the configured family."
+    need = ""
+    if not analysis.study.load_cases and workspace is not None and workspace.sagging is not None:
+        diameter = fmt.millimetres(workspace.sagging.diameter_m)
+        need = f" A cable of the configured family would need {diameter}."
+    return f"None of the ropes that the study allows holds every pose of the workspace.{need}"
+
+
+def _no_family(analysis: Analysis) -> str:
+    workspace, need = analysis.workspace, analysis.most_needed
+    if need is not None and not need.is_held:
+        name = need.found.case.name
+        return f"No cable of the configured family holds every pose in the load case '{name}'."
+    if workspace is not None and not workspace.is_feasible:
+        return "The workspace is not served: no cable of the configured family holds every pose."
+    unmet = fmt.listing(dict.fromkeys(_unmet_words(each) for each in analysis.unmet))
+    if workspace is None or workspace.sagging is None:
+        return f"{fmt.capital(unmet)}."
+    diameter = fmt.millimetres(workspace.sagging.diameter_m)
+    return f"A cable of {diameter} of the configured family is strong enough. But {unmet}."
 
 
 def _card(analysis: Analysis) -> Card | None:
@@ -249,7 +264,7 @@ def _needs_card(need: CaseNeed) -> Card | None:
     facts = (
         Fact("Load case", need.found.case.name, fmt.printed(need.found.loaded.words)),
         Fact("Largest tension", fmt.newtons(met.max_tension_N)),
-        Fact("At the position", fmt.position(met.worst_position_m)),
+        Fact("At the position", fmt.position(met.worst_place)),
     )
     heading, size = "Thinnest diameter found for the load cases", fmt.millimetres(need.diameter_m)
     return Card(heading, size, "of the configured cable family", Facts(facts))
@@ -280,13 +295,13 @@ def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
         size.minimum_breaking_load_N, allowable_N, found.max_tension_N
     )
     share = f" times {fmt.trimmed(kept, 3)}" if kept != 1.0 else ", no loss,"
-    longest, shortest = _lengths(found.longest_m, math.ceil), _lengths(found.shortest_m, math.floor)
+    longest, shortest = _lengths(found.longest_m), _lengths(found.shortest_m)
     facts = (
         Fact("Grade", chosen.grade.id),
         Fact("Minimum breaking load", breaking),
         Fact("Allowable tension", allowable, f"breaking load{share} over {required}"),
         Fact("Largest tension", largest),
-        Fact("At the position", fmt.position(found.worst_position_m)),
+        Fact("At the position", fmt.position(found.worst_place)),
         Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
         Fact("Utilisation", fmt.utilisation(found.utilisation)),
         *_reserve(analysis),
@@ -317,9 +332,9 @@ def _mass(chosen: Candidate) -> Fact:
     return Fact("Mass", fmt.kilograms_per_metre(built), note)
 
 
-def _lengths(length_m: FloatArray, rounded: Callable[[float], int]) -> str:
-    """Return lengths in decimetres, rounded to the side on which a rope is long enough."""
-    each = [fmt.fixed(rounded(10.0 * float(x)) / 10.0, 1) for x in length_m]
+def _lengths(length_m: FloatArray) -> str:
+    """Return lengths as the fabrication data give them."""
+    each = [fmt.fixed(float(x), 2) for x in length_m]
     return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
 
 
@@ -350,5 +365,5 @@ def _of_group(group: CableGroup, chosen: Assigned, used: float) -> str:
     noun = "cable" if len(group.cables) == 1 else "cables"
     longest = chosen.verification.longest_m[[cable - 1 for cable in group.cables]]
     cables = fmt.listing(str(cable) for cable in group.cables)
-    at_most = _lengths(longest, math.ceil)
+    at_most = _lengths(longest)
     return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"

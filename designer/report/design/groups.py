@@ -202,5 +202,5 @@ def _outcome(one: Proposal, choice: GroupChoice) -> str:
     assert one.place is not None
     name = choice.groups[one.group].name
     if one.utilisation is None or one.utilisation == float("inf"):
-        return f"cannot be held at {_place(one.place)}"
+        return f"not held at {_place(one.place)}"
     return f"{name} {fmt.utilisation(one.utilisation)} at {_place(one.place)}"

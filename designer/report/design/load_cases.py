@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from designer.analysis.findings import Findings
-from designer.model.load_case import LoadCase
+from designer.model.load_case import LoadCase, Wind
 from designer.report import format as fmt
 from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.report.material_class import class_of
-from designer.selection.cases import FEW_SAMPLES, CaseFound
+from designer.selection.cases import CaseFound
 from designer.selection.family_need import CaseNeed
 from designer.selection.result import Candidate
+from designer.selection.samples import FEW_SAMPLES
 from designer.statics.cable_loss import Fate
 from designer.study import Study
 
@@ -73,7 +74,9 @@ _HOW = (
     "unstrained length of a cable, along the wind and at full speed whatever the cable's "
     "inclination. The dynamic factor is on weight and wrench of the platform, not on the "
     "cables' own weight; an inertia force points where it is worst, as far as a search from "
-    "14 directions finds it."
+    "14 directions finds it, and so does wind that may come from all directions, from 8. Not "
+    "covered: the inertia of the cables' own mass, and the swing of the platform until it rests "
+    "after the loss of a cable, which may double the change of the tensions."
 )
 
 
@@ -122,7 +125,7 @@ def _need_row(one: CaseNeed, *, governs: bool) -> Row:
         size if one.is_held else "none holds",
         tension if one.is_held else fmt.MISSING,
         str(found.most_used() or "") if one.is_held else fmt.MISSING,
-        fmt.position(met.worst_position_m[:3]),
+        fmt.position(met.worst_place[:3]),
         fmt.printed(found.loaded.words) or fmt.MISSING,
     )
     return Row(cells, "good" if governs else "" if one.is_held else "bad")
@@ -150,8 +153,8 @@ def _pulleys(source: Source) -> str:
     if source.analysis.built.robot.pulley_radius_m == 0.0 or not any(case.wind for case in cases):
         return ""
     return (
-        "In wind the pulleys are taken to swivel about the direction of the load on the cables "
-        "instead of the vertical, which moves a cable by a part of its pulley's radius."
+        "In wind the pulleys stay upright and face the attachment points, while the cables bow out "
+        "of their planes; pulleys that swivel freely would follow the bow."
     )
 
 
@@ -160,7 +163,7 @@ def _statement(chosen: Candidate | None) -> Statement:
         text = "The reasons stand with each size in the table of candidates."
         return Statement("No rope holds in every load case", text, "bad")
     most = chosen.governing
-    where = fmt.position(most.verification.worst_position_m[:3])
+    where = fmt.position(most.verification.worst_place[:3])
     words = f", {fmt.printed(most.loaded.words)}" if most.loaded.words else ""
     text = (
         f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
@@ -173,6 +176,12 @@ def _asked(study: Study) -> Table:
     rows = [Row((case.name, _changes(case))) for case in study.load_cases]
     caption = "The load cases. What is not named is as in the rest of the study."
     return Table.of(caption, ("Load case", "Changes"), *rows)
+
+
+def _from(wind: Wind) -> str:
+    if wind.direction is not None:
+        return "in one direction"
+    return "from its worst direction" if wind.count is None else f"in {wind.count} directions"
 
 
 def _changes(case: LoadCase) -> str:
@@ -188,13 +197,9 @@ def _changes(case: LoadCase) -> str:
     if case.acceleration_m_per_s2 > 0.0:
         parts.append(f"acceleration {fmt.trimmed(case.acceleration_m_per_s2)}\u00a0m/s²")
     if case.wind is not None:
-        along = (
-            "one direction" if case.wind.direction is not None else f"{case.wind.count} directions"
-        )
         speed = f"{fmt.trimmed(case.wind.speed_m_per_s)}\u00a0m/s"
-        parts.append(
-            f"wind of {speed} in {along}, pressure {fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
-        )
+        pressure = f"{fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
+        parts.append(f"wind of {speed} {_from(case.wind)}, pressure {pressure}")
     if case.ice is not None:
         parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
     if case.temperature_change_K:
@@ -222,6 +227,7 @@ _LEFT_OUT = (
 def _met(chosen: Candidate, *, leaves_out: bool) -> Table:
     columns: Heads = (
         *("Load case", Column("Used"), Column("Largest tension"), Column("Allowable")),
+        *([Column("Axial stiffness")] if chosen.cable.stiffening else []),
         *(Column("Cable"), "Platform at", "Direction or loss"),
         *([Column("Poses that count")] if leaves_out else []),
         "Verdict",
@@ -231,10 +237,8 @@ def _met(chosen: Candidate, *, leaves_out: bool) -> Table:
 
 
 def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
-    met = found.verification
-    largest, allowable = fmt.newtons_alike(
-        met.max_tension_N, found.loaded.cable.allowable_tension_N
-    )
+    met, cable = found.verification, found.loaded.cable
+    largest, allowable = fmt.newtons_alike(met.max_tension_N, cable.allowable_tension_N)
     verdict = "holds" if met.holds else "does not hold"
     return Row(
         (
@@ -242,8 +246,9 @@ def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
             fmt.utilisation(met.utilisation),
             largest,
             allowable,
+            *([fmt.newtons(cable.axial_stiffness_N)] if cable.stiffening else []),
             str(found.most_used() or ""),
-            fmt.position(met.worst_position_m[:3]),
+            fmt.position(met.worst_place[:3]),
             fmt.printed(found.loaded.words) or "–",
             *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
             f"{verdict}, governs" if governs else verdict,

@@ -1,4 +1,4 @@
-"""Why the answer is no, where, and what could be done."""
+"""Why the answer is no or open, where, and what could be done."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings, Unserved
+from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
-from designer.report.blocks import Statement
-from designer.report.design.clearance import clearance_statement
+from designer.report.blocks import Statement, Tone
+from designer.report.design.checks import unmet_statement
 from designer.report.design.groups import groups_statement
 from designer.report.design.load_cases import carried_away
-from designer.report.design.stiffness import stiffness_statement
 from designer.workspace.result import WorkspaceMap
 
 _MOST_NAMES = 4
@@ -21,44 +21,44 @@ _LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 
 def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
-    """Yield why the answer is no, one statement for each part of it; nothing if it is yes."""
-    pose, workspace, selection = analysis.pose, analysis.workspace, analysis.selection
-    if pose is not None and not pose.sizing.statics.is_solved:
-        statics = pose.sizing.statics
-        where, why = fmt.position(statics.poses.position_m), Verdict(int(statics.verdict)).clause
-        yield Statement("The configured pose", f"At {where} {why}.", "bad")
-    if workspace is not None and not workspace.is_feasible:
-        parts = _not_served(analysis, workspace, findings.unserved)
-        yield Statement("The workspace", " ".join(parts), "bad")
-    for need in analysis.needs:
-        if not need.is_held:
-            where = fmt.position(need.found.verification.worst_position_m)
-            words = f", {fmt.printed(need.found.loaded.words)}" if need.found.loaded.words else ""
-            text = f"At {where}{words}, no diameter of the configured family holds the platform."
-            yield Statement(f"The load case '{need.found.case.name}'", text, "bad")
-    if selection is not None and not analysis.has_products:
-        if analysis.groups is not None:
-            yield groups_statement(analysis.groups)
-        if selection.reason:
-            yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", "bad")
-    if not analysis.has_cable:
+    """Yield why the answer is not yes, one statement for each part; nothing if it is."""
+    for requirement in analysis.unmet:
+        if requirement.id == "pose" and requirement.place is not None:
+            where = fmt.position(requirement.place[:3])
+            text = f"At {where} {requirement.remark}."
+            yield Statement("The configured pose", text, _tone(requirement))
+        elif requirement.id == "workspace":
+            yield _workspace_statement(analysis, findings, requirement)
+        elif requirement.id == "rope":
+            yield from _rope_statements(analysis, requirement)
+        else:
+            yield unmet_statement(requirement)
+    if not analysis.is_positive:
         yield from carried_away(findings)
-    yield from _quality_reasons(analysis)
 
 
-def objections(analysis: Analysis) -> Iterator[str]:
-    """Yield what speaks against a rope that holds, such as ``the clearance is not kept``."""
-    for reason in _quality_reasons(analysis):
-        yield f"{reason.title[0].lower()}{reason.title[1:]}"
+def _tone(requirement: Requirement) -> Tone:
+    return "doubt" if requirement.state is State.OPEN else "bad"
 
 
-def _quality_reasons(analysis: Analysis) -> Iterator[Statement]:
-    """Yield what the cables of the design make of the robot, where it is bad."""
-    found = analysis.qualities
-    if found is not None and found.interference is not None and found.interference.is_violated:
-        yield clearance_statement(found.interference)
-    if found is not None and found.stiffness is not None and found.stiffness.unstable:
-        yield stiffness_statement(found.stiffness)
+def _workspace_statement(
+    analysis: Analysis, findings: Findings, requirement: Requirement
+) -> Statement:
+    if analysis.workspace is not None and not analysis.needs:
+        parts = _not_served(analysis, analysis.workspace, findings.unserved)
+        return Statement("The workspace", " ".join(parts), _tone(requirement))
+    assert requirement.place is not None
+    words = f", {fmt.printed(requirement.direction)}" if requirement.direction else ""
+    text = f"At {fmt.position(requirement.place[:3])}{words}: {requirement.remark}."
+    return Statement(f"The load case '{requirement.load_case}'", text, _tone(requirement))
+
+
+def _rope_statements(analysis: Analysis, requirement: Requirement) -> Iterator[Statement]:
+    if analysis.groups is not None:
+        yield groups_statement(analysis.groups)
+    selection = analysis.selection
+    if selection is not None and selection.reason:
+        yield Statement("The ropes", f"{fmt.capital(selection.reason)}.", _tone(requirement))
 
 
 def _not_served(
@@ -95,15 +95,28 @@ def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
 
 
 def actions(analysis: Analysis, findings: Findings) -> Iterator[str]:
-    """Yield what could be done about a no, the most direct first; nothing if the answer is yes."""
+    """Yield what could be done where the answer is not yes, the most direct first."""
     advice = [*_advice(analysis, findings)]
     if not advice and not analysis.is_positive:
         advice = ["Add a grade with thicker sizes to the catalogue, or carry less mass."]
     yield from advice
 
 
+_ADVICE = {
+    "sheave_ratio": "Use a larger sheave, or allow grades that may be bent more sharply.",
+    "stiffness": "Use stiffer ropes or more cables, or make the region smaller.",
+    "excitation": "Change the mass or the tension of the cables, or keep the excitation away.",
+    "drum_capacity": "Use larger drums, or make the region smaller.",
+    "floor": "Lower the floor, raise the exit points, or make the region smaller.",
+    "sag": "Make the region smaller or the platform heavier, or allow more sag (workspace.sag).",
+    "stability": "Make the region smaller, or move attachments above the centre of mass.",
+    "least_tension": "Make the region smaller, or require less tension (robot.tension_min).",
+}
+"""What could be done about a requirement, by its id."""
+
+
 def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
-    pose, workspace, found = analysis.pose, analysis.workspace, analysis.qualities
+    pose, workspace = analysis.pose, analysis.workspace
     yield from _other_grades(analysis) if not findings.adrift else ()
     if pose is not None and not pose.sizing.statics.is_solved:
         yield Verdict(int(pose.sizing.statics.verdict)).advice
@@ -113,12 +126,14 @@ def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
         yield from _leave_out_hanging(findings)
         yield "Raise the exit points (higher masts), or lower the top of the region."
         yield "Use a cable with more strength for its weight."
-    if found is not None and found.interference is not None and found.interference.is_violated:
-        assert found.interference.worst is not None
-        yield (
-            f"Move exit points or attachments of {fmt.listing(found.interference.worst.names)} "
-            "apart, make the region smaller, or ask for less clearance."
-        )
+    for requirement in {requirement.id: requirement for requirement in analysis.unmet}.values():
+        if requirement.id == "clearance":
+            yield (
+                f"Move exit points or attachments of {requirement.remark} apart, make the region "
+                "smaller, or require less clearance."
+            )
+        elif requirement.id in _ADVICE:
+            yield _ADVICE[requirement.id]
 
 
 def _other_grades(analysis: Analysis) -> Iterator[str]:

@@ -78,7 +78,9 @@ def _ways(pose: PoseAnalysis, *, draws: bool) -> Iterator[Block | None]:
 def _statement(pose: PoseAnalysis) -> Statement:
     verdict = Verdict(int(pose.sizing.statics.verdict))
     if verdict is not Verdict.SOLVED:
-        return Statement("This pose cannot be held", verdict.sentence, "bad")
+        held = "cannot be held" if verdict.is_proved else "was not found to be held"
+        title = f"This pose {held}"
+        return Statement(title, verdict.sentence, "bad" if verdict.is_proved else "doubt")
     text = (
         f"A cable of {fmt.millimetres(float(pose.sizing.diameter_m))} holds this pose. "
         f"Its largest tension is {fmt.newtons(float(pose.sizing.statics.largest_tension_N))}."

@@ -7,6 +7,7 @@ from designer.report import format as fmt
 from designer.report.blocks import Box, Column, Fact, Facts, Section, Subheading, Table, shown_time
 from designer.report.design.inputs import defaults_table, none_given
 from designer.report.design.source import Source
+from designer.report.paper import why_no_pdf
 from designer.study import Study
 
 
@@ -41,6 +42,7 @@ def facts_of(provenance: Provenance, study: Study, *data: Fact) -> tuple[Fact, .
         Fact("Configuration", study.source.path.name),
         Fact("SHA-256 of the configuration", study.source.sha256),
         *data,
+        *([Fact("PDF", "left out", why_no_pdf())] if why_no_pdf() else []),
         Fact("Computed", shown_time(provenance.created), f"on {provenance.system}"),
     )
 

@@ -99,7 +99,7 @@ def _consequence(analysis: Analysis, choice: MasslessChoice) -> str:
     found = choice.verification
     start = f"Without it, {choice.size.id} of the chosen grade would have been bought."
     if not np.isfinite(found.max_tension_N):
-        return f"{start} With it this cannot hold the whole workspace at all."
+        return f"{start} With it this was not found to hold the whole workspace."
     required = fmt.trimmed(analysis.study.selection.safety_factor)
     return (
         f"{start} With it its safety factor is {fmt.fixed(choice.safety_factor, 2)} instead of "

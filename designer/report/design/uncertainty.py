@@ -87,11 +87,11 @@ def in_a_sentence(found: UncertaintyAnalysis) -> str:
     if found.chosen.not_held:
         missing = fmt.share(found.chosen.not_held, found.samples)
         text += f"; in {missing} of the draws a pose is not held at all, which is not enough"
-    return text
+    return f"{text}; this is strength alone, without the other requirements"
 
 
 def _odds_words(one: SizeOdds) -> str:
-    return f"enough with {probability(one)} probability (95\u00a0% confidence: {_ends(one)})"
+    return f"strong enough with {probability(one)} probability (95\u00a0% confidence: {_ends(one)})"
 
 
 def probability(one: SizeOdds) -> str:

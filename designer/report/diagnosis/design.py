@@ -75,7 +75,7 @@ def consequence(diagnosis: Diagnosis) -> str:
             "The robot has fewer cables than degrees of freedom; no cables hold such a robot in a "
             "pose that one chooses, so none was chosen."
         )
-    if not any(s.effect.reaches_design for s in (*diagnosis.given, *diagnosis.settings)):
+    if after is before:
         what = "Nothing was found, so the design stays as it is"
         if diagnosis.findings:
             what = "Nothing that was found reaches the design, which stays as it is"
@@ -149,6 +149,13 @@ def _remarks(diagnosis: Diagnosis) -> Iterator[str]:
         yield (
             f"{fmt.capital(fmt.listing(idle))} {verb} not reach the design: {it} nothing that "
             "the sizing counts."
+        )
+    of_rope = [s.effect.key for s in diagnosis.settings if s.effect.of_rope]
+    if of_rope:
+        verb = "belongs" if len(of_rope) == 1 else "belong"
+        yield (
+            f"{fmt.capital(fmt.listing(of_rope))} {verb} to the rope on the machine; a new rope is "
+            "chosen by its own data sheet."
         )
     if diagnosis.is_unexplained:
         yield "What is unexplained is not in the design."

@@ -91,7 +91,7 @@ def _unserved(axes: Axes, served: Served) -> None:
         return
     low = 100.0 * (1.0 - served.unserved)
     axes.axhspan(low, 100.0, **canvas.HATCHED, linewidth=0)
-    text = f"no cable serves {canvas.significant(100.0 * served.unserved, 2)} %"
+    text = f"not served {canvas.significant(100.0 * served.unserved, 2)} %"
     style = {"va": "top", "color": palette.WARNING, "bbox": canvas.paper(0.8, 0.85)}
     frame = ("axes fraction", "data")
     canvas.note(axes, text, (0.0, max(low, 20.0)), (6, -3), xycoords=frame, **style)

@@ -105,7 +105,7 @@ def meanings(fields: Iterable[Field]) -> list[tuple[str, str]]:
     found = []
     reasons = {field.why_infeasible for field in shown} - {""}
     if reasons:
-        text = reasons.pop() if len(reasons) == 1 else "no cable holds the platform"
+        text = reasons.pop() if len(reasons) == 1 else "no cable was found to hold the platform"
         found.append((palette.WARNING, text))
     if any(field.is_left_out.any() for field in shown):
         found.append((palette.LEFT_OUT, "left out: a cable hangs below the platform"))

@@ -10,7 +10,9 @@ the linearisation decides how fast the answer is found, and only cuts decide wha
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -45,6 +47,8 @@ _MOST_GUIDED = 30
 _MOST_BALANCES = 6
 _MOST_TRIALS = 100_000
 _EQUAL = 1e-9
+_MOST_ROUNDS, _STILL = 6, 1e-4
+"""Of choices with ropes whose stiffness depends on the tension: how many, and when it stays."""
 
 
 def choose_groups(
@@ -113,21 +117,35 @@ def choose_groups_of(
 
     Cost is minimised where it is the first objective, mass otherwise; ``selection.grades`` narrows
     the catalogue; ``single`` is the best product for all cables.
+
+    A rope whose stiffness depends on its tension has that at the largest tension of any group, so
+    that all assignments are compared with the same ropes: the choice is made again until the
+    tension that it meets stays.
     """
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
-    products = products_of(selection, allowed, built)
-    is_single = (one for one in products if single and one.size is single.size)
+    offered = products_of(selection, allowed, built)
+    tension_N = math.nan if single is None else single.verification.max_tension_N
     with reporter.task("groups", MOST_PROPOSALS) as advance:
-        return choose_groups(
-            built.robot,
-            workspace,
-            selection.groups,
-            products,
-            most_distinct=selection.max_distinct_products,
-            objective="cost" if selection.objectives[0] == "cost" else "mass",
-            single=next(is_single, None),
-            progress=lambda: advance(1),
-        )
+        for _ in range(_MOST_ROUNDS):
+            products = [replace(one, cable=one.cable.at_tension(tension_N)) for one in offered]
+            is_single = (one for one in products if single and one.size is single.size)
+            choice = choose_groups(
+                built.robot,
+                workspace,
+                selection.groups,
+                products,
+                most_distinct=selection.max_distinct_products,
+                objective="cost" if selection.objectives[0] == "cost" else "mass",
+                single=next(is_single, None),
+                progress=lambda: advance(1),
+            )
+            chosen, before_N = choice.chosen, tension_N
+            if chosen is None or all(one.cable.stiffening is None for one in chosen.products):
+                break
+            tension_N = chosen.max_tension_N
+            if abs(tension_N - before_N) <= _STILL * tension_N:
+                break
+    return choice
 
 
 class _Search:

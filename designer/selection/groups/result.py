@@ -73,6 +73,12 @@ class Assigned:
     total_mass_kg: float
     total: float
 
+    @property
+    def max_tension_N(self) -> float:
+        """The largest tension that any cable meets [N]."""
+        used = zip(self.verification.utilisation, self.products, strict=True)
+        return max(float(share) * one.cable.allowable_tension_N for share, one in used)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GroupChoice:

@@ -164,9 +164,31 @@ def test_closing_in_the_middle_of_work_does_not_hang(empty: Driver, tmp_path: Pa
     empty.bot.waitUntil(lambda: "worst" in empty.window.live.busy, timeout=20_000)
     empty.press("full selection")
     start = time.monotonic()
+    told = empty.answer(BUTTON.Yes)
     empty.window.close()
+    assert told == ["The full selection is not finished. End it?"]
     assert not empty.window.isVisible()
     assert time.monotonic() - start < 20.0  # and not the minutes that the work would take
+
+
+def test_leaving_during_an_export_is_asked_about(
+    yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from PySide6.QtWidgets import QFileDialog
+
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "r"), ""))
+    yard.keys("Ctrl+R")
+    told = yard.answer(BUTTON.Cancel)
+    yard.window.close()
+    assert told == ["The export is not finished. End it?"]
+    assert yard.window.isVisible()
+    assert "export" in yard.window.live.busy
+    told = yard.answer(BUTTON.Yes)
+    yard.keys("Ctrl+W")
+    assert told == ["The export is not finished. End it?"]
+    assert yard.window.pages.currentWidget() is yard.window.start
+    assert yard.window.live.is_at_rest
+    yard.bot.waitUntil(lambda: not list(tmp_path.glob("r/*")), timeout=20_000)
 
 
 def test_a_value_that_makes_every_pose_impossible_is_shown(yard: Driver) -> None:

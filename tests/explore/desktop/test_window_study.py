@@ -27,11 +27,61 @@ def test_a_wrong_entry_is_told_beside_the_field(yard: Driver, wrong: str) -> Non
     told = yard.find(QLabel, f"fault {MASS}")
     assert told.isVisible()
     assert told.text()
+    assert yard.find(QLineEdit, f"entry {MASS}").text() == wrong
     assert yard.session.study.robot.platform.mass_kg == 180.0
     assert not yard.session.is_modified
     QTest.keyClick(yard.find(QLineEdit, f"entry {MASS}"), Qt.Key.Key_Escape)
     assert not told.isVisible()
     assert yard.find(QLineEdit, f"entry {MASS}").text() == "180 kg"
+
+
+def test_what_was_refused_stays_to_be_mended(yard: Driver) -> None:
+    entry, place = yard.find(QLineEdit, f"entry {MASS}"), yard.find(QLineEdit, "place x")
+    yard.type_into("place x", "nowhere")
+    yard.type_into(f"entry {MASS}", "190 kgg")
+    yard.type_into("entry cable.density", "5000 kg/m^3")
+    yard.rest()
+    assert (entry.text(), place.text()) == ("190 kgg", "nowhere")
+    assert entry.property("faulty")
+    assert place.property("faulty")
+    yard.click(entry)
+    yard.keys("End")
+    yard.keys("Backspace")
+    yard.keys("Return")
+    assert yard.session.study.robot.platform.mass_kg == 190.0
+    assert not entry.property("faulty")
+    yard.press("keep pose")  # the platform is where it was: what was refused stays
+    assert place.text() == "nowhere"
+    yard.scene.setFocus()
+    yard.keys("PgUp")
+    assert place.text() == "15"
+    yard.rest()
+
+
+@pytest.mark.parametrize("name", [f"entry {MASS}", "find field", "place x"])
+def test_keys_of_menus_work_from_a_field(yard: Driver, name: str) -> None:
+    entry = yard.find(QLineEdit, name)
+    yard.click(entry)
+    assert entry.hasFocus()
+    yard.keys("Ctrl+D")
+    assert yard.session.state.pin is not None
+    yard.click(entry)
+    yard.keys("Ctrl+E")
+    assert yard.window.pages.currentWidget() is yard.window.text
+    yard.keys("Ctrl+Return")
+    assert yard.window.pages.currentWidget() is yard.window.work
+    yard.rest()
+
+
+def test_what_is_being_written_is_taken_by_the_text(yard: Driver) -> None:
+    entry = yard.find(QLineEdit, f"entry {MASS}")
+    yard.click(entry)
+    entry.selectAll()
+    QTest.keyClicks(entry, "190 kg")
+    yard.keys("Ctrl+E")
+    assert "mass: 190 kg" in yard.window.text.editor.toPlainText()
+    yard.keys("Ctrl+Return")
+    yard.rest()
 
 
 def test_what_differs_is_marked_and_put_back_alone(yard: Driver) -> None:

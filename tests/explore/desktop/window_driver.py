@@ -151,19 +151,23 @@ class Driver:
         places = [QPoint(round(8 + s * (slider.width() - 16)), slider.height() // 2) for s in at]
         self.drag(slider, *places)
 
-    def answer(self, button: Any) -> list[str]:
-        """Click a button of the next message box; returns where its text will stand."""
+    def answer(self, *buttons: Any) -> list[str]:
+        """Click a button of each of the next message boxes; returns where their texts stand."""
         told: list[str] = []
-        tries = iter(range(100))
+        left, tries = list(buttons), iter(range(200))
 
         def look() -> None:
             box: Any = QApplication.activeModalWidget()
-            if box is None:
+            button = None if box is None else box.button(left[0])
+            if button is None:
                 if next(tries, None) is not None:
                     QTimer.singleShot(50, look)
                 return
             told.append(box.text())
-            QTest.mouseClick(box.button(button), LEFT)
+            del left[0]
+            if left:
+                QTimer.singleShot(50, look)
+            QTest.mouseClick(button, LEFT)
 
         QTimer.singleShot(50, look)
         return told

@@ -12,6 +12,7 @@ from xml.sax.handler import ContentHandler
 from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
 from designer.documents.node import printable
+from designer.documents.opened import open_input
 from designer.errors import Fault, InputError
 
 LARGEST_FILE_BYTES = 1_000_000
@@ -29,6 +30,12 @@ class Element:
     attributes: dict[str, str] = field(default_factory=dict)
     children: list[Element] = field(default_factory=list)
     text: str = ""
+
+    def everything(self) -> Iterator[Element]:
+        """Yield this element, and all within it."""
+        yield self
+        for child in self.children:
+            yield from child.everything()
 
     def all(self, tag: str) -> Iterator[Element]:
         """Yield the children of this name."""
@@ -94,8 +101,7 @@ class _Builder(ContentHandler):
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST_NESTING:
             element.refuse(
-                f"more than {MOST_ELEMENTS} elements, or nested more than {DEEPEST_NESTING} deep",
-                "a robot",
+                f"more than {MOST_ELEMENTS} elements, or nested more than {DEEPEST_NESTING} deep"
             )
         if self._open:
             self._open[-1].children.append(element)
@@ -111,7 +117,31 @@ class _Builder(ContentHandler):
 
 
 def read_xml(path: Path) -> Element:
-    """Return the outermost element of an XML file.
+    """Return the outermost element of an XML file, as `xml_of` does.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or as there.
+    """
+    name, expected = str(path), f"an XML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
+    try:
+        with open_input(path) as file:
+            raw = file.read(LARGEST_FILE_BYTES + 1)
+    except FileNotFoundError:
+        problem = "there is no such file"
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "its name is not valid"
+        problem = f"the file cannot be read: {reason.lower()}"
+    else:
+        if len(raw) <= LARGEST_FILE_BYTES:
+            return xml_of(raw, name)
+        problem = "the file is too large"
+    raise InputError([Fault(name, None, "", problem, expected)])
+
+
+def xml_of(raw: bytes, name: str) -> Element:
+    """Return the outermost element of what an XML file, called ``name``, holds.
 
     Entities are refused, so that a small file cannot grow into a large one, and nothing that the
     file names, such as its DTD, is read.
@@ -119,14 +149,12 @@ def read_xml(path: Path) -> Element:
     Raises
     ------
     InputError
-        If the file cannot be read, is too large, is not XML, declares entities, or nests too
-        deeply.
+        If it is not XML, declares entities, holds too many elements, or nests too deeply.
     """
     from xml.sax import SAXParseException
 
     from defusedxml import DefusedXmlException, sax
 
-    name, raw = str(path), _read_bytes(path)
     builder, parser = _Builder(name), sax.make_parser()
     parser.forbid_external = False  # CASPR's files name a DTD; the parser leaves it unread
     parser.setContentHandler(builder)
@@ -138,26 +166,9 @@ def read_xml(path: Path) -> Element:
         problem = f"this is not valid XML: {printable(error.getMessage())}"
         raise InputError([Fault(name, error.getLineNumber(), "", problem)]) from None
     except DefusedXmlException:
-        problem = "the file declares entities"
-        raise InputError([Fault(name, None, "", problem, "a robot without them")]) from None
+        raise InputError([Fault(name, None, "", "the file declares entities", "none")]) from None
     except (LookupError, ValueError) as error:  # an encoding that Python or the parser lacks
         problem = f"this is not valid XML: {printable(str(error))}"
         raise InputError([Fault(name, None, "", problem, "XML in UTF-8")]) from None
     assert builder.root is not None
     return builder.root
-
-
-def _read_bytes(path: Path) -> bytes:
-    expected = f"an XML file of at most {LARGEST_FILE_BYTES / 1e6:g} MB"
-    problem = "there is no such file" if not path.exists() else "this is no file"
-    if path.is_file():
-        try:
-            with path.open("rb") as file:
-                raw = file.read(LARGEST_FILE_BYTES + 1)
-        except OSError as error:
-            problem = f"the file cannot be read: {(error.strerror or 'unknown').lower()}"
-        else:
-            if len(raw) <= LARGEST_FILE_BYTES:
-                return raw
-            problem = "the file is too large"
-    raise InputError([Fault(str(path), None, "", problem, expected)])

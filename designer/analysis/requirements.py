@@ -1,0 +1,217 @@
+"""All that a study asks for, as one list: the answer, every page and every file follow from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, cast
+
+from designer.effects.design import AsBuilt
+from designer.model.cable import Cable
+from designer.model.load_case import STATIC, Loaded
+from designer.model.requirement import Requirement, State
+from designer.model.verdict import Verdict
+from designer.progress import Reporter
+from designer.selection.criteria import criteria_of
+from designer.selection.family_need import CaseNeed
+from designer.selection.groups.result import GroupChoice
+from designer.selection.qualities import DesignCable
+from designer.selection.requirements import (
+    CaseLoads,
+    drum_of,
+    equilibrium_of,
+    evaluate,
+    extreme_lengths_m,
+    sheave_ratio_of,
+    state_of,
+)
+from designer.selection.result import SelectionResult
+from designer.sizing.newton import size_poses
+from designer.study import Study
+from designer.workspace.result import WorkspaceMap
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import PoseAnalysis
+
+_FAMILY = "a cable of the configured family holds"
+
+
+def requirements_of(
+    study: Study,
+    built: AsBuilt,
+    pose: PoseAnalysis | None,
+    workspace: WorkspaceMap | None,
+    selection: SelectionResult | None,
+    groups: GroupChoice | None,
+    needs: tuple[CaseNeed, ...],
+    design: DesignCable | None,
+    reporter: Reporter,
+) -> tuple[Requirement, ...]:
+    """Return all requirements of a study; ``design`` are the cables that it comes to."""
+    requirements: list[Requirement] = []
+    if pose is not None:
+        requirements.append(_pose(pose))
+    if needs:
+        requirements += map(_need, needs)
+    elif workspace is not None:
+        requirements.append(_workspace(study, built, workspace))
+    if groups is not None:
+        requirements += _groups(study, groups)
+    elif selection is not None:
+        chosen = selection.chosen
+        requirements += [_no_rope(selection)] if chosen is None else chosen.requirements
+    # The chosen rope brings its own; where there is none, the design is one of the family.
+    asks_for_rope = groups is not None or selection is not None
+    if design is not None and ((groups is not None and groups.chosen) or not asks_for_rope):
+        requirements += _of_design(study, built, design, reporter)
+    return tuple(requirements)
+
+
+def _pose(pose: PoseAnalysis) -> Requirement:
+    statics = pose.sizing.statics
+    verdict = Verdict(int(statics.verdict))
+    return Requirement(
+        id="pose",
+        title="Configured pose",
+        formula=f"{_FAMILY} the configured pose",
+        source="pose",
+        state=state_of(verdict),
+        load_case=STATIC.name,
+        place=statics.poses.place,
+        remark="" if statics.is_solved else verdict.clause,
+    )
+
+
+def _workspace(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> Requirement:
+    state, remark, place = State.HOLDS, "", None
+    if not workspace.is_feasible:
+        state, remark = _why_not_feasible(study, built, workspace)
+        place = None if workspace.infeasible_pose is None else workspace.infeasible_pose.place
+    return Requirement(
+        id="workspace",
+        title="Configured family",
+        formula=f"{_FAMILY} every pose of the workspace that counts",
+        source="cable, workspace.region",
+        state=state,
+        load_case=STATIC.name,
+        place=place,
+        remark=remark,
+    )
+
+
+def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> tuple[State, str]:
+    """Return whether it is proved that a pose is not held, and what is known of it."""
+    assert study.workspace is not None
+    fine = {Verdict.SOLVED}
+    if study.workspace.hangs_below == "exclude":
+        fine.add(Verdict.NO_FINITE_CABLE)
+    statuses = workspace.census.statuses
+    unserved: list[Verdict] = [v for v in Verdict if statuses[v.label] and v not in fine]
+    if not unserved:
+        if workspace.infeasible_pose is None:
+            return State.FAILS, "every pose is left out"
+        sizing = size_poses(built.robot, workspace.infeasible_pose, built.material(study.material))
+        unserved = [Verdict(int(sizing.statics.verdict))]
+    worst = next((v for v in unserved if v.is_proved), unserved[0])
+    return state_of(worst), worst.clause
+
+
+def _need(need: CaseNeed) -> Requirement:
+    found = need.found
+    state, remark = State.HOLDS, ""
+    if not need.is_held:
+        held = equilibrium_of(found)
+        # A cable that is in balance there and too weak, at every diameter that was tried.
+        state = State.FAILS if held.holds else held.state
+        remark = held.remark or "no diameter of the configured family is strong enough there"
+    return Requirement(
+        id="workspace",
+        title="Configured family",
+        formula=f"{_FAMILY} every pose that counts in the load case",
+        source="cable, load_cases",
+        state=state,
+        load_case=found.case.name,
+        cable=found.most_used() if need.is_held else None,
+        place=found.verification.worst_place,
+        direction=found.loaded.words,
+        remark=remark,
+    )
+
+
+def _no_rope(selection: SelectionResult) -> Requirement:
+    """Return that no rope was found: it fails where one is in balance and too weak everywhere."""
+    nearest = min(
+        (c for c in selection.candidates),
+        key=lambda c: (-len(c.cases), c.verification.utilisation),
+        default=None,
+    )
+    state = State.FAILS
+    if nearest is not None and not math.isfinite(nearest.verification.utilisation):
+        state = equilibrium_of(nearest.governing).state
+    return Requirement(
+        id="rope",
+        title="Rope",
+        formula="a rope of the allowed grades holds every pose that counts in every load case",
+        source="selection.grades, selection.safety_factor",
+        state=state,
+        load_case="all",
+        remark=selection.reason or "",
+    )
+
+
+def _groups(study: Study, groups: GroupChoice) -> Iterator[Requirement]:
+    """Yield what groups of cables are used to, or that no products for them were found."""
+    assert study.selection is not None
+    chosen = groups.chosen
+    if chosen is None:
+        yield Requirement(
+            id="rope",
+            title="Rope",
+            formula="ropes of the allowed grades for the groups hold every pose that counts",
+            source="selection.groups, selection.grades, selection.safety_factor",
+            state=State.FAILS if groups.proof == "infeasible" else State.OPEN,
+            load_case="all",
+            remark=groups.proof_sentence,
+        )
+        return
+    verification = chosen.verification
+    for group, product, used, place in zip(
+        groups.groups, chosen.products, verification.utilisation, verification.worst_place,
+        strict=True,
+    ):  # fmt: skip
+        allowable_N = product.cable.allowable_tension_N
+        yield Requirement(
+            id="breaking_load",
+            title=f"Breaking load, {group.name}",
+            formula=f"T ≤ η F / S; S = {study.selection.safety_factor:g}",
+            source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
+            state=State.HOLDS if used <= 1.0 else State.FAILS,
+            load_case=STATIC.name,
+            demand=float(used) * allowable_N,
+            capacity=allowable_N,
+            unit="N",
+            utilisation=float(used),
+            place=place,
+        )
+        yield from sheave_ratio_of(product.grade, product.size, study.selection)
+
+
+def _of_design(
+    study: Study, built: AsBuilt, design: DesignCable, reporter: Reporter
+) -> Iterator[Requirement]:
+    """Yield what is asked beside strength of groups of cables, or of the configured family."""
+    workspace = study.workspace
+    assert workspace is not None
+    cable = cast(Cable, design.cable)  # or `Cables`, which have the same figures as arrays
+    robot, criteria = built.robot, criteria_of(built.robot, workspace, study.selection)
+    loads = [CaseLoads(workspace, (Loaded(STATIC, (robot, cable), robot, cable),))]
+    if study.load_cases:
+        loads = [
+            CaseLoads(workspace.of_case(case), tuple(case.on(robot, cable)))
+            for case in study.load_cases
+        ]
+    with reporter.task("requirements", len(loads)) as advance:
+        for evaluation in evaluate(loads, criteria, advance):
+            yield evaluation.requirement
+    if study.selection is not None and study.selection.limits.drum_capacity_m is not None:
+        yield from drum_of(*extreme_lengths_m(loads[0]), study.selection)

@@ -1,0 +1,192 @@
+"""What a study asks of every equilibrium beside strength: quantities and their limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
+from designer.model.robot import Robot
+from designer.statics.inverse import Statics
+from designer.statics.shape import sag_ratio, string_frequency_Hz
+from designer.statics.stiffness import largest_displacement_m_per_N
+from designer.study import Selection, Workspace
+from designer.workspace.clearance import names_of, smallest_clearance
+
+ROUNDING = 1e-9
+"""Relative: how exactly the solver keeps a limit that it chooses the internal forces by."""
+WHERE = "searched over the poses of the case"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Criterion:
+    """A quantity of an equilibrium, and the limit that a study holds it against.
+
+    Parameters
+    ----------
+    id, title, formula, source, unit : str
+        As those of the `Requirement`.
+    quantity : callable
+        Returns the quantity (n, n_cables) or (n, 1) of equilibria (n,) in one direction of loads.
+    limits : tuple of float
+        One limit, or the lower and upper end of a band.
+    kind : str
+        Whether the quantity may be ``at_most``, or has to be ``at_least`` or ``above`` the limit,
+        or ``outside`` the band.
+    at_rest_after_loss : bool
+        Whether it is asked of the state after the loss of a cable as well.
+    detail : callable or None
+        Returns between what a distance is there, of equilibria (1,).
+    """
+
+    id: str
+    title: str
+    formula: str
+    source: str
+    unit: str
+    quantity: Callable[[Loaded, Statics], FloatArray]
+    limits: tuple[float, ...]
+    kind: Literal["at_most", "at_least", "above", "outside"]
+    at_rest_after_loss: bool = False
+    detail: Callable[[Statics], str] | None = None
+
+    def severity(self, quantity: FloatArray) -> FloatArray:
+        """Return what grows as the quantity comes nearer to failing, NaN where that is NaN."""
+        if self.kind == "at_most":
+            return quantity
+        if self.kind != "outside":
+            return -quantity
+        low, high = self.limits
+        return np.asarray(np.minimum(high / quantity, quantity / low))
+
+    def figures(self, quantity: float) -> tuple[float, float, float, bool]:
+        """Return demand, capacity, utilisation and whether it holds."""
+        limit = self.limits[0]
+        if self.kind == "outside":
+            low, high = self.limits
+            depth = min(high / quantity, quantity / low)
+            is_above = quantity / low >= high / quantity
+            ends = (high, quantity) if is_above else (quantity, low)
+            return *ends, depth, depth < 1.0
+        if self.kind == "at_most":
+            return quantity, limit, quantity / limit, quantity <= limit * (1.0 + ROUNDING)
+        if self.kind == "above":
+            return limit, quantity, math.nan, quantity > limit
+        holds = quantity >= limit - ROUNDING * abs(limit)
+        if self.unit == "m" and self.id == "floor":  # heights make no ratio
+            return limit, quantity, math.nan, holds
+        used = limit / quantity if quantity > 0.0 else math.inf if limit > 0.0 else math.nan
+        return limit, quantity, min(used, 1.0) if holds else used, holds
+
+
+def criteria_of(robot: Robot, workspace: Workspace, selection: Selection | None) -> list[Criterion]:
+    """Return what a study asks of the equilibria of every load case beside strength."""
+    least_N = robot.tension_min_N
+    criteria = [
+        Criterion(
+            id="least_tension",
+            title="Slack",
+            formula="least tension anywhere in a cable ≥ the least that the study requires",
+            source=f"robot.tension_min; {WHERE}",
+            unit="N",
+            quantity=lambda _, statics: statics.least_tension_N,
+            limits=(least_N,),
+            kind="at_least" if least_N > 0.0 else "above",
+        ),
+        Criterion(
+            id="stability",
+            title="Stability",
+            formula="smallest stiffness of the platform, cables of fixed length > 0",
+            source=f"the potential energy has a minimum; {WHERE}",
+            unit="N/m",
+            quantity=_stiffness_N_per_m,
+            limits=(0.0,),
+            kind="above",
+        ),
+    ]
+    sag_max = robot.family_sag_max if selection is None else robot.sag_max
+    if sag_max is not None:
+        criteria.append(
+            Criterion(
+                id="sag",
+                title="Sag",
+                formula="largest distance of a cable from its chord ≤ this share of the chord",
+                source=f"workspace.sag; {WHERE}",
+                unit="",
+                quantity=lambda _, statics: sag_ratio(statics),
+                limits=(sag_max,),
+                kind="at_most",
+            )
+        )
+    if workspace.floor_m is not None:
+        criteria.append(
+            Criterion(
+                id="floor",
+                title="Floor",
+                formula="lowest point of a cable ≥ height of the floor",
+                source=f"workspace.floor; {WHERE}",
+                unit="m",
+                quantity=lambda _, statics: statics.lowest_m,
+                limits=(workspace.floor_m,),
+                kind="at_least",
+                at_rest_after_loss=True,
+            )
+        )
+    if workspace.clearance_m is not None:
+        criteria.append(
+            Criterion(
+                id="clearance",
+                title="Clearance",
+                formula="smallest distance, axis to axis ≥ the clearance that the study requires",
+                source=f"workspace.clearance; {WHERE}",
+                unit="m",
+                quantity=lambda _, statics: smallest_clearance(statics).distance_m[:, None],
+                limits=(workspace.clearance_m,),
+                kind="at_least",
+                at_rest_after_loss=True,
+                detail=lambda statics: " and ".join(
+                    names_of(tuple(smallest_clearance(statics).pair[0]))
+                ),
+            )
+        )
+    return criteria + ([] if selection is None else list(_of_limits(selection)))
+
+
+def _of_limits(selection: Selection) -> Iterator[Criterion]:
+    """Yield the limits of a selection that are asked of every equilibrium."""
+    limits = selection.limits
+    if limits.stiffness_N_per_m is not None:
+        yield Criterion(
+            id="stiffness",
+            title="Stiffness",
+            formula="smallest force over displacement of the platform in any direction, cables of "
+            "fixed length ≥ the least that the study requires",
+            source=f"selection.limits.stiffness; {WHERE}",
+            unit="N/m",
+            quantity=_stiffness_N_per_m,
+            limits=(limits.stiffness_N_per_m,),
+            kind="at_least",
+        )
+    if limits.excitation_Hz is not None:
+        low, high = limits.excitation_Hz
+        yield Criterion(
+            id="excitation",
+            title="Excitation",
+            formula=f"√(T/m)/2l of each cable outside {low:g} to {high:g} Hz; no overtones",
+            source=f"selection.limits.excitation; {WHERE}",
+            unit="Hz",
+            quantity=string_frequency_Hz,
+            limits=(low, high),
+            kind="outside",
+        )
+
+
+def _stiffness_N_per_m(_: Loaded, statics: Statics) -> FloatArray:
+    """Return the smallest force over displacement (n, 1), zero where the balance is not stable."""
+    softness = largest_displacement_m_per_N(statics)
+    return np.asarray(np.nan_to_num(1.0 / softness, nan=0.0))[:, None]

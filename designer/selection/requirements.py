@@ -1,0 +1,376 @@
+"""What a study asks for in every load case, evaluated where given cables are nearest to failing it.
+
+Each criterion is a quantity of an equilibrium and what it is held against. All criteria of a load
+case are evaluated together: in every direction of its loads over some of the samples, then between
+them in the direction that is worst for each. Where lengths are kept, as after the loss of a cable,
+those count that are asked of the state in which the platform comes to rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable
+from designer.model.load_case import LoadCase, Loaded
+from designer.model.requirement import Requirement, State
+from designer.model.robot import Poses, Robot
+from designer.model.verdict import OPEN, Verdict
+from designer.progress import Advance
+from designer.selection.cases import CaseFound, steepest, worst_of_each
+from designer.selection.criteria import ROUNDING, WHERE, Criterion
+from designer.statics.cable_loss import Fate
+from designer.statics.inverse import Statics, solve_sagging
+from designer.statics.sizes import is_quick
+from designer.study import Selection, Workspace
+from designer.workspace.demand import is_left_out, length_demand, settled
+from designer.workspace.refine import LIGHT, Demand, Worst, refine_over_branches
+
+QUICK_SAMPLES, SLOW_SAMPLES, FEWEST_SAMPLES = 2000, 500, 16
+"""Poses evaluated in all directions of a load case together, of robots that are quick or slow to
+solve, and in each direction at least."""
+SETTLED_SAMPLES = 64
+"""The same where lengths are kept: to follow a platform takes a thousand times as long."""
+_MOST_ROUNDS = 4
+"""Of turning the loads and searching the pose again; two are enough as a rule."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaseLoads:
+    """A load case with given cables in all directions of its loads, and where it is asked."""
+
+    workspace: Workspace
+    directions: tuple[Loaded, ...]
+
+    @property
+    def case(self) -> LoadCase:
+        """The case."""
+        return self.directions[0].case
+
+    @property
+    def keeps_lengths(self) -> bool:
+        """Whether winches are braked, see `Loaded.keeps_lengths`."""
+        return any(loaded.keeps_lengths for loaded in self.directions)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evaluation:
+    """A criterion in a load case, and in which direction of its loads it is nearest to failing."""
+
+    criterion: Criterion
+    loads: CaseLoads
+    loaded: Loaded
+    requirement: Requirement
+
+    def on(self, robot: Robot, cable: Cable) -> Requirement | None:
+        """Return the same at that place with another cable; None where the place does not count."""
+        assert self.requirement.place is not None
+        loaded = self.loaded.on(robot, cable)
+        return _at_place(self.criterion, loaded, self.loads.workspace, self.requirement.place)
+
+
+def loads_of(cases: Sequence[CaseFound]) -> list[CaseLoads]:
+    """Return the load cases of what a cable meets, each in all directions that were tried."""
+    each = {id(found.case): found for found in cases}.values()
+    return [
+        CaseLoads(
+            found.workspace, tuple(other.loaded for other in cases if other.case is found.case)
+        )
+        for found in each
+    ]
+
+
+def evaluate(
+    loads: Sequence[CaseLoads],
+    criteria: Sequence[Criterion],
+    progress: Advance = lambda _: None,
+) -> tuple[Evaluation, ...]:
+    """Return each criterion in each load case, where it comes nearest to failing.
+
+    ``progress`` is called with 1 after each load case.
+    """
+    evaluations: list[Evaluation] = []
+    for case_loads in loads:
+        evaluations += _evaluate_case(case_loads, criteria)
+        progress(1)
+    return tuple(evaluations)
+
+
+def _at_place(
+    criterion: Criterion, loaded: Loaded, workspace: Workspace, place: FloatArray
+) -> Requirement | None:
+    """Return a criterion at one place (n_coordinates,); None where the place does not count."""
+    quantity, statics = _quantities(loaded, workspace, [criterion], place[None])
+    if np.isnan(quantity[0]).all():
+        return None
+    return _requirement(criterion, loaded, place, quantity[0][0], statics)
+
+
+def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[Evaluation]:
+    keeps = loads.keeps_lengths
+    lost = any(loaded.lost_cable for loaded in loads.directions)
+    asked = [each for each in criteria if each.at_rest_after_loss or not lost]
+    if not asked:
+        return
+    workspace, count = loads.workspace, len(loads.directions)
+    robot = loads.directions[0].robot
+    samples = SETTLED_SAMPLES if keeps else QUICK_SAMPLES if is_quick(robot) else SLOW_SAMPLES
+    space = workspace.space
+    places = np.concatenate(
+        [space.landmarks(), workspace.thinned(max(samples // count, FEWEST_SAMPLES))]
+    )
+    severities = np.stack(
+        [_severity(loaded, workspace, asked)(places).max(axis=0) for loaded in loads.directions]
+    )
+    worst = severities.argmax(axis=0)
+    for number in np.unique(worst):
+        loaded = loads.directions[number]
+        columns = [asked[k] for k in np.flatnonzero(worst == number)]
+        demand_with = partial(_severity, loaded, workspace, columns)
+        extremes = refine_over_branches(space, demand_with, places, LIGHT)
+        for criterion, extreme in zip(columns, extremes, strict=True):
+            if np.isneginf(extreme.demand):  # no pose of the case counts
+                continue
+            turned, place = _turned(criterion, loaded, workspace, extreme)
+            requirement = _at_place(criterion, turned, workspace, place)
+            if requirement is not None:
+                yield Evaluation(criterion, loads, turned, requirement)
+
+
+def _turned(
+    criterion: Criterion, loaded: Loaded, workspace: Workspace, extreme: Worst
+) -> tuple[Loaded, FloatArray]:
+    """Turn wind and inertia force to where they are worst, and search the pose again, by turns."""
+    if not loaded.is_turned:
+        return loaded, extreme.place
+    for _ in range(_MOST_ROUNDS):
+        place, before = extreme.place, extreme.demand
+
+        def severity_of(other: Loaded, place: FloatArray = place) -> float:
+            return float(_severity(other, workspace, [criterion])(place[None])[0, 0])
+
+        loaded, severity = steepest(loaded, before, severity_of)
+        if loaded.keeps_lengths:  # a search for the pose takes long
+            break
+        demand_with = partial(_severity, loaded, workspace, [criterion])
+        (again,) = refine_over_branches(workspace.space, demand_with, place[None], LIGHT)
+        extreme = again if again.demand > severity else Worst(place, severity)
+        if extreme.demand <= before + ROUNDING * abs(before):
+            break
+    return loaded, extreme.place
+
+
+def _severity(
+    loaded: Loaded,
+    workspace: Workspace,
+    criteria: Sequence[Criterion],
+    *,
+    seeks_better: bool = True,
+) -> Demand:
+    """Return the demand (n, n_criteria) of places; minus infinite where a place does not count."""
+
+    def demand(places: FloatArray) -> FloatArray:
+        quantities, _ = _quantities(loaded, workspace, criteria, places, seeks_better=seeks_better)
+        columns = [
+            np.nan_to_num(criterion.severity(quantity), nan=-np.inf).max(axis=1)
+            for criterion, quantity in zip(criteria, quantities, strict=True)
+        ]
+        return np.column_stack(columns)
+
+    return demand
+
+
+def _quantities(
+    loaded: Loaded,
+    workspace: Workspace,
+    criteria: Sequence[Criterion],
+    places: FloatArray,
+    *,
+    seeks_better: bool = True,
+) -> tuple[list[FloatArray], Statics]:
+    """Return each quantity at places (n, …), NaN where one does not count, and the equilibria."""
+    poses = Poses.at(places)
+    if loaded.keeps_lengths:
+        loss = settled(loaded, poses, seeks_better=seeks_better)
+        statics, rows = loss.statics, np.flatnonzero(loss.before.is_solved)
+        rests = (loss.fate[rows] == Fate.HOLDS) | (loss.fate[rows] == Fate.RESTS_ELSEWHERE)
+        counts = rests & ~is_left_out(loss.before, workspace.hangs_below)[rows]
+    else:
+        statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+        rows = np.arange(len(places))
+        counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+    quantities = []
+    for criterion in criteria:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            quantity = criterion.quantity(loaded, statics)
+        full = np.full((len(places), quantity.shape[1]), np.nan)
+        full[rows] = np.where(counts[:, None], quantity, np.nan)
+        quantities.append(full)
+    return quantities, statics
+
+
+def _requirement(
+    criterion: Criterion, loaded: Loaded, place: FloatArray, quantity: FloatArray, statics: Statics
+) -> Requirement:
+    """Return a criterion at a place, of its quantity (n_cables,) or (1,) and equilibria (1,)."""
+    column = int(np.nanargmax(criterion.severity(quantity)))
+    demand, capacity, used, holds = criterion.figures(float(quantity[column]))
+    every = np.arange(1, loaded.robot.n_cables + 1)
+    cables = every[every != loaded.lost_cable]
+    return Requirement(
+        id=criterion.id,
+        title=criterion.title,
+        formula=criterion.formula,
+        source=criterion.source,
+        state=State.HOLDS if holds else State.FAILS,
+        load_case=loaded.case.name,
+        demand=demand,
+        capacity=capacity,
+        unit=criterion.unit,
+        utilisation=used,
+        cable=int(cables[column]) if len(quantity) == len(cables) > 1 else None,
+        place=place,
+        direction=loaded.words,
+        remark="" if criterion.detail is None else criterion.detail(statics),
+    )
+
+
+def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
+    """Return the longest and the shortest unstrained length of each cable (n_cables,) [m].
+
+    In the first direction of a load case; NaN where no pose counts.
+    """
+    loaded, workspace = loads.directions[0], loads.workspace
+
+    def demand_with(*, seeks_better: bool = True) -> Demand:
+        def demand(places: FloatArray) -> FloatArray:
+            poses = Poses.at(places)
+            statics = solve_sagging(loaded.robot, poses, loaded.cable, seeks_better=seeks_better)
+            counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
+            return length_demand(statics, counts)
+
+        return demand
+
+    starts = workspace.thinned(SLOW_SAMPLES)
+    extremes = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
+    lengths = np.array([extreme.demand for extreme in extremes]).reshape(2, -1)
+    lengths[np.isinf(lengths)] = np.nan
+    return lengths[0], -lengths[1]
+
+
+def strength_of(cases: Sequence[CaseFound], selection: Selection) -> Iterator[Requirement]:
+    """Yield whether every pose is in equilibrium, and the breaking load, in each load case."""
+    for found in worst_of_each(cases):
+        yield equilibrium_of(found)
+        if math.isfinite(found.utilisation):
+            yield _breaking_load(found, selection)
+
+
+def _breaking_load(found: CaseFound, selection: Selection) -> Requirement:
+    factor, verification = selection.under(found.case).safety_factor, found.verification
+    is_known = verification.is_refined or not verification.holds
+    return Requirement(
+        id="breaking_load",
+        title="Breaking load",
+        formula=f"T ≤ η F / S; η the smaller of end fitting and bending, S = {factor:g}",
+        source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
+        state=State.OPEN if not is_known else State.HOLDS if verification.holds else State.FAILS,
+        load_case=found.case.name,
+        demand=verification.max_tension_N,
+        capacity=found.loaded.cable.allowable_tension_N,
+        unit="N",
+        utilisation=verification.utilisation,
+        cable=found.most_used(),
+        place=verification.worst_place,
+        direction=found.loaded.words,
+    )
+
+
+def equilibrium_of(found: CaseFound) -> Requirement:
+    """Return whether every pose of a load case that counts is in equilibrium with a cable."""
+    place = found.verification.worst_place
+    is_somewhere = bool(np.isfinite(place).all())
+    state, remark = State.HOLDS, ""
+    if not is_somewhere:
+        state, remark = State.FAILS, "every pose is left out"
+    elif not math.isfinite(found.utilisation):
+        state, remark = _why_not_held(found)
+    return Requirement(
+        id="equilibrium",
+        title="Equilibrium",
+        formula="the cables hold the platform in every pose that counts",
+        source=f"forces and moments on the platform; {WHERE}",
+        state=state,
+        load_case=found.case.name,
+        place=place if is_somewhere else None,
+        direction=found.loaded.words,
+        remark=remark,
+    )
+
+
+def _why_not_held(found: CaseFound) -> tuple[State, str]:
+    loss = found.loss()
+    if loss is not None and Fate(int(loss.fate[0])) is not Fate.NOT_HELD:
+        return State.OPEN, Fate(int(loss.fate[0])).words
+    loaded = found.loaded
+    verdict = Verdict(int(solve_sagging(loaded.robot, found.pose, loaded.cable).verdict[0]))
+    return state_of(verdict), verdict.clause
+
+
+def state_of(verdict: Verdict) -> State:
+    """Return whether a verdict means that a pose is held, cannot be, or that neither is known."""
+    if verdict is Verdict.SOLVED:
+        return State.HOLDS
+    return State.OPEN if verdict in OPEN else State.FAILS
+
+
+def sheave_ratio_of(grade: Grade, size: Size, selection: Selection) -> Iterator[Requirement]:
+    """Yield the bending ratio, where the study has a sheave and the maker gives a least ratio."""
+    ratio = grade.sheave_ratio
+    if selection.sheave_diameter_m is None or ratio is None or ratio.minimum is None:
+        return
+    there = selection.sheave_diameter_m / size.diameter_m
+    yield Requirement(
+        id="sheave_ratio",
+        title="Sheave",
+        formula="D / d ≥ the least ratio of the construction",
+        source=f"table of {grade.id}",
+        state=State.HOLDS if there >= ratio.minimum else State.FAILS,
+        load_case="all",
+        demand=ratio.minimum,
+        capacity=there,
+        utilisation=ratio.minimum / there,
+    )
+
+
+def drum_of(
+    longest_m: FloatArray, shortest_m: FloatArray, selection: Selection | None
+) -> Iterator[Requirement]:
+    """Yield the largest stroke of a cable, where the study says what a drum takes up.
+
+    Of the longest and the shortest unstrained length (n_cables,) in all load cases [m].
+    """
+    capacity_m = None if selection is None else selection.limits.drum_capacity_m
+    stroke_m = longest_m - shortest_m
+    if capacity_m is None or not np.isfinite(stroke_m).any():
+        return
+    cable = int(np.nan_to_num(stroke_m, nan=-1.0).argmax())
+    yield Requirement(
+        id="drum_capacity",
+        title="Drum",
+        formula="stroke: largest − smallest unstrained length ≤ what the drum takes up",
+        source="selection.limits.drum_capacity, beside its dead turns",
+        state=State.HOLDS if stroke_m[cable] <= capacity_m else State.FAILS,
+        load_case="all",
+        demand=float(stroke_m[cable]),
+        capacity=capacity_m,
+        unit="m",
+        utilisation=float(stroke_m[cable]) / capacity_m,
+        cable=cable + 1,
+    )

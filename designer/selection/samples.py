@@ -1,0 +1,104 @@
+"""What cables meet over the samples of a workspace, in one direction of a load case."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.cable import Cable
+from designer.model.load_case import Loaded
+from designer.model.robot import Poses
+from designer.progress import Advance
+from designer.selection.stiffening import StiffnessSearch
+from designer.selection.verify import Sampled, verify_sizes
+from designer.study import Workspace
+from designer.workspace.demand import is_left_out, rope_demand, settled
+
+FEW_SAMPLES = 64
+"""Poses in which lengths are kept, for each candidate."""
+
+
+def sampled_at_tension(
+    loaded: Sequence[Loaded], workspace: Workspace, progress: Advance = lambda _: None
+) -> list[tuple[Loaded, Sampled]]:
+    """Solve the samples with each of the cables, as stiff as at the tension that it meets there."""
+    found = list(zip(loaded, over_samples(loaded, workspace, progress), strict=True))
+    searches = [StiffnessSearch() for _ in found]
+    unsettled: Sequence[int] = range(len(found))
+    while unsettled:
+        tried: dict[int, Loaded] = {}
+        for k in unsettled:
+            one, sampled = found[k]
+            other = searches[k].next_of(one, sampled.verification(one.cable).max_tension_N)
+            if other is not None:
+                tried[k] = other
+        others = list(tried.values())
+        again = over_samples(others, workspace)
+        for k, one, sampled in zip(tried, others, again, strict=True):
+            found[k] = one, sampled
+        unsettled = list(tried)
+    return found
+
+
+def over_samples(
+    loaded: Sequence[Loaded], workspace: Workspace, progress: Advance = lambda _: None
+) -> list[Sampled]:
+    """Solve the samples with each of the cables, all in one direction of one case."""
+    if not loaded:
+        return []
+    if any(one.keeps_lengths for one in loaded):
+        return [over_kept_lengths(one, workspace, FEW_SAMPLES) for one in loaded]
+    if _leans(loaded[0], workspace):
+        return [_one_by_one(one, workspace) for one in loaded]
+    if loaded[0].case.changes_robot:
+        return [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
+    cables = [one.cable for one in loaded]
+    return verify_sizes(loaded[0].robot, workspace, cables, progress=progress)
+
+
+def over_kept_lengths(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
+    """Return what a cable meets on kept lengths, over some samples."""
+    places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
+    loss = settled(one, Poses.at(places))
+    counts = ~is_left_out(loss.before, workspace.hangs_below)
+    tension = np.where(counts, loss.largest_tension_N, -np.inf)
+    longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
+    return _sampled(one.cable, places, tension, longest)
+
+
+def _leans(one: Loaded, workspace: Workspace) -> bool:
+    """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
+    return workspace.hangs_below == "exclude" and one.robot.cable_load_direction is not None
+
+
+def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
+    """Return what a cable meets over the samples, which poses count told by the true vertical."""
+    demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
+    each = (workspace.space.landmarks(), *workspace.places())
+    parts = [some for some in each if len(some)]  # a list of points has no landmarks
+    tension, lengths, _ = np.split(
+        np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
+    )
+    longest = np.maximum(lengths, 0.0).max(axis=0)
+    return _sampled(one.cable, np.concatenate(parts), tension[:, 0], longest)
+
+
+def _sampled(
+    cable: Cable, places: FloatArray, tension_N: FloatArray, longest_m: FloatArray
+) -> Sampled:
+    """Put together what a cable meets; the tension is minus infinite where a pose is left out."""
+    used = tension_N / cable.allowable_tension_N
+    counts = ~np.isneginf(used)
+    order = np.argsort(-used, kind="stable")[: counts.sum()]
+    return Sampled(
+        worst_places=places[order[:8]],
+        utilisation=float(used.max()) if counts.any() else np.inf,
+        longest_m=longest_m,
+        samples=len(places),
+        counted=int(np.isfinite(used).sum()),
+        overloaded=int((used > 1.0).sum()),
+        not_held=int(np.isposinf(used).sum()),
+        is_complete=True,
+    )

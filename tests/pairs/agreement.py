@@ -1,0 +1,293 @@
+"""Whether an analysis of ours agrees with the reference: at each governing place, and at others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from pairs import options
+from pairs.quantities import (
+    clearance_m,
+    frequencies_Hz,
+    least_stiffness_N_per_m,
+    lowest_m,
+    sag_ratio,
+)
+from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settle, solve
+from pairs.scenario import growth_of, level_directions, problem_of, random_places, up_of
+
+from designer.analysis.analyse import Analysis
+from designer.model.load_case import STATIC, Loaded
+from designer.model.requirement import Requirement
+from designer.model.robot import Poses
+from designer.selection.cases import CaseFound
+from designer.statics.inverse import solve_sagging
+from designer.workspace.demand import settled
+
+SAME = 1e-6
+AT_SAG = 1e-5
+"""Where a limit on sag governs: the solvers keep it by a least pull that is on the safe side."""
+DIFFERENCES = 1e-3
+"""Of stiffness, which the reference takes from differences."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """A load case in one direction, with the ropes of the answer."""
+
+    text: Mapping[str, Any]
+    ropes: list[tuple[Any, Any]]
+    case: Mapping[str, Any]
+    wind: np.ndarray | None = None
+    inertia: np.ndarray | None = None
+    lost: int | None = None
+
+    @classmethod
+    def of(cls, text: Mapping[str, Any], ropes: list, found: CaseFound) -> Situation:
+        named = {case["name"]: case for case in text.get("load_cases", ())}
+        one = found.loaded
+        return cls(
+            text, ropes, named.get(found.case.name, {}), one.wind, one.inertia, one.lost_cable
+        )
+
+    @property
+    def problem(self) -> Problem:
+        return problem_of(self.text, self.ropes, self.case, self.wind, self.inertia)
+
+    @property
+    def growth(self) -> float:
+        return growth_of(self.text, self.case, self.ropes[0][0])
+
+    @property
+    def keeps_lengths(self) -> bool:
+        return self.lost is not None or self.growth != 0.0
+
+    def turned(self, rng: np.random.Generator) -> Situation:
+        """Return the case in directions at random, where it has any."""
+        up, wind, inertia = up_of(self.text), self.wind, self.inertia
+        if wind is not None and "direction" not in self.case["wind"]:
+            wind = level_directions(self.text, up, 2, rng)[rng.integers(2)]
+        if inertia is not None:
+            free = self.problem.freedoms[:, :3]
+            free = free[np.abs(free).max(axis=1) > 0.0]
+            inertia = rng.normal(size=len(free)) @ free
+            inertia = inertia / np.linalg.norm(inertia)
+        return replace(self, wind=wind, inertia=inertia)
+
+
+def ropes_of(analysis: Analysis) -> list[tuple[Any, Any]]:
+    """Return grade and size of each cable, as the texts have them."""
+
+    def named(grade: str, size: str) -> tuple[Any, Any]:
+        sheet = options.GRADES[grade]
+        return sheet, next(one for one in sheet["sizes"] if one["id"] == size)
+
+    if analysis.has_groups:
+        return [named(one.grade.id, one.size.id) for one in analysis.groups.by_cable]
+    chosen = analysis.chosen
+    return [named(chosen.grade.id, chosen.size.id)] * analysis.study.robot.n_cables
+
+
+def is_balanced(state: State) -> bool:
+    """Tell whether the pulls carry the platform."""
+    problem = state.problem
+    arms = state.attachment_m - state.pose.position_m
+    held = np.concatenate([state.pull_N.sum(axis=0), np.cross(arms, state.pull_N).sum(axis=0)])
+    left = problem.freedoms @ (held + load_on(problem, state.pose.rotation))
+    return bool(np.abs(left).max() < 1e-7 * problem.scale_N * max(problem.reach_m, 1.0))
+
+
+def hangs_below(state: State) -> bool:
+    """Tell whether a cable from above hangs below the platform."""
+    up = state.problem.up
+    from_above = (state.problem.exits_m - state.attachment_m) @ up >= 0.0
+    return bool((from_above & (state.pull_N @ up < 0.0)).any())
+
+
+def is_slack(one: Situation, pose: Pose) -> bool:
+    """Tell whether the limit on sag governs the choice of the internal forces."""
+    problem = one.problem
+    if problem.n == len(problem.freedoms):
+        return False
+    state = solve(problem, pose)
+    return state is not None and sag_ratio(state) > 0.9999 * (problem.sag_max or np.inf)
+
+
+def tension_at(one: Situation, pose: Pose, ours: CaseFound | None = None) -> tuple[float, str]:
+    """Return utilisation in a pose by the reference, and what is wrong with our lengths there.
+
+    Of robots that choose internal forces on kept lengths the lengths are ours: the reference says
+    whether they are as good as its own.
+    """
+    best = solve(one.problem, pose)
+    if best is None:
+        return np.inf, ""
+    if not one.keeps_lengths:
+        return best.utilisation, ""
+    lengths, wrong, start = best.total_m, "", pose
+    if ours is not None:
+        loss = ours.loss()
+        lengths = loss.before.length_m[0]
+        start = Pose.of(loss.rest.place[0]) if np.isfinite(loss.rest.position_m).all() else pose
+        hung = hang(one.problem, pose, lengths, near=best)
+        if hung is None or not is_balanced(hung):
+            wrong = "our lengths do not hold the pose before the loss"
+        elif hung.utilisation > best.utilisation * (1.0 + SAME):
+            wrong = (
+                f"our lengths ask for {hung.utilisation:.9g}, the best for {best.utilisation:.9g}"
+            )
+    problem, lengths = one.problem, (1.0 + one.growth) * lengths
+    if one.lost is not None:
+        problem = problem.without(one.lost)
+        lengths = np.delete(lengths, one.lost - 1)
+    rest = settle(problem, start, lengths)
+    return (np.inf if rest is None else rest.utilisation), wrong
+
+
+def disagreements(
+    text: Mapping[str, Any], analysis: Analysis, others: int = 6, seed: int = 0
+) -> Iterator[str]:
+    """Yield in a line each figure of an analysis that the reference does not confirm."""
+    ropes, rng = ropes_of(analysis), np.random.default_rng(seed)
+    if analysis.has_groups:
+        yield from _groups(text, ropes, analysis, rng, others)
+        return
+    for found in analysis.chosen.cases:
+        yield from _case(Situation.of(text, ropes, found), found, rng, others)
+    for one in analysis.requirements:
+        if one.id in QUANTITIES:
+            yield from _requirement(text, ropes, analysis, one)
+
+
+def _case(one: Situation, found: CaseFound, rng: np.random.Generator, others: int) -> Iterator[str]:
+    name = f"{found.case.name} {found.loaded.words}".strip()
+    pose = Pose.of(found.verification.worst_place)
+    theirs, wrong = tension_at(one, pose, found)
+    if wrong:
+        yield f"{name}: {wrong}"
+    same = AT_SAG if one.text["workspace"].get("sag") != "none" and is_slack(one, pose) else SAME
+    if abs(found.utilisation / theirs - 1.0) > same:
+        yield f"{name}: utilisation {found.utilisation:.9g}, reference {theirs:.9g} at {pose}"
+    yield from _no_worse(one, found.utilisation, name, rng, others)
+
+
+def _no_worse(
+    one: Situation, most: float, name: str, rng: np.random.Generator, others: int
+) -> Iterator[str]:
+    """Yield the places at random that ask for more than the governing one."""
+    if one.keeps_lengths:  # which lengths those are, where they may be chosen, is ours to say
+        others = min(others, 8) if len(one.problem.freedoms) == one.problem.n else 0
+    excludes = one.text["workspace"].get("hangs_below") == "exclude"
+    for pose in random_places(one.text, one.case, others, rng) if others else ():
+        there = one.turned(rng)
+        problem = there.problem
+        if not one.keeps_lengths and not excludes:
+            some = feasible(problem, pose)
+            if some is not None and some.utilisation <= most * (1.0 + SAME):
+                continue
+        state = solve(problem, pose)
+        if excludes and state is not None and hangs_below(state):
+            continue
+        used = np.inf if state is None else state.utilisation
+        if one.keeps_lengths:
+            used, _ = tension_at(there, pose)
+        if used > most * (1.0 + SAME):
+            yield f"{name}: {used:.9g} at {pose} {there.wind} {there.inertia}, told {most:.9g}"
+
+
+def _loaded(analysis: Analysis, one: Requirement) -> Loaded:
+    """Return the loads of a requirement: those of its case that are called as it says."""
+    named = {case.name: case for case in analysis.study.load_cases} or {STATIC.name: STATIC}
+    case, cable = named[one.load_case], analysis.chosen.cable
+    each = [*case.on(analysis.built.robot, cable), *(f.loaded for f in analysis.chosen.cases)]
+    return next(o for o in each if o.words == one.direction and o.case.name == case.name)
+
+
+def state_at(there: Situation, loaded: Loaded, place: np.ndarray) -> State | None:
+    """Return the state in a pose with the lengths that we choose there; None where none holds."""
+    pose, poses, problem = Pose.of(place), Poses.at(place[None]), there.problem
+    if not there.keeps_lengths:
+        length = solve_sagging(loaded.robot, poses, loaded.cable).length_m[0]
+        hung = hang(problem, pose, length, near=feasible(problem, pose))
+        return hung if hung is not None and is_balanced(hung) else None
+    loss = settled(loaded, poses)
+    length = (1.0 + there.growth) * loss.before.length_m[0]
+    if there.lost is not None:
+        problem, length = problem.without(there.lost), np.delete(length, there.lost - 1)
+    return settle(problem, Pose.of(loss.rest.place[0]), length)
+
+
+def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[str]:
+    """Compare a requirement at its place, and see that no listed pose is worse."""
+    loaded = _loaded(analysis, one)
+    cases = {case["name"]: case for case in text.get("load_cases", ())}
+    case = cases.get(one.load_case, {})
+    there = Situation(text, ropes, case, loaded.wind, loaded.inertia, loaded.lost_cable)
+    quantity = QUANTITIES[one.id]
+    name = f"{one.load_case} {one.direction} {one.id}"
+    state = state_at(there, loaded, one.place)
+    if state is None:
+        yield f"{name}: the reference does not hold {one.place}"
+        return
+    ours = _severity(one, text)
+    theirs = quantity(state, text)
+    same = DIFFERENCES if one.id in ("stability", "stiffness") else SAME
+    if not np.isclose(ours, theirs, rtol=same, atol=1e-6 * (one.id in LENGTHS)):
+        yield f"{name}: {ours:.9g}, reference {theirs:.9g} at {one.place}"
+    region = case.get("region") or text["workspace"]["region"]
+    if one.id in ("stability", "stiffness", "clearance") or "points" not in region:
+        return
+    if "orientation_range" in text["workspace"]:
+        return
+    for pose in random_places(text, case, 9, np.random.default_rng(0)):
+        place = np.concatenate([pose.position_m, pose.turn_rad][: len(one.place) // 3])
+        state = state_at(there, loaded, place)
+        if state is not None and quantity(state, text) < ours - 1e-6 * abs(ours) - 1e-6:
+            yield f"{name}: {quantity(state, text):.9g} at {place}, told {ours:.9g}"
+
+
+def _severity(one: Requirement, text) -> float:
+    """Return the quantity of a requirement so that less of it is worse."""
+    if one.id == "sag":
+        return -one.demand
+    if one.id == "excitation":
+        return -one.utilisation
+    return one.capacity
+
+
+def _excitation(state: State, text) -> float:
+    low, high = text["selection"]["limits"]["excitation"]
+    frequency = frequencies_Hz(state)
+    return -float(np.minimum(high / frequency, frequency / low).max())
+
+
+QUANTITIES = {
+    "least_tension": lambda state, _: float(state.least_tension_N.min()),
+    "stability": lambda state, _: least_stiffness_N_per_m(state),
+    "stiffness": lambda state, _: least_stiffness_N_per_m(state),
+    "sag": lambda state, _: -sag_ratio(state),
+    "floor": lambda state, _: lowest_m(state),
+    "clearance": lambda state, _: clearance_m(state),
+    "excitation": _excitation,
+}
+LENGTHS = ("floor", "clearance")
+
+
+def _groups(text, ropes, analysis: Analysis, rng, others: int) -> Iterator[str]:
+    choice = analysis.groups
+    met, n = choice.chosen.verification, len(ropes)
+    one = Situation(text, ropes, {})
+    members = [[cable - 1 for cable in group.cables] for group in choice.groups]
+    for group, place, used in zip(members, met.worst_place, met.utilisation, strict=True):
+        state = solve(one.problem, Pose.of(place))
+        theirs = (state.tension_N / one.problem.allowable_N)[group].max()
+        if n == len(one.problem.freedoms) and abs(used / theirs - 1.0) > SAME:
+            yield f"group {group}: utilisation {used:.9g}, reference {theirs:.9g} at {place}"
+    most = float(met.utilisation.max())
+    at = Pose.of(met.worst_place[int(met.utilisation.argmax())])
+    theirs = solve(one.problem, at).utilisation
+    if abs(most / theirs - 1.0) > SAME:
+        yield f"groups: utilisation {most:.9g}, reference {theirs:.9g} at {at}"
+    yield from _no_worse(one, most, "groups", rng, others)

@@ -1,0 +1,189 @@
+"""What a study's text says, as a problem for the reference: read here once more, from plain YAML.
+
+Every number of the text has to be in SI. The laws are those of the documents: half the density of
+air, 1.25 kg/m³, times the square of the wind's speed; ice around the cables; effects as in the
+table of effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from pairs.reference import Pose, Problem
+from scipy.spatial.transform import Rotation
+
+GRAVITY = 9.81
+PRESSURE = 0.5 * 1.25
+STEEL_EXPANSION = 12e-6
+SAG_MAX = 0.2
+Data = Mapping[str, Any]
+
+
+def up_of(study: Data) -> np.ndarray:
+    """Return the vertical in the frame of the study: tilted against gravity by the base's tilt."""
+    down = np.array(study["robot"].get("gravity", [0.0, 0.0, -1.0]), dtype=float)
+    up = -down / np.linalg.norm(down)
+    tilt = study.get("effects", {}).get("base_tilt", {})
+    turned = Rotation.from_rotvec([tilt.get("rx_rad", 0.0), tilt.get("ry_rad", 0.0), 0.0])
+    # The base is turned against the vertical: seen from it, the vertical is turned back.
+    level, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [up])
+    return level.inv().apply(turned.inv().apply([0.0, 0.0, 1.0]))
+
+
+def plane_of(study: Data, up: np.ndarray) -> np.ndarray:
+    """Return the level direction along the plane of a planar robot."""
+    points = np.array(study["robot"]["anchors"], dtype=float)
+    spread = points - points.mean(axis=0)
+    level = spread - np.outer(spread @ up, up)
+    axis = np.linalg.svd(level)[2][0]
+    return axis * np.sign(axis[np.abs(axis).argmax()])
+
+
+def freedoms_of(study: Data, up: np.ndarray) -> np.ndarray:
+    is_body = "attachments" in study["robot"]["platform"]
+    if not study["robot"].get("planar", False):
+        return np.eye(6) if is_body else np.eye(6)[:3]
+    along, zero = plane_of(study, up), np.zeros(3)
+    rows = [np.concatenate([along, zero]), np.concatenate([up, zero])]
+    if is_body:
+        rows.append(np.concatenate([zero, np.cross(up, along)]))
+    return np.array(rows)
+
+
+def level_directions(study: Data, up: np.ndarray, count: int, rng: np.random.Generator):
+    """Return horizontal directions of wind (count, 3); in a plane the two along it."""
+    if study["robot"].get("planar", False):
+        along = plane_of(study, up)
+        return np.array([along, -along])
+    free = rng.normal(size=(count, 3))
+    level = free - np.outer(free @ up, up)
+    return level / np.linalg.norm(level, axis=1, keepdims=True)
+
+
+def allowable_of(study: Data, case: Data, grade: Data, size: Data) -> float:
+    """Return breaking load times efficiency over safety factor [N]."""
+    selection = study["selection"]
+    factor = case.get("safety_factor") or selection.get("safety_factor", 5.0)
+    kept = case.get("termination_efficiency") or selection.get("termination_efficiency", 1.0)
+    sheave = selection.get("sheave_diameter")
+    is_fibre = grade.get("material") not in (None, "steel", "stainless steel")
+    if sheave is not None and not (is_fibre and "sheave_ratio" in grade):
+        kept = min(kept, 1.0 - 0.5 / np.sqrt(sheave / size["diameter"]))
+    return size["minimum_breaking_load"] * kept / factor
+
+
+def stiffness_of(study: Data, case: Data, grade: Data, size: Data) -> float:
+    """Return EA of the data sheet [N]."""
+    if "modulus" in grade:
+        return grade["modulus"]["value"] * 0.25 * np.pi * size["diameter"] ** 2
+    return grade["stiffness"]["ea_over_breaking_load"] * size["minimum_breaking_load"]
+
+
+def problem_of(
+    study: Data,
+    ropes: Sequence[tuple[Data, Data]],
+    case: Data | None = None,
+    wind: np.ndarray | None = None,
+    inertia: np.ndarray | None = None,
+) -> Problem:
+    """Return the robot of a study with ropes, (grade, size) of each cable, under a load case."""
+    case, effects = case or {}, study.get("effects", {})
+    robot, cable = study["robot"], study["cable"]
+    platform, up = robot["platform"], up_of(study)
+    exits = np.array(robot["anchors"], dtype=float)
+    moved = effects.get("anchor_offset", [])
+    for one in moved if isinstance(moved, list) else [moved]:
+        exits[one["cable"] - 1] += [one.get(name, 0.0) for name in ("x_m", "y_m", "z_m")]
+    arms = np.array(platform.get("attachments", np.zeros_like(exits)), dtype=float)
+    offset = effects.get("centre_of_mass_offset", {})
+    centre = np.array(platform.get("centre_of_mass", [0.0, 0.0, 0.0]), dtype=float)
+    centre = centre + [offset.get(name, 0.0) for name in ("x_m", "y_m", "z_m")]
+    mass = case.get("mass") or platform["mass"]
+    mass += effects.get("platform_mass", {}).get("offset_kg", 0.0)
+    factor = case.get("dynamic_factor", 1.0)
+    wrench = case.get("wrench") or platform.get("wrench", {})
+    force = factor * np.array(wrench.get("force", [0.0, 0.0, 0.0]), dtype=float)
+    moment = factor * np.array(wrench.get("moment", [0.0, 0.0, 0.0]), dtype=float)
+    centre_force = -factor * mass * GRAVITY * up
+    if inertia is not None:
+        centre_force = centre_force + mass * case["acceleration"] * inertia
+    pressure = 0.0
+    if wind is not None:
+        pressure = PRESSURE * case["wind"]["speed"] ** 2
+        drag = platform["drag"]
+        force = force + pressure * drag["area"] * drag["coefficient"] * wind
+    ice = case.get("ice") or {"thickness": 0.0}
+    t, iced = ice["thickness"], ice.get("density", 900.0)
+    loads, masses = [], []
+    for _, size in ropes:
+        masses.append(size["linear_mass"] + np.pi * t * (size["diameter"] + t) * iced)
+        load = -GRAVITY * masses[-1] * up
+        if wind is not None:
+            load = load + pressure * cable["drag_coefficient"] * (size["diameter"] + 2.0 * t) * wind
+        loads.append(load)
+    sag = study["workspace"].get("sag", SAG_MAX)
+    return Problem(
+        exits_m=exits,
+        arms_m=arms,
+        load_N_per_m=np.array(loads),
+        stiffness_N=np.array([stiffness_of(study, case, *one) for one in ropes]),
+        allowable_N=np.array([allowable_of(study, case, *one) for one in ropes]),
+        mass_kg_per_m=np.array(masses),
+        force_N=force,
+        moment_Nm=moment,
+        centre_m=centre,
+        centre_force_N=centre_force,
+        freedoms=freedoms_of(study, up),
+        up=up,
+        radius_m=effects.get("pulley_radius", {}).get("radius_m", 0.0),
+        least_N=robot.get("tension_min", 0.0),
+        sag_max=None if sag == "none" else sag,
+    )
+
+
+def growth_of(study: Data, case: Data, grade: Data) -> float:
+    """Return the strain of the cables by a change of temperature."""
+    own = study["cable"].get("thermal_expansion")
+    if own is None:
+        own = grade.get("thermal_expansion", {}).get("value", STEEL_EXPANSION)
+    return own * (case.get("temperature_change") or 0.0)
+
+
+def random_places(study: Data, case: Data, count: int, rng: np.random.Generator) -> list[Pose]:
+    """Return random poses of a case's region, corners too; of a list all of them."""
+    region = case.get("region") or study["workspace"]["region"]
+    if "points" in region:
+        positions = np.array(region["points"], dtype=float)
+    else:
+        shares = rng.uniform(size=(count, 3))
+        corners = np.array(np.meshgrid(*[[0.0, 1.0]] * 3)).reshape(3, -1).T
+        shares[: len(corners)] = corners[:count]
+        if "box" in region:
+            low, high = np.array(region["box"], dtype=float).T
+            positions = low + shares * (high - low)
+        else:
+            (first, last), heights = np.array(region["rectangle"], dtype=float), region["z"]
+            plan = first + shares[:, :1] * (last - first)
+            height = heights[0] + shares[:, 2] * (heights[1] - heights[0])
+            positions = np.column_stack([plan, height])
+    turns = turns_of(study, max(count, 1), rng)
+    if "points" in region and len(turns) < count:
+        return [Pose(position, turn) for position in positions for turn in turns]
+    at = rng.integers(len(positions), size=count) if "points" in region else np.arange(count)
+    return [Pose(positions[k], turns[rng.integers(len(turns))]) for k in at]
+
+
+def turns_of(study: Data, count: int, rng: np.random.Generator) -> list[np.ndarray]:
+    """Return the orientations of a study, of a range so many at random."""
+    workspace = study["workspace"]
+    if "orientation" in workspace:
+        return [np.array(workspace["orientation"], dtype=float)]
+    if "orientations" in workspace:
+        return [np.array(one, dtype=float) for one in workspace["orientations"]]
+    if "orientation_range" not in workspace:
+        return [np.zeros(3)]
+    names = ("rx", "ry", "rz")
+    ends = np.array([workspace["orientation_range"].get(n, [0.0, 0.0]) for n in names])
+    return list(ends[:, 0] + rng.uniform(size=(count, 3)) * np.ptp(ends, axis=1))

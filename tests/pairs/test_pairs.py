@@ -1,0 +1,80 @@
+"""Every option of a study with every other: computed as the reference has it, refused, or told."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pairs.options import BY_ID, OPTIONS, Option, study_of
+from pairs.table import (
+    COMPUTED,
+    NOT_COVERED,
+    REFUSED,
+    analysed,
+    outcome_of,
+    read_table,
+    wrong_with,
+)
+
+from designer.analysis.findings import find
+from designer.report.design.confidence import confidence
+
+TABLE = read_table()
+PAIRS = list(combinations(OPTIONS, 2))
+QUICK = (
+    ("wrench", "case_factor"),
+    ("case_mass", "dynamic_factor"),
+    ("case_mass", "platform_mass"),
+    ("wind_along", "ice"),
+    ("case_region", "gravity"),
+    ("pulleys", "elastic_modulus"),
+    ("anchor_offset", "linear_mass"),
+    ("base_tilt", "case_wrench"),
+    ("fibre", "case_fitting"),
+    ("exclude", "drum"),
+    ("floor", "excitation"),
+    ("sheave", "fitting"),
+)
+"""Pairs on the robot of three cables, which is quick, of as many options as there are."""
+
+
+def test_table_has_every_pair() -> None:
+    assert list(TABLE) == [(first.id, second.id) for first, second in PAIRS]
+    assert Counter(one.kind for one in TABLE.values())[COMPUTED] > 850
+
+
+def test_what_is_not_computed_has_a_reason() -> None:
+    for pair, one in TABLE.items():
+        assert bool(one.why) == (one.kind in (REFUSED, NOT_COVERED)), pair
+        assert "\n" not in one.why
+
+
+def test_table_is_what_studies_are_read_as(tmp_path: Path) -> None:
+    some = np.random.default_rng(0).choice(len(PAIRS), 25, replace=False)
+    refused = [k for k, pair in enumerate(TABLE) if TABLE[pair].kind == REFUSED]
+    for first, second in (PAIRS[k] for k in (*some, *refused)):
+        assert outcome_of((first, second), tmp_path) == TABLE[first.id, second.id]
+
+
+def test_effect_on_readings_is_told_as_not_covered(tmp_path: Path) -> None:
+    analysis = analysed(study_of("crane", BY_ID["reading_effect"], BY_ID["pulleys"]), tmp_path)
+    told = {one.title: one.text for one in confidence(analysis, find(analysis))}
+    assert "drum_scale" in told["Effects not covered"]
+    assert "pulley_radius" in told["Declared effects"]
+    assert "drum_scale" not in told["Declared effects"]
+
+
+@pytest.mark.parametrize("pair", QUICK, ids="-".join)
+def test_quick_pair_matches_reference(pair: tuple[str, str], tmp_path: Path) -> None:
+    assert list(wrong_with([BY_ID[name] for name in pair], tmp_path)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", OPTIONS[:-1], ids=lambda option: option.id)
+def test_every_pair_matches_reference(first: Option, tmp_path: Path) -> None:
+    others = OPTIONS[OPTIONS.index(first) + 1 :]
+    wrong = {other.id: list(wrong_with((first, other), tmp_path)) for other in others}
+    assert {name: lines for name, lines in wrong.items() if lines} == {}
