@@ -46,7 +46,7 @@ from designer.kernel.table import (
     place_cable,
     straighten,
 )
-from designer.kernel.unit_cable import sag_series, unit_cable
+from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 
 # Rows beside those of the table. The same for all poses: weight over stiffness, weight relative to
 # w, allowable tension over weight, least tension asked for over relative weight. Then the pull of a
@@ -271,7 +271,8 @@ def smallest_pull(pose: Pose, i: int, scaled_c: float) -> tuple[float, float]:
     """Return the smallest scaled pull of a cable, and its rise per scaled c.
 
     Of the line that touches the least tension in the cable at the present pull, or what keeps its
-    sag, whichever is more at a scaled c.
+    sag, whichever is more at a scaled c. Where any sag is allowed it is the line alone: a change
+    between the two within a step costs poses near the border.
     """
     c, scale = pose.cables, pose.scale
     floor = c[FLOOR, i] / c[UNIT, i]
@@ -279,7 +280,7 @@ def smallest_pull(pose: Pose, i: int, scaled_c: float) -> tuple[float, float]:
         slope = c[LOWEST_P, i] * c[UNIT, i]
         low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
         low = c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope
-        if low + low_c * scaled_c >= floor:
+        if low + low_c * scaled_c >= floor or c[FLOOR, i] == PULL_FLOOR:
             return low, low_c
     return floor, 0.0
 

@@ -247,10 +247,6 @@ class TestEdge:
         assert again.holds_again
         assert len(again.stretches_not_held_m) == 2
 
-    @pytest.mark.xfail(
-        strict=True,
-        reason="a known loss: beyond 0.32 m the sizing no longer finds the counterweight's branch",
-    )
     def test_where_straight_cables_end_is_told_apart_from_where_all_cables_do(self) -> None:
         """Beyond it this robot of seven cables is held by one that hangs as a counterweight."""
         study = read_study(example_file("falcon"))
