@@ -133,7 +133,7 @@ def _need(need: CaseNeed) -> Requirement:
         load_case=found.case.name,
         cable=found.most_used() if need.is_held else None,
         place=found.verification.worst_place,
-        direction=found.loaded.words,
+        loaded=found.loaded,
         remark=remark,
     )
 

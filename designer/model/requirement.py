@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from designer.arrays import FloatArray
+from designer.model.load_case import Loaded
 
 
 class State(StrEnum):
@@ -50,8 +51,8 @@ class Requirement:
         The cable, from 1.
     place : array (n_coordinates,) or None
         Where the platform is, see `designer.model.space` [m, rad].
-    direction : str
-        Direction of wind and inertia force, or the lost cable, in words; empty for none.
+    loaded : Loaded or None
+        Robot and cable under the load case, in its direction of wind and inertia force.
     remark : str
         What the reader must know beside the figures; empty for nothing.
     """
@@ -68,13 +69,18 @@ class Requirement:
     utilisation: float = math.nan
     cable: int | None = None
     place: FloatArray | None = None
-    direction: str = ""
+    loaded: Loaded | None = None
     remark: str = ""
 
     @property
     def holds(self) -> bool:
         """Whether it is known to hold."""
         return self.state is State.HOLDS
+
+    @property
+    def direction(self) -> str:
+        """Direction of wind and inertia force, or the lost cable, in words; empty for none."""
+        return "" if self.loaded is None else self.loaded.words
 
     @property
     def words(self) -> str:

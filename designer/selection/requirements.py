@@ -236,7 +236,7 @@ def _requirement(
         utilisation=used,
         cable=int(cables[column]) if len(quantity) == len(cables) > 1 else None,
         place=place,
-        direction=loaded.words,
+        loaded=loaded,
         remark="" if criterion.detail is None else criterion.detail(statics),
     )
 
@@ -288,7 +288,7 @@ def _breaking_load(found: CaseFound, selection: Selection) -> Requirement:
         utilisation=verification.utilisation,
         cable=found.most_used(),
         place=verification.worst_place,
-        direction=found.loaded.words,
+        loaded=found.loaded,
     )
 
 
@@ -309,7 +309,7 @@ def equilibrium_of(found: CaseFound) -> Requirement:
         state=state,
         load_case=found.case.name,
         place=place if is_somewhere else None,
-        direction=found.loaded.words,
+        loaded=found.loaded,
         remark=remark,
     )
 

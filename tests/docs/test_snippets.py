@@ -29,7 +29,10 @@ _COMMAND = re.compile(r"^\$ (.*?)(?:\s+# status (\d))?$")
 _AT_ONCE = {"how-to/plugin.md", "how-to/editor.md", "how-to/effect.md"}
 _NOT_RUN = {"how-to/window.md"}
 """Opens the window, which has tests of its own."""
-_SELDOM = {"name", "not_tried", "strongest_covariate", "fraction_of_variance"}
+_SELDOM = {
+    *("name", "not_tried", "strongest_covariate", "fraction_of_variance"),
+    *("grade", "size_id"),
+}
 """Keys that not every result has."""
 
 

@@ -19,7 +19,7 @@ from pairs.reference import Pose, Problem, State, feasible, hang, load_on, settl
 from pairs.scenario import growth_of, level_directions, problem_of, random_places, up_of
 
 from designer.analysis.analyse import Analysis
-from designer.model.load_case import STATIC, Loaded
+from designer.model.load_case import Loaded
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.selection.cases import CaseFound
@@ -197,14 +197,6 @@ def _no_worse(
             yield f"{name}: {used:.9g} at {pose} {there.wind} {there.inertia}, told {most:.9g}"
 
 
-def _loaded(analysis: Analysis, one: Requirement) -> Loaded:
-    """Return the loads of a requirement: those of its case that are called as it says."""
-    named = {case.name: case for case in analysis.study.load_cases} or {STATIC.name: STATIC}
-    case, cable = named[one.load_case], analysis.chosen.cable
-    each = [*case.on(analysis.built.robot, cable), *(f.loaded for f in analysis.chosen.cases)]
-    return next(o for o in each if o.words == one.direction and o.case.name == case.name)
-
-
 def state_at(there: Situation, loaded: Loaded, place: np.ndarray) -> State | None:
     """Return the state in a pose with the lengths that we choose there; None where none holds."""
     pose, poses, problem = Pose.of(place), Poses.at(place[None]), there.problem
@@ -221,7 +213,7 @@ def state_at(there: Situation, loaded: Loaded, place: np.ndarray) -> State | Non
 
 def _requirement(text, ropes, analysis: Analysis, one: Requirement) -> Iterator[str]:
     """Compare a requirement at its place, and see that no listed pose is worse."""
-    loaded = _loaded(analysis, one)
+    loaded = one.loaded
     cases = {case["name"]: case for case in text.get("load_cases", ())}
     case = cases.get(one.load_case, {})
     there = Situation(text, ropes, case, loaded.wind, loaded.inertia, loaded.lost_cable)

@@ -14,6 +14,7 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
 from designer.documents.plain import json_text
+from designer.model.requirement import State
 from designer.report.design import checks, load_cases
 from designer.report.design.first_page import first_page
 from designer.report.design.source import Source, source_of
@@ -106,23 +107,23 @@ def test_the_tables(source: Source) -> None:
 
 def test_the_checks(source: Source) -> None:
     section = checks.section(source)
-    rows = {row[0]: row for row in cells(section, "Checks")}
-    assert list(rows) == ["Breaking load", "Sheave", "Slack", "Stability"]
-    assert "<b>hoisting</b>" in rows["Breaking load"][-2]
-    assert "clearance (none is asked for)" in said(section)
+    rows = {(row[0], row[-2].split(",")[0]): row[-1] for row in cells(section, "All that")}
+    for case in ("static", "<b>hoisting</b>", "storm", "lost"):
+        assert rows["Equilibrium", case] == rows["Breaking load", case] == "holds"
+    assert rows["Sheave", "all"] == rows["Slack", "storm"] == rows["Stability", "storm"] == "holds"
+    assert "clearance (none is given)" in said(section)
     total = cells(section, "The forces")[-1]
     assert total[0] == "Sum"
     assert all(abs(float(cell.split("\u00a0")[0])) == 0.0 for cell in total[1:])
 
 
-def test_a_check_that_fails_is_on_page_one(found: Analysis, source: Source) -> None:
-    assert not list(checks.failing_checks(found))
-    assert found.study.selection is not None
-    bent = replace(found.study.selection, sheave_diameter_m=0.05)
-    other = replace(found, study=replace(found.study, selection=bent))
-    (said_there,) = checks.failing_checks(other)
-    assert said_there.title == "Sheave does not hold"
-    page = first_page(replace(source, analysis=other))
+def test_what_fails_is_on_page_one(found: Analysis, source: Source) -> None:
+    assert not found.unmet
+    bent = [
+        replace(each, state=State.FAILS) if each.id == "sheave_ratio" else each
+        for each in found.requirements
+    ]
+    page = first_page(replace(source, analysis=replace(found, requirements=tuple(bent))))
     assert statements(page)["Sheave does not hold"].tone == "bad"
 
 
