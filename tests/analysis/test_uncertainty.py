@@ -114,6 +114,18 @@ def test_shares_of_a_sum_and_of_ishigamis_function() -> None:
     assert [one.total_order for one in found] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
 
 
+def test_first_order_of_few_draws_scatters_little() -> None:
+    from scipy.special import ndtri
+
+    a = np.array([1.0, 0.8, 0.5, 0.3, 0.2])
+    columns = {k: slice(i, i + 1) for i, k in enumerate("abcde")}
+    exact = a**2 / (a**2).sum()
+    for seed in range(5):
+        found = shares_of(lambda x: ndtri(x) @ a, columns, 32, seed)
+        assert [one.first_order for one in found] == pytest.approx(exact, abs=0.03)
+        assert found[-1].first_order == pytest.approx(exact[-1], abs=0.005)
+
+
 def test_coordinates_of_one_input_share_as_one() -> None:
     columns = {"a": slice(0, 1), "b": slice(1, 4)}
     found = shares_of(lambda x: x.sum(axis=1), columns, 256, 0)

@@ -6,17 +6,27 @@ r"""Which share of the spread each input has: Sobol's indices of first and of to
     S_{T i} = 1 - \frac{\operatorname{Var}(\operatorname{E}(u \mid x_{\sim i}))}
     {\operatorname{Var} u}
 
-A. Saltelli et al., Computer Physics Communications 181 (2010), doi:10.1016/j.cpc.2009.09.018, as
-SciPy has it. All coordinates of all exit points are one input.
+A. Saltelli et al., Computer Physics Communications 181 (2010), doi:10.1016/j.cpc.2009.09.018. All
+coordinates of all exit points are one input.
 
 The points are quasi-random. A bootstrap takes them for random ones, and its interval is several
 times too wide; so the indices are computed for a few scrambles that are independent of each other,
 whose means have the interval of Student's t.
+
+A product of two utilisations scatters, the more so the less of the variance an input has. So a sum
+:math:`g = \sum_i g_i(x_i)` of polynomials is fitted to all draws, whose parts' variances are known,
+and only what is left, r = u - g, is sampled: with A, B two draws and :math:`A_i` the first with
+input i of the second,
+
+.. math::
+
+    \operatorname{Var}(\operatorname{E}(u \mid x_i)) = \operatorname{Var} g_i
+        + \overline{r_B g_i(B)} + \overline{r_{A_i} g_i(B)} + \overline{r_B\,(r_{A_i} - r_A)}.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +35,7 @@ from designer.arrays import FloatArray
 
 SCRAMBLES = 8
 _NO_SPREAD = 1e-12
+_DEGREE = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +88,20 @@ def shares_of(
     """
     from scipy.special import stdtrit
 
+    width = max(at.stop for at in columns.values())
     children = np.random.default_rng(seed).spawn(SCRAMBLES)
-    indices = np.array([_indices(used_at, columns, points, child) for child in children])
+    unit = np.array([_points(columns.values(), width, points, child) for child in children])
+    used = used_at(unit.reshape(-1, width)).reshape(unit.shape[:-1])
+    if not np.isfinite(used).all():
+        share = float((~np.isfinite(used)).mean())
+        raise ValueError(
+            f"in {100.0 * share:.3g} % of the draws a pose is not held, so that the utilisation "
+            "has no variance"
+        )
+    if np.ptp(used) <= _NO_SPREAD * float(np.abs(used).max()):
+        raise ValueError("the utilisation does not vary")
+    powers = _polynomials(unit)
+    indices = np.array([_indices(used, powers, columns.values(), k) for k in range(SCRAMBLES)])
     mean = indices.mean(axis=0)
     off = stdtrit(SCRAMBLES - 1, 0.975) * indices.std(axis=0, ddof=1) / np.sqrt(SCRAMBLES)
     low, high = mean - off, mean + off
@@ -91,31 +114,50 @@ def shares_of(
     )  # fmt: skip
 
 
-def _indices(
-    used_at: Callable[[FloatArray], FloatArray],
-    columns: dict[str, slice],
-    points: int,
-    rng: np.random.Generator,
+def _points(
+    columns: Collection[slice], width: int, points: int, rng: np.random.Generator
 ) -> FloatArray:
-    """Return first and total order (2, n_inputs) by one scramble."""
-    from scipy.stats import qmc, sobol_indices
+    """Return two draws A and B, then A with each input of B: (n_inputs + 2, n_points, width)."""
+    from scipy.stats import qmc
 
-    width = max(at.stop for at in columns.values())
     unit = qmc.Sobol(2 * width, rng=rng).random(points)
     first, second = unit[:, ::2], unit[:, 1::2]  # the first coordinates are the most even
-    mixed = []
-    for at in columns.values():
-        one = first.copy()
-        one[:, at] = second[:, at]
-        mixed.append(one)
-    used = used_at(np.concatenate([first, second, *mixed])).reshape(-1, 1, points)
-    if not np.isfinite(used).all():
-        share = float((~np.isfinite(used)).mean())
-        raise ValueError(
-            f"in {100.0 * share:.3g} % of the draws a pose is not held, so that the utilisation "
-            "has no variance"
-        )
-    if np.ptp(used) <= _NO_SPREAD * float(np.abs(used).max()):
-        raise ValueError("the utilisation does not vary")
-    found = sobol_indices(func={"f_A": used[0], "f_B": used[1], "f_AB": used[2:]}, n=points)
-    return np.stack([found.first_order.reshape(-1), found.total_order.reshape(-1)])
+    mixed = [first.copy() for _ in columns]
+    for draw, at in zip(mixed, columns, strict=True):
+        draw[:, at] = second[:, at]
+    return np.stack([first, second, *mixed])
+
+
+def _polynomials(unit: FloatArray) -> FloatArray:
+    """Return Legendre's polynomials (..., width, degree), of mean zero and variance one."""
+    from scipy.special import eval_legendre
+
+    degree = np.arange(1, _DEGREE + 1)
+    return np.asarray(np.sqrt(2 * degree + 1) * eval_legendre(degree, 2.0 * unit[..., None] - 1.0))
+
+
+def _indices(
+    used: FloatArray, powers: FloatArray, columns: Collection[slice], k: int
+) -> FloatArray:
+    """Return first and total order (2, n_inputs) by scramble ``k``, of a sum fitted to the others.
+
+    Of the function (n_scrambles, n_inputs + 2, n_points) and polynomials (..., width, degree).
+    """
+    others = np.arange(len(used)) != k
+    fitted = powers[others].reshape(used[others].size, -1)
+    design = np.column_stack([np.ones(len(fitted)), fitted])
+    constant, *factors = np.linalg.lstsq(design, used[others].ravel(), rcond=None)[0]
+    factor = np.reshape(factors, powers.shape[-2:])
+    parts = (powers[k] * factor).sum(axis=-1)  # (n_inputs + 2, n_points, width)
+    rest = used[k] - constant - parts.sum(axis=-1)
+    sums, left = parts[:2].sum(axis=-1), rest[:2]
+    variance = (factor**2).sum() + 2.0 * np.mean(sums * left) + left.var()
+    shares = []
+    for i, at in enumerate(columns):
+        known = (factor[at] ** 2).sum()
+        here, there = parts[:2, :, at].sum(axis=-1)
+        change = rest[2 + i] - rest[0]
+        first = known + np.mean(there * (rest[1] + rest[2 + i]) + rest[1] * change)
+        total = known + np.mean((there - here) * change + 0.5 * change**2)
+        shares.append((first, total))
+    return np.asarray(np.array(shares).T / variance)
