@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -270,12 +271,19 @@ class Robot:
 
 def vertical_frame(gravity_direction: FloatArray) -> FloatArray:
     """Return the rotation (3, 3) to a frame whose z axis is the vertical, by the shortest way."""
-    up = -np.asarray(gravity_direction) / np.linalg.norm(gravity_direction)
+    x, y, z = gravity_direction
+    return _vertical_frame(float(x), float(y), float(z))
+
+
+@lru_cache(maxsize=256)
+def _vertical_frame(x: float, y: float, z: float) -> FloatArray:
+    up = -np.array([x, y, z]) / np.linalg.norm([x, y, z])
     axis = np.cross(up, [0.0, 0.0, 1.0])
     sine, cosine = float(np.linalg.norm(axis)), float(up[2])
     if sine == 0.0:
-        return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
-    return np.asarray(Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix())
+        return frozen_array(np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0]))
+    turn = Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine))
+    return frozen_array(turn.as_matrix())
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -374,5 +374,5 @@ def steepest(
         highest, turned = max(trials, key=lambda trial: trial[0])
         gains = highest > severity
         loaded, severity = (turned, highest) if gains else (loaded, severity)
-        step *= 1.2 if gains else 0.5
+        step *= 2.0 if gains else 0.25
     return loaded, severity

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +12,16 @@ import numpy as np
 import yaml
 from pairs.agreement import SAME, is_balanced, ropes_of
 from pairs.options import GRADES
-from pairs.reference import hang, solve
+from pairs.reference import Pose, hang, solve
 from pairs.scenario import problem_of, random_places
 
-from designer.analysis.analyse import Analysis
+import designer
+from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.comparison import compare
 from designer.analysis.lengths import lengths_of
+from designer.diagnosis.check import check
 from designer.documents.document import read_document
+from designer.measured.read import read_measured
 from designer.model.robot import Poses
 from designer.sweep.plan import Range
 from designer.sweep.point import Base, solve_points
@@ -88,6 +92,96 @@ def sweep(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator
             yield f"{name} is {one} in a sweep, {other} of the study"
 
 
+PLAN = {
+    "study": "own.yaml",
+    "objective": "rope_mass",
+    "variables": {"height": {"fields": ["robot.anchors.*.2"], "offset": [-0.3, 0.3]}},
+    "budget": {"evaluations": 10},
+    "starts": 1,
+}
+
+
+def optimise(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator[str]:
+    """The optimum is a study that says the same of itself, and no worse than the one given."""
+    _with_catalogue(text, folder)
+    (folder / "plan.yaml").write_text(yaml.safe_dump(PLAN), encoding="utf-8")
+    found = designer.optimise(folder / "plan.yaml", with_plugins=False)
+    (folder / "best.yaml").write_text(found.text, encoding="utf-8")
+    whole = analyse(designer.read_study(folder / "best.yaml", with_plugins=False)).to_dict()
+    told = found.optimised.to_dict()
+    for name in ("answer.verdict", "answer.total_mass_kg"):
+        if _at(whole, name) != _at(told, name):
+            yield f"optimise: {name} is {_at(told, name)}, as a study {_at(whole, name)}"
+    if found.given.to_dict()["answer"] != analysis.to_dict()["answer"]:
+        yield "optimise: the study as given has another answer"
+    if found.given_holds and not (found.holds and found.after <= found.before * (1.0 + SAME)):
+        yield f"optimise: {found.after} kg, given {found.before}"
+
+
+def _beside(pose: Pose, text: Mapping[str, Any], rng: np.random.Generator) -> Pose:
+    move = 0.2 * rng.uniform(-1.0, 1.0, 3)
+    if text["robot"].get("planar"):
+        move[1] = 0.0
+    return replace(pose, position_m=pose.position_m + move)
+
+
+def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator[str]:
+    """Readings of the reference are those of the declared model: a check leaves nothing."""
+    if analysis.has_groups:  # a machine is measured with one rope on all cables
+        return
+    _, size = ropes_of(analysis)[0]
+    effects = text.get("effects", {})
+    problem = problem_of(text, ropes_of(analysis))
+    measured = dict(text)
+    measured["measurements"] = {
+        "file": "log.csv",
+        "settled": True,
+        "cable": {
+            "linear_mass": size["linear_mass"],
+            "axial_stiffness": float(problem.stiffness_N[0]),
+            "diameter": size["diameter"],
+        },
+        "noise": {"length": 1e-4, "tension": 1.0},
+    }
+    problem = replace(
+        problem,
+        load_N_per_m=problem.load_N_per_m * effects.get("linear_mass", {}).get("scale", 1.0),
+        stiffness_N=problem.stiffness_N * effects.get("elastic_modulus", {}).get("scale", 1.0),
+    )
+    drum = effects.get("drum_scale", {}).get("scale", 1.0)
+    rng = np.random.default_rng(2)
+    places = random_places(text, {}, ROWS, rng)
+    poses = [_beside(places[k % len(places)], text, rng) for k in range(ROWS)]
+    states = [state for pose in poses if (state := solve(problem, pose, starts=2)) is not None]
+    n = problem.n
+    names = ["time_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"]
+    names += [f"length_{k}_m" for k in range(1, n + 1)] + [
+        f"tension_{k}_N" for k in range(1, n + 1)
+    ]
+    rows = [
+        [
+            *(10.0 * k, *state.pose.position_m, *state.pose.turn_rad),
+            *drum * state.total_m,
+            *np.linalg.norm(state.exit_pull_N, axis=1),
+        ]
+        for k, state in enumerate(states)
+    ]
+    (folder / "log.csv").write_text(
+        "\n".join([",".join(names), *(",".join(map(repr, map(float, row))) for row in rows)])
+    )
+    path = folder / "measured.yaml"
+    path.write_text(yaml.safe_dump(measured, sort_keys=False), encoding="utf-8")
+    study = designer.read_study(path, with_plugins=False)
+    assert study.measurements is not None
+    found = check(study, study.measurements, read_measured(study)).declared
+    if found.n_not_held or found.length_m is None or found.tension_N is None:
+        yield f"diagnose: {found.n_not_held} of {len(rows)} rows are not held"
+        return
+    for name, left, unit in (("length", found.length_m, 10.0), ("tension", found.tension_N, 1e3)):
+        if left.rms.value > SAME * unit:
+            yield f"diagnose: {left.rms.value:.3g} is left of each {name}"
+
+
 def _at(result: Mapping[str, Any], path: str) -> Any:
     value: Any = result
     for name in path.split("."):
@@ -99,4 +193,6 @@ COMMANDS: Mapping[str, Callable[[Mapping[str, Any], Analysis, Path], Iterator[st
     "lengths": lengths,
     "compare": comparison,
     "sweep": sweep,
+    "diagnose": diagnose,
+    "optimise": optimise,
 }

@@ -382,6 +382,21 @@ OPTIONS: tuple[Option, ...] = (
     ),
     Option("compare", "`designer compare`", ALL, _nothing, is_command=True),
     Option("sweep", "`designer sweep`", ALL, _nothing, is_command=True),
+    Option(
+        "diagnose",
+        "`designer diagnose --check`",
+        ALL,
+        _nothing,
+        is_command=True,
+        not_covered=lambda text: (
+            "a machine is measured under its own load, not in its load cases"
+            if text.get("load_cases")
+            else "a machine is measured with one rope on all cables"
+            if "groups" in text["selection"]
+            else ""
+        ),
+    ),
+    Option("optimise", "`designer optimise`", ALL, _nothing, is_command=True),
 )
 BY_ID: Mapping[str, Option] = {option.id: option for option in OPTIONS}
 

@@ -31,6 +31,8 @@ def pareto_table(selection: SelectionResult) -> Table:
         "allowable tension is the breaking load times the efficiency over the safety factor."
     )
     shown = selection.front[:MOST_ROWS]
+    if any(len({found.case.name for found in c.cases}) > 1 for c in shown):
+        caption += " Tension and utilisation are of the load case that asks most of each size."
     if len(shown) < len(selection.front):
         caption += f" {_more(len(selection.front) - len(shown), 'size')}"
     columns, cells = zip(*_columns(selection, shown), strict=True)

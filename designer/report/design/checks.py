@@ -50,7 +50,7 @@ def _picture(pose: GoverningPose) -> Picture:
     statics = pose.alone
     most = int(statics.cable_tension_N.argmax())
     caption = (
-        f"The governing pose, its cables in their true shape, each with its tension at the exit "
+        f"{_named(pose)}, its cables in their true shape, each with its tension at the exit "
         f"point; cable {pose.cables[most].cable}, which governs, is marked. Arrows are the loads "
         "on the platform."
     )
@@ -165,6 +165,11 @@ def _facts(pose: GoverningPose) -> Facts:
     )
 
 
+def _named(pose: GoverningPose) -> str:
+    """Return what tables and pictures of the pose call it: other tables are of all load cases."""
+    return f"The governing pose, in the load case {fmt.printed(pose.found.case.name)}"
+
+
 def _cables(pose: GoverningPose) -> Table:
     columns = (
         *(Column("Cable"), Column("Length"), Column("At the exit"), Column("At the platform")),
@@ -188,7 +193,7 @@ def _cables(pose: GoverningPose) -> Table:
         for one in pose.cables
     ]
     caption = (
-        "The governing pose: unstrained length, tension at both ends, angle of the pull on the "
+        f"{_named(pose)}: unstrained length, tension at both ends, angle of the pull on the "
         "platform above the horizontal, largest distance from the chord, stretch, breaking load "
         "left over the tension, and the lowest frequency of a string, √(T/m)/2l."
     )
@@ -201,9 +206,8 @@ def _forces(pose: GoverningPose) -> Table:
     rows = [Row((fmt.capital(name), *write(*force))) for name, force in (*named, *pose.loads)]
     left = write(*(pose.left_N.round(6) + 0.0))
     columns = ("Force on the platform", Column("x"), Column("y"), Column("z"))
-    return Table.of(
-        "The forces there add up to nothing, but for rounding.", columns, *rows, Row(("Sum", *left))
-    )
+    caption = f"{_named(pose)}: the forces add up to nothing, but for rounding."
+    return Table.of(caption, columns, *rows, Row(("Sum", *left)))
 
 
 def _alike(forces_N: Iterable[float]) -> Callable[..., tuple[str, ...]]:
