@@ -35,6 +35,7 @@ from designer.kernel.pose import (
     WRENCH,
     Pose,
     along,
+    choose_bounds,
     limit_sag,
     linearise,
     new_pose,
@@ -86,6 +87,7 @@ def rate_range(
         scaled_c = pose.scale[SIZE] / (w * pose.scale[FORCE])
         limit = 1.0 if is_sizing else found.poses[at, LOAD_FACTOR]
         linearise(pose)
+        choose_bounds(pose, scaled_c)
         write_wrenches(pose)
         out[at] = np.inf
         if _find_value(pose, scaled_c, limit, scratch):
@@ -166,7 +168,7 @@ def _potential(
         beta = along(pose, value, LIFT, i) * c[SHARE, i] / pose.scale[FORCE]
         alpha = slope - beta * c[V_P, i]
         tight = limit * c[STRENGTH, i] / c[CHORD, i]
-        low, low_c = smallest_pull(pose, i, scaled_c)
+        low, low_c = smallest_pull(pose, i)
         least = (low + low_c * scaled_c) * c[UNIT, i]
         if beta < 0.0:
             best = 0.0

@@ -49,6 +49,7 @@ from designer.kernel.pose import (
     Pose,
     along,
     bend,
+    choose_bounds,
     make_straight,
     smallest_pull,
     write_wrenches,
@@ -119,10 +120,11 @@ def new_scratch(m: int, n: int) -> Scratch:
 def pull_straight(pose: Pose, ask: Ask, s: float) -> None:
     """Pull as much as straight cables have to, and every cable well above its smallest pull."""
     c = pose.cables
+    scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
     make_straight(pose, _CARRIED)
+    choose_bounds(pose, scaled_c)
     for i in range(c.shape[1]):
-        scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
-        low, low_c = smallest_pull(pose, i, scaled_c)
+        low, low_c = smallest_pull(pose, i)
         least = low + low_c * scaled_c
         y = START_OF_STRAIGHT * c[STRAIGHT, i] / (c[SHARE, i] * c[STRENGTH, i])
         # Negated, so that NaN of straight cables that hold nothing is left out.
@@ -139,6 +141,7 @@ def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tupl
     """
     c, n = pose.cables, pose.cables.shape[1]
     bend(pose)
+    choose_bounds(pose, ask.c_0 + s * ask.c_s)
     for i in range(n):  # a start of all slacks and multipliers
         c[HEIGHT, i] = max(_height(pose, ask, s, i), _START_SHARE)
         c[ROOM, i] = max(ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i], _START_SHARE)
@@ -149,6 +152,7 @@ def climb(pose: Pose, ask: Ask, s: float, keep: float, scratch: Scratch) -> tupl
     for iteration in range(_MOST_ITERATIONS):
         if iteration > 0:
             bend(pose)
+            choose_bounds(pose, ask.c_0 + s * ask.c_s)
         unbalanced = _balance(pose, ask, s, scratch)
         gap = _gap(pose, ask, s, scratch)
         is_last = iteration == _MOST_ITERATIONS - 1  # no step without closing the cables again
@@ -190,7 +194,7 @@ def _height(pose: Pose, ask: Ask, s: float, i: int) -> float:
     """Return by how much the scaled pull of a cable is above its smallest."""
     c = pose.cables
     scaled_c = ask.c_0 + s * ask.c_s
-    low, low_c = smallest_pull(pose, i, scaled_c)
+    low, low_c = smallest_pull(pose, i)
     return float(c[P, i] / c[UNIT, i] - low - low_c * scaled_c)
 
 
@@ -209,7 +213,7 @@ def _gap(pose: Pose, ask: Ask, s: float, scratch: Scratch) -> float:
         in_s -= ask.c_s * pose.load[pose.rows[k]] * dual[k]
     for i in range(n):
         slope = c[T_P, i] / c[CHORD, i]
-        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
+        _, low_c = smallest_pull(pose, i)
         stationary = c[MU_ROOM, i] * slope - c[MU_HEIGHT, i]
         for k in range(m):
             stationary += columns[i, k] * dual[k]
@@ -261,7 +265,7 @@ def _condense(pose: Pose, ask: Ask, s: float, barrier: float, scratch: Scratch) 
     weight, rest = 0.0, 1.0
     for i in range(n):
         slope = c[T_P, i] / c[CHORD, i]
-        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
+        _, low_c = smallest_pull(pose, i)
         H = _curvature(pose, i, scratch.dual, low_c > 0.0)
         low_s = low_c * ask.c_s
         d_room = c[MU_ROOM, i] / c[ROOM, i]
@@ -319,7 +323,7 @@ def _step_sizes(
     c = pose.cables
     forward, back = 1.0, 1.0
     for i in range(c.shape[1]):
-        _, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
+        _, low_c = smallest_pull(pose, i)
         miss = ask.f_0 + s * ask.f_s - c[T, i] / c[STRENGTH, i] - c[ROOM, i]
         room = miss + ask.f_s * ds - c[T_P, i] / c[CHORD, i] * c[STEP, i]
         sunk = _height(pose, ask, s, i) - c[HEIGHT, i]

@@ -54,8 +54,9 @@ from designer.kernel.unit_cable import PULL_FLOOR, sag_series, unit_cable
 # sag that is allowed.
 KAPPA, SHARE, STRENGTH, LEAST, UNIT, FLOOR = range(LANE_ROWS, LANE_ROWS + 6)
 # Second slopes of pull and top tension; least tension anywhere in the cable over its weight, with
-# its slopes, where one is asked for; 1 for a cable left to hang, 0 for one that is pulled.
-V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, HANGS = range(FLOOR + 1, FLOOR + 7)
+# its slopes, where one is asked for; 1 where that sets the smallest pull, 0 where the sag does; 1
+# for a cable left to hang, 0 for one that is pulled.
+V_PP, T_PP, LOWEST, LOWEST_P, LOWEST_PP, BY_LEAST, HANGS = range(FLOOR + 1, FLOOR + 8)
 # Of the interior point: slack below the strength and above the smallest pull, their multipliers,
 # the inverse of the diagonal of the Hessian, right-hand side, coupling with s; then the steps of
 # the pull, of both slacks and of both multipliers.
@@ -266,23 +267,38 @@ def write_wrenches(pose: Pose) -> None:
             c[WRENCH + k, i] = factor * (c[LEVEL + k, i] + c[LIFT + k, i] * c[V_P, i])
 
 
-@element
-def smallest_pull(pose: Pose, i: int, scaled_c: float) -> tuple[float, float]:
-    """Return the smallest scaled pull of a cable, and its rise per scaled c.
+@kernel
+def choose_bounds(pose: Pose, scaled_c: float) -> None:
+    """Tell of each cable whether its least tension or its sag sets its smallest pull.
 
-    Of the line that touches the least tension in the cable at the present pull, or what keeps its
-    sag, whichever is more at a scaled c. Where any sag is allowed it is the line alone: a change
-    between the two within a step costs poses near the border.
+    Which of them is more, at a scaled c; where any sag is allowed the least tension. It stays so
+    for a step: a change within one costs poses near the border.
     """
+    c = pose.cables
+    for i in range(c.shape[1]):
+        c[BY_LEAST, i] = 0.0
+        if c[LEAST, i] > 0.0:
+            low, low_c = _line_of_least(pose, i)
+            is_more = (low + low_c * scaled_c) * c[UNIT, i] >= c[FLOOR, i]
+            c[BY_LEAST, i] = 1.0 if is_more or c[FLOOR, i] <= PULL_FLOOR else 0.0
+
+
+@element
+def smallest_pull(pose: Pose, i: int) -> tuple[float, float]:
+    """Return the smallest scaled pull and its rise per scaled c, as `choose_bounds` has it."""
+    c = pose.cables
+    if c[BY_LEAST, i] > 0.0:
+        return _line_of_least(pose, i)
+    return c[FLOOR, i] / c[UNIT, i], 0.0
+
+
+@element
+def _line_of_least(pose: Pose, i: int) -> tuple[float, float]:
+    """Return the line in c that touches the least tension in the cable at the present pull."""
     c, scale = pose.cables, pose.scale
-    floor = c[FLOOR, i] / c[UNIT, i]
-    if c[LEAST, i] > 0.0:
-        slope = c[LOWEST_P, i] * c[UNIT, i]
-        low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
-        low = c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope
-        if low + low_c * scaled_c >= floor or c[FLOOR, i] == PULL_FLOOR:
-            return low, low_c
-    return floor, 0.0
+    slope = c[LOWEST_P, i] * c[UNIT, i]
+    low_c = c[LEAST, i] * scale[FORCE] / (scale[SIZE] * slope)
+    return c[P, i] / c[UNIT, i] - c[LOWEST, i] / slope, low_c
 
 
 @kernel

@@ -53,6 +53,7 @@ from designer.kernel.pose import (
     Pose,
     along,
     asked,
+    choose_bounds,
     limit_sag,
     linearise,
     make_straight,
@@ -193,7 +194,8 @@ def massless(pose: Pose, lp: Programme) -> tuple[float, bool]:
     n = c.shape[1]
     ask = Ask(0.0, 1.0, 1.0, 0.0)
     make_straight(pose, 0.0)
-    _write_programme(lp, pose, ask, 0.0)
+    choose_bounds(pose, 0.0)
+    _write_programme(lp, pose, ask)
     if not choose_basis(lp):
         return 0.0, False
     if maximise(lp) != OPTIMAL:
@@ -216,7 +218,8 @@ def _walk(pose: Pose, lp: Programme, ask: Ask, scratch: Scratch) -> tuple[float,
     s = float(lp.z[n])  # of straight cables
     make_straight(pose, 0.5)
     for iteration in range(_MOST_STEPS):
-        _write_programme(lp, pose, ask, s)
+        choose_bounds(pose, ask.c_0 + s * ask.c_s)
+        _write_programme(lp, pose, ask)
         if not rebuild(lp) or maximise(lp) != OPTIMAL:
             return s, np.inf
         before, s = s, float(lp.z[n])
@@ -257,8 +260,8 @@ def _pull(pose: Pose, lp: Programme, ask: Ask, is_first: bool) -> float:
 
 
 @element
-def _write_programme(lp: Programme, pose: Pose, ask: Ask, s: float) -> None:
-    """Write the linearised pose, about s, as a linear programme in the rooms below the strengths.
+def _write_programme(lp: Programme, pose: Pose, ask: Ask) -> None:
+    """Write the linearised pose as a linear programme in the rooms below the strengths.
 
     The scaled pulls are y = u + s u' - z with u + s u' the pull at which the linearised top tension
     reaches its limit.
@@ -269,7 +272,7 @@ def _write_programme(lp: Programme, pose: Pose, ask: Ask, s: float) -> None:
         hangs = c[HANGS, i] > 0.0
         rest, slope = _tension_line(c, i)
         reach = 1.0 / (slope * c[UNIT, i])
-        low, low_c = smallest_pull(pose, i, ask.c_0 + s * ask.c_s)
+        low, low_c = smallest_pull(pose, i)
         top = (ask.f_0 * c[STRENGTH, i] - rest) * reach
         top_s = ask.f_s * c[STRENGTH, i] * reach
         # The pull of a hanging cable is settled elsewhere: here it is a part of the load.

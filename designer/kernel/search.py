@@ -190,7 +190,7 @@ def _begin_beside(
 def _slacken(pose: Pose, ask: Ask, s: float, i: int, p: float) -> None:
     """Set a pull, above the smallest that the cable has to keep."""
     scaled_c = max(ask.c_0 + s * ask.c_s, 0.0)
-    low, low_c = smallest_pull(pose, i, scaled_c)
+    low, low_c = smallest_pull(pose, i)
     least = low + low_c * scaled_c
     pose.cables[P, i] = max(p, _ABOVE_LEAST * least * pose.cables[UNIT, i])
 
