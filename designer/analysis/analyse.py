@@ -41,7 +41,14 @@ from designer.sizing.loop import LoopSizing, size_by_loop
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import MasslessStatics, solve_massless
 from designer.statics.rest import RestingPlaces, resting_places
-from designer.study import Study, as_built_by, require_answerable, require_enough_cables
+from designer.study import (
+    Selection,
+    Study,
+    Workspace,
+    as_built_by,
+    require_answerable,
+    require_enough_cables,
+)
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_pose, section_of_workspace
@@ -359,21 +366,7 @@ def analyse(
                 progress=advance,
             )
     if study.workspace is not None and study.selection is not None:
-        chosen = select(
-            built.robot,
-            study.workspace,
-            study.selection,
-            catalogue.grades,
-            built=built,
-            load_cases=study.load_cases,
-            reporter=reporter,
-            proof_s=0.0 if study.selection.groups else study.workspace.proof_s,
-        )
-        if study.selection.groups:
-            grades, single = catalogue.grades, chosen.chosen
-            groups = choose_groups_of(
-                study.workspace, study.selection, grades, built, single, reporter
-            )
+        chosen, groups = _ropes(study, study.workspace, study.selection, built, catalogue, reporter)
     needs = family_needs(study, built, reporter)
     qualities = None
     if study.workspace is not None and workspace is not None:
@@ -403,6 +396,31 @@ def analyse(
         uncertainty_of(study, chosen, built, reporter) if explains else None,
         scratch,
     )
+
+
+def _ropes(
+    study: Study,
+    workspace: Workspace,
+    selection: Selection,
+    built: AsBuilt,
+    catalogue: Catalogue,
+    reporter: Reporter,
+) -> tuple[SelectionResult, GroupChoice | None]:
+    """Select one rope for all cables and, where the study has groups, one for each."""
+    chosen = select(
+        built.robot,
+        workspace,
+        selection,
+        catalogue.grades,
+        built=built,
+        load_cases=study.load_cases,
+        reporter=reporter,
+        proof_s=0.0 if selection.groups else workspace.proof_s,
+    )
+    if not selection.groups:
+        return chosen, None
+    grades, single = catalogue.grades, chosen.chosen
+    return chosen, choose_groups_of(workspace, selection, grades, built, single, reporter)
 
 
 def _servable(

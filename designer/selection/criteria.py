@@ -86,75 +86,79 @@ class Criterion:
 
 def criteria_of(robot: Robot, workspace: Workspace, selection: Selection | None) -> list[Criterion]:
     """Return what a study asks of the equilibria of every load case beside strength."""
-    least_N = robot.tension_min_N
-    criteria = [
-        Criterion(
-            id="least_tension",
-            title="Slack",
-            formula="least tension anywhere in a cable ≥ the least that the study requires",
-            source=f"robot.tension_min; {WHERE}",
-            unit="N",
-            quantity=lambda _, statics: statics.least_tension_N,
-            limits=(least_N,),
-            kind="at_least" if least_N > 0.0 else "above",
-        ),
-        Criterion(
-            id="stability",
-            title="Stability",
-            formula="smallest stiffness of the platform, cables of fixed length > 0",
-            source=f"the potential energy has a minimum; {WHERE}",
-            unit="N/m",
-            quantity=_stiffness_N_per_m,
-            limits=(0.0,),
-            kind="above",
-        ),
-    ]
     sag_max = robot.family_sag_max if selection is None else robot.sag_max
+    of_cables = _of_cables(robot.tension_min_N, sag_max)
+    return [
+        *of_cables,
+        *_of_workspace(workspace),
+        *(() if selection is None else _of_limits(selection)),
+    ]
+
+
+def _of_cables(least_N: float, sag_max: float | None) -> Iterator[Criterion]:
+    """Yield what is asked of the cables whatever the region, and of the platform they hold."""
+    yield Criterion(
+        id="least_tension",
+        title="Slack",
+        formula="least tension anywhere in a cable ≥ the least that the study requires",
+        source=f"robot.tension_min; {WHERE}",
+        unit="N",
+        quantity=lambda _, statics: statics.least_tension_N,
+        limits=(least_N,),
+        kind="at_least" if least_N > 0.0 else "above",
+    )
+    yield Criterion(
+        id="stability",
+        title="Stability",
+        formula="smallest stiffness of the platform, cables of fixed length > 0",
+        source=f"the potential energy has a minimum; {WHERE}",
+        unit="N/m",
+        quantity=_stiffness_N_per_m,
+        limits=(0.0,),
+        kind="above",
+    )
     if sag_max is not None:
-        criteria.append(
-            Criterion(
-                id="sag",
-                title="Sag",
-                formula="largest distance of a cable from its chord ≤ this share of the chord",
-                source=f"workspace.sag; {WHERE}",
-                unit="",
-                quantity=lambda _, statics: sag_ratio(statics),
-                limits=(sag_max,),
-                kind="at_most",
-            )
+        yield Criterion(
+            id="sag",
+            title="Sag",
+            formula="largest distance of a cable from its chord ≤ this share of the chord",
+            source=f"workspace.sag; {WHERE}",
+            unit="",
+            quantity=lambda _, statics: sag_ratio(statics),
+            limits=(sag_max,),
+            kind="at_most",
         )
+
+
+def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
+    """Yield what is asked of where the cables run."""
     if workspace.floor_m is not None:
-        criteria.append(
-            Criterion(
-                id="floor",
-                title="Floor",
-                formula="lowest point of a cable ≥ height of the floor",
-                source=f"workspace.floor; {WHERE}",
-                unit="m",
-                quantity=lambda _, statics: statics.lowest_m,
-                limits=(workspace.floor_m,),
-                kind="at_least",
-                at_rest_after_loss=True,
-            )
+        yield Criterion(
+            id="floor",
+            title="Floor",
+            formula="lowest point of a cable ≥ height of the floor",
+            source=f"workspace.floor; {WHERE}",
+            unit="m",
+            quantity=lambda _, statics: statics.lowest_m,
+            limits=(workspace.floor_m,),
+            kind="at_least",
+            at_rest_after_loss=True,
         )
     if workspace.clearance_m is not None:
-        criteria.append(
-            Criterion(
-                id="clearance",
-                title="Clearance",
-                formula="smallest distance, axis to axis ≥ the clearance that the study requires",
-                source=f"workspace.clearance; {WHERE}",
-                unit="m",
-                quantity=lambda _, statics: smallest_clearance(statics).distance_m[:, None],
-                limits=(workspace.clearance_m,),
-                kind="at_least",
-                at_rest_after_loss=True,
-                detail=lambda statics: " and ".join(
-                    names_of(tuple(smallest_clearance(statics).pair[0]))
-                ),
-            )
+        yield Criterion(
+            id="clearance",
+            title="Clearance",
+            formula="smallest distance, axis to axis ≥ the clearance that the study requires",
+            source=f"workspace.clearance; {WHERE}",
+            unit="m",
+            quantity=lambda _, statics: smallest_clearance(statics).distance_m[:, None],
+            limits=(workspace.clearance_m,),
+            kind="at_least",
+            at_rest_after_loss=True,
+            detail=lambda statics: " and ".join(
+                names_of(tuple(smallest_clearance(statics).pair[0]))
+            ),
         )
-    return criteria + ([] if selection is None else list(_of_limits(selection)))
 
 
 def _of_limits(selection: Selection) -> Iterator[Criterion]:
