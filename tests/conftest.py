@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,19 @@ from designer.model.cable import Material
 from designer.model.robot import Platform, Robot
 from designer.plugins import examine
 from designer.study import Workspace
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Make the cases slow that come after those of ``cases_by_default``."""
+    cases: Counter[str] = Counter()
+    for item in items:
+        marker = item.get_closest_marker("cases_by_default")
+        if marker is not None:
+            test = item.nodeid.partition("[")[0]
+            cases[test] += 1
+            if cases[test] > marker.args[0]:
+                item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

@@ -34,6 +34,7 @@ def into_closed_pipe(*arguments: str) -> subprocess.CompletedProcess[bytes]:
 buffered = pytest.mark.parametrize("unbuffered", ["", "1"], ids=["buffered", "unbuffered"])
 
 
+@pytest.mark.cases_by_default(4)
 @posix
 @buffered
 @pytest.mark.parametrize(
@@ -153,6 +154,7 @@ def test_a_request_to_end_does_not_unwind_a_library_that_is_half_loaded(
 NOTE = "from designer.cli.terminal import print_left_out; print_left_out(['a note'])"
 
 
+@pytest.mark.cases_by_default(3)
 @posix
 @buffered
 @pytest.mark.parametrize(
@@ -207,6 +209,7 @@ def test_a_fault_of_the_program_is_one_line_and_no_answer(tmp_path: Path, error:
     assert "Traceback" in kept.read_text()
 
 
+@pytest.mark.cases_by_default(1)
 @posix
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
 @pytest.mark.parametrize("command", [("size", "none.yaml"), ("siez",), ("catalog", "show", "none")])

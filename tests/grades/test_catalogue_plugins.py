@@ -59,6 +59,7 @@ def test_a_plugin_may_give_files_and_grades_made_in_python(site, tmp_path):
     }
 
 
+@pytest.mark.cases_by_default(5)
 @pytest.mark.parametrize(
     ("name", "code", "words"),
     [
@@ -205,6 +206,7 @@ def test_a_faulty_grade_is_left_out_and_its_neighbours_stay(site, tmp_path):
     assert CatalogueSource("acme-half", "acme-half 1.2", 1) in catalogue.sources
 
 
+@pytest.mark.cases_by_default(2)
 @pytest.mark.parametrize(
     ("change", "words"),
     [

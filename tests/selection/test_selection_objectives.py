@@ -72,6 +72,7 @@ def grades():
     ]
 
 
+@pytest.mark.cases_by_default(3)
 @pytest.mark.parametrize(
     ("objectives", "grade"),
     [

@@ -157,6 +157,7 @@ def test_several_extremes_are_found_in_one_search() -> None:
     assert np.array([one.place for one in found]) == pytest.approx(peaks, abs=1e-6)
 
 
+@pytest.mark.cases_by_default(2)
 @pytest.mark.parametrize(
     ("curved", "level"),
     [(0, 5.0), (1, 5.0), (2, 5.0), (0, -5.0)],
