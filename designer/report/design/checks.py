@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
 
 from designer.analysis.governing import GoverningPose
 from designer.model.requirement import Requirement, State
@@ -58,8 +60,20 @@ def _picture(pose: GoverningPose) -> Picture:
     return scene(caption, "The robot in the governing pose, in space", drawn, kind="space")
 
 
-def unmet_statement(requirement: Requirement) -> Statement:
-    """Return what the first page says of a requirement that fails or is open."""
+def alike(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
+    """Return the same requirements of all load cases together, those in one state, by order."""
+    groups: dict[tuple[str, State], list[Requirement]] = {}
+    for requirement in requirements:
+        groups.setdefault((requirement.title, requirement.state), []).append(requirement)
+    return list(groups.values())
+
+
+def unmet_statement(same: Sequence[Requirement]) -> Statement:
+    """Return what the first page says of a requirement that fails or is open in load cases.
+
+    With the figures where it is furthest from holding.
+    """
+    requirement = max(same, key=lambda each: np.nan_to_num(each.utilisation))
     is_open = requirement.state is State.OPEN
     parts = [f"{fmt.capital(requirement.formula)}"]
     if math.isfinite(requirement.demand) and math.isfinite(requirement.capacity):
@@ -69,6 +83,9 @@ def unmet_statement(requirement: Requirement) -> Statement:
         )
         parts.append(f"demand {demand}, capacity {capacity}")
     parts += filter(None, [requirement.remark, _where(requirement)])
+    others = [f"'{each.load_case}'" for each in same if each is not requirement]
+    if others:
+        parts.append(f"nor in {fmt.listing(others)}")
     state = "is not known to hold" if is_open else "does not hold"
     title = f"{requirement.title} {state}"
     return Statement(title, f"{'; '.join(parts)}.", "doubt" if is_open else "bad")
@@ -80,6 +97,9 @@ STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not 
 
 
 def _table(requirements: tuple[Requirement, ...]) -> Table:
+    by_title: dict[str, list[Requirement]] = {}
+    for requirement in requirements:
+        by_title.setdefault(requirement.title, []).append(requirement)
     columns = (
         *("Requirement", "Formula and source", Column("Demand"), Column("Capacity")),
         *(Column("Utilisation"), "Where", "State"),
@@ -88,7 +108,8 @@ def _table(requirements: tuple[Requirement, ...]) -> Table:
         Row(
             (
                 requirement.title,
-                f"{fmt.capital(requirement.formula)} ({requirement.source}).",
+                # Once, in the first of the load cases.
+                "" if number else f"{fmt.capital(requirement.formula)} ({requirement.source}).",
                 value_words(requirement.demand, requirement.unit),
                 value_words(requirement.capacity, requirement.unit),
                 "–"
@@ -99,9 +120,11 @@ def _table(requirements: tuple[Requirement, ...]) -> Table:
             ),
             _TONES[requirement.state],
         )
-        for requirement in requirements
+        for same in by_title.values()
+        for number, requirement in enumerate(same)
     ]
-    return Table.of("All that the study asks for, in every load case.", columns, *rows)
+    caption = "All that the study asks for, in every load case."
+    return Table.of(caption, columns, *rows, kind="long")
 
 
 def value_words(value: float, unit: str) -> str:

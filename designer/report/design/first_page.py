@@ -10,9 +10,10 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.arrays import FloatArray
 from designer.model.load_case import STATIC
-from designer.model.requirement import Answer, Requirement, State
+from designer.model.requirement import Answer, State
 from designer.report import format as fmt
 from designer.report.blocks import Block, Fact, Facts, Picture, Statement
+from designer.report.design.checks import alike
 from designer.report.design.confidence import confidence
 from designer.report.design.groups import groups_hold, groups_statement
 from designer.report.design.negative import actions, reasons
@@ -110,16 +111,22 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
     if analysis.answer is Answer.YES:
         return Statement("Yes", text, "good")
     if analysis.chosen is not None or analysis.has_groups:
-        unmet = fmt.listing(dict.fromkeys(_unmet_words(each) for each in analysis.unmet))
-        text += f" But {unmet}."
+        text += f" But {_unmet_words(analysis)}."
     is_no = analysis.answer is Answer.NO
     return Statement("No", text, "bad") if is_no else Statement("Open", text, "doubt")
 
 
-def _unmet_words(requirement: Requirement) -> str:
-    state = "is not known to hold" if requirement.state is State.OPEN else "does not hold"
-    case = "" if requirement.load_case in ("all", STATIC.name) else f" in '{requirement.load_case}'"
-    return f"{requirement.title[0].lower()}{requirement.title[1:]} {state}{case}"
+def _unmet_words(analysis: Analysis) -> str:
+    """Return what does not hold, each requirement once with its load cases."""
+    parts = []
+    for same in alike(analysis.unmet):
+        first = same[0]
+        state = "is not known to hold" if first.state is State.OPEN else "does not hold"
+        named = dict.fromkeys(f"'{each.load_case}'" for each in same)
+        is_alone = named.keys() <= {"'all'", f"'{STATIC.name}'"}
+        cases = "" if is_alone else f" in {fmt.listing(named)}"
+        parts.append(f"{first.title[0].lower()}{first.title[1:]} {state}{cases}")
+    return fmt.listing(parts)
 
 
 def _summary(analysis: Analysis) -> str:
@@ -222,7 +229,7 @@ def _no_family(analysis: Analysis) -> str:
         return f"No cable of the configured family holds every pose in the load case '{name}'."
     if workspace is not None and not workspace.is_feasible:
         return "The workspace is not served: no cable of the configured family holds every pose."
-    unmet = fmt.listing(dict.fromkeys(_unmet_words(each) for each in analysis.unmet))
+    unmet = _unmet_words(analysis)
     if workspace is None or workspace.sagging is None:
         return f"{fmt.capital(unmet)}."
     diameter = fmt.millimetres(workspace.sagging.diameter_m)

@@ -169,7 +169,7 @@ def _statement(chosen: Candidate | None) -> Statement:
         f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
         f"{fmt.utilisation(most.utilisation)} with the platform at {where}{words}."
     )
-    return Statement("The chosen rope holds in every load case", text, "good")
+    return Statement("The chosen rope is strong enough in every load case", text, "good")
 
 
 def _asked(study: Study) -> Table:

@@ -10,7 +10,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.blocks import Statement, Tone
-from designer.report.design.checks import unmet_statement
+from designer.report.design.checks import alike, unmet_statement
 from designer.report.design.groups import groups_statement
 from designer.report.design.load_cases import carried_away
 from designer.workspace.result import WorkspaceMap
@@ -22,17 +22,19 @@ _LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     """Yield why the answer is not yes, one statement for each part; nothing if it is."""
-    for requirement in analysis.unmet:
+    for same in alike(analysis.unmet):
+        requirement = same[0]
         if requirement.id == "pose" and requirement.place is not None:
             where = fmt.position(requirement.place[:3])
             text = f"At {where} {requirement.remark}."
             yield Statement("The configured pose", text, _tone(requirement))
         elif requirement.id == "workspace":
-            yield _workspace_statement(analysis, findings, requirement)
+            for each in same:
+                yield _workspace_statement(analysis, findings, each)
         elif requirement.id == "rope":
             yield from _rope_statements(analysis, requirement)
         else:
-            yield unmet_statement(requirement)
+            yield unmet_statement(same)
     if not analysis.is_positive:
         yield from carried_away(findings)
 
