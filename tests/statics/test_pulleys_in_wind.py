@@ -55,7 +55,11 @@ def points_m(statics: Statics) -> FloatArray:
     return np.asarray(statics.run.exit_points_m @ statics.robot.upright)
 
 
-@pytest.mark.parametrize(("make", "count"), [(three_ropes, 120), (six_ropes, 80)])
+@pytest.mark.cases_by_default(2)
+@pytest.mark.parametrize(
+    ("make", "count"),
+    [(three_ropes, 30), (six_ropes, 15), (three_ropes, 120), (six_ropes, 80)],
+)
 def test_random_poses_against_a_solver_in_world_axes(make, count: int) -> None:
     rng, compared = np.random.default_rng(3), 0
     while compared < count:
