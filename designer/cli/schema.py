@@ -56,8 +56,11 @@ def write_with_schema(study: Path, text: str) -> None:
 
 
 def _text(no_plugins: bool) -> str:
+    from designer.cli.terminal import print_left_out
     from designer.effects.load import load_effects
     from designer.io.config.json_schema import schema_text
     from designer.plugins.find import find_plugins
 
-    return schema_text(load_effects(find_plugins(with_plugins=not no_plugins)).by_id)
+    effects = load_effects(find_plugins(with_plugins=not no_plugins))
+    print_left_out(effects.problems)
+    return schema_text(effects.by_id)

@@ -14,6 +14,7 @@ from twins.robots import YARD3
 
 from designer import effects
 from designer.cli.commands import main
+from designer.cli.schema import schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
 from designer.effects.known import KnownEffects
@@ -295,6 +296,14 @@ def test_a_plugin_that_fails_is_one_line(site, code, words) -> None:
     assert problem.startswith("plugin acme-fails (acme-fails 1.2)")
     assert words in problem
     assert known().by_id == SHIPPED.by_id
+
+
+def test_the_schema_says_which_plugin_it_leaves_out(site, capsys) -> None:
+    install_plugin(site, "acme-fails", hook("raise KeyError('x')", "register_effects"))
+    schema()
+    printed = capsys.readouterr()
+    assert printed.err.startswith("plugin acme-fails (acme-fails 1.2) fails in register_effects()")
+    assert '"drum_layering"' in printed.out
 
 
 def test_one_id_of_two_plugins_keeps_the_first(site) -> None:
