@@ -38,6 +38,8 @@ class Criterion:
     kind : str
         Whether the quantity may be ``at_most``, or has to be ``at_least`` or ``above`` the limit,
         or ``outside`` the band.
+    has_ratio : bool
+        Whether demand over capacity means anything.
     at_rest_after_loss : bool
         Whether it is asked of the state after the loss of a cable as well.
     detail : callable or None
@@ -52,6 +54,7 @@ class Criterion:
     quantity: Callable[[Loaded, Statics], FloatArray]
     limits: tuple[float, ...]
     kind: Literal["at_most", "at_least", "above", "outside"]
+    has_ratio: bool = True
     at_rest_after_loss: bool = False
     detail: Callable[[Statics], str] | None = None
 
@@ -78,7 +81,7 @@ class Criterion:
         if self.kind == "above":
             return limit, quantity, math.nan, quantity > limit
         holds = quantity >= limit - ROUNDING * abs(limit)
-        if self.unit == "m" and self.id == "floor":  # heights make no ratio
+        if not self.has_ratio:
             return limit, quantity, math.nan, holds
         used = limit / quantity if quantity > 0.0 else math.inf if limit > 0.0 else math.nan
         return limit, quantity, min(used, 1.0) if holds else used, holds
@@ -142,6 +145,7 @@ def _of_workspace(workspace: Workspace) -> Iterator[Criterion]:
             quantity=lambda _, statics: statics.lowest_m,
             limits=(workspace.floor_m,),
             kind="at_least",
+            has_ratio=False,  # heights make none
             at_rest_after_loss=True,
         )
     if workspace.clearance_m is not None:

@@ -60,12 +60,22 @@ def _picture(pose: GoverningPose) -> Picture:
     return scene(caption, "The robot in the governing pose, in space", drawn, kind="space")
 
 
-def alike(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
-    """Return the same requirements of all load cases together, those in one state, by order."""
-    groups: dict[tuple[str, State], list[Requirement]] = {}
+def by_title(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
+    """Return the same requirement of all load cases together, in the order of the first."""
+    groups: dict[str, list[Requirement]] = {}
     for requirement in requirements:
-        groups.setdefault((requirement.title, requirement.state), []).append(requirement)
+        groups.setdefault(requirement.title, []).append(requirement)
     return list(groups.values())
+
+
+def unmet_by_title(requirements: Iterable[Requirement]) -> list[list[Requirement]]:
+    """Return what does not hold, together by title: first what fails, then what is not known."""
+    unmet = list(requirements)
+    return [
+        same
+        for state in (State.FAILS, State.OPEN)
+        for same in by_title(each for each in unmet if each.state is state)
+    ]
 
 
 def unmet_statement(same: Sequence[Requirement]) -> Statement:
@@ -83,23 +93,22 @@ def unmet_statement(same: Sequence[Requirement]) -> Statement:
         )
         parts.append(f"demand {demand}, capacity {capacity}")
     parts += filter(None, [requirement.remark, _where(requirement)])
-    others = [f"'{each.load_case}'" for each in same if each is not requirement]
+    others = {f"'{each.load_case}'": None for each in same}
+    others.pop(f"'{requirement.load_case}'")
     if others:
         parts.append(f"nor in {fmt.listing(others)}")
-    state = "is not known to hold" if is_open else "does not hold"
-    title = f"{requirement.title} {state}"
+    title = f"{requirement.title} {UNMET[requirement.state]}"
     return Statement(title, f"{'; '.join(parts)}.", "doubt" if is_open else "bad")
 
 
+UNMET = {State.FAILS: "does not hold", State.OPEN: "is not known to hold"}
+"""As a sentence has it."""
 _TONES: dict[State, Tone] = {State.HOLDS: "", State.OPEN: "doubt", State.FAILS: "bad"}
 STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not hold"}
-"""As a reader is told of them."""
+"""As a table has it."""
 
 
 def _table(requirements: tuple[Requirement, ...]) -> Table:
-    by_title: dict[str, list[Requirement]] = {}
-    for requirement in requirements:
-        by_title.setdefault(requirement.title, []).append(requirement)
     columns = (
         *("Requirement", "Formula and source", Column("Demand"), Column("Capacity")),
         *(Column("Utilisation"), "Where", "State"),
@@ -120,7 +129,7 @@ def _table(requirements: tuple[Requirement, ...]) -> Table:
             ),
             _TONES[requirement.state],
         )
-        for same in by_title.values()
+        for same in by_title(requirements)
         for number, requirement in enumerate(same)
     ]
     caption = "All that the study asks for, in every load case."

@@ -10,10 +10,10 @@ from designer.analysis.analyse import Analysis
 from designer.analysis.findings import Findings
 from designer.arrays import FloatArray
 from designer.model.load_case import STATIC
-from designer.model.requirement import Answer, State
+from designer.model.requirement import Answer
 from designer.report import format as fmt
 from designer.report.blocks import Block, Fact, Facts, Picture, Statement
-from designer.report.design.checks import alike
+from designer.report.design.checks import UNMET, unmet_by_title
 from designer.report.design.confidence import confidence
 from designer.report.design.groups import groups_hold, groups_statement
 from designer.report.design.negative import actions, reasons
@@ -119,13 +119,12 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
 def _unmet_words(analysis: Analysis) -> str:
     """Return what does not hold, each requirement once with its load cases."""
     parts = []
-    for same in alike(analysis.unmet):
+    for same in unmet_by_title(analysis.unmet):
         first = same[0]
-        state = "is not known to hold" if first.state is State.OPEN else "does not hold"
         named = dict.fromkeys(f"'{each.load_case}'" for each in same)
         is_alone = named.keys() <= {"'all'", f"'{STATIC.name}'"}
         cases = "" if is_alone else f" in {fmt.listing(named)}"
-        parts.append(f"{first.title[0].lower()}{first.title[1:]} {state}{cases}")
+        parts.append(f"{first.title[0].lower()}{first.title[1:]} {UNMET[first.state]}{cases}")
     return fmt.listing(parts)
 
 

@@ -10,7 +10,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.blocks import Statement, Tone
-from designer.report.design.checks import alike, unmet_statement
+from designer.report.design.checks import unmet_by_title, unmet_statement
 from designer.report.design.groups import groups_statement
 from designer.report.design.load_cases import carried_away
 from designer.workspace.result import WorkspaceMap
@@ -22,7 +22,7 @@ _LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 def reasons(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     """Yield why the answer is not yes, one statement for each part; nothing if it is."""
-    for same in alike(analysis.unmet):
+    for same in unmet_by_title(analysis.unmet):
         requirement = same[0]
         if requirement.id == "pose" and requirement.place is not None:
             where = fmt.position(requirement.place[:3])
