@@ -1,0 +1,212 @@
+"""Each effect on readings and on the machine, against its law written out for a few rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from designer.effects.effect import Effect, Readings
+from designer.effects.registry import SHIPPED
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
+from designer.model.machine import Machine
+from designer.model.measured_data import Measured
+from designer.model.robot import Platform, Poses, Robot
+
+CABLE = Cable(0.01, 0.4, 5e6, 12e3)
+EXIT_POINTS_M = np.array([[0.0, 0.0, 10.0], [20.0, 0.0, 12.0], [8.0, 15.0, 11.0]])
+POSITION_M = np.array([[9.0, 5.0, 3.0], [10.0, 6.0, 2.0], [8.0, 4.0, 4.0]])
+LENGTH_M = np.array([[12.0, 15.0, 13.0], [13.0, 14.0, 13.0], [11.0, 15.5, 14.0]])
+TENSION_N = np.array([[900.0, 700.0, 1100.0], [950.0, 720.0, 1000.0], [870.0, 800.0, 1200.0]])
+TIME_S = np.array([0.0, 90.0, 900.0])
+TEMPERATURE_C = np.array([20.0, 30.0, 5.0])
+
+
+@pytest.fixture
+def machine() -> Machine:
+    return Machine(Robot(EXIT_POINTS_M, Platform(150.0)), CABLE)
+
+
+@pytest.fixture
+def measured() -> Measured:
+    return Measured(
+        Poses.at(POSITION_M), LENGTH_M, TENSION_N, True, time_s=TIME_S, temperature_C=TEMPERATURE_C
+    )
+
+
+def effect_of(machine: Machine, name: str, cable: int = 1) -> Effect:
+    variants = SHIPPED.by_id[name].on(machine)
+    return variants[cable - 1] if len(variants) > 1 else variants[0]
+
+
+def with_values(effect: Effect, **values: float) -> Mapping[str, float]:
+    assert set(values) <= set(effect.neutral)
+    return effect.neutral | values
+
+
+def readings_of(
+    machine: Machine, measured: Measured, name: str, cable: int = 1, **values: float
+) -> Readings:
+    effect = effect_of(machine, name, cable)
+    assert effect.on_readings is not None
+    return effect.on_readings(
+        Readings(LENGTH_M, TENSION_N), with_values(effect, **values), measured
+    )
+
+
+def machine_with(machine: Machine, name: str, cable: int = 1, **values: float) -> Machine:
+    effect = effect_of(machine, name, cable)
+    assert effect.on_machine is not None
+    return effect.on_machine(machine, with_values(effect, **values))
+
+
+def test_pulley_friction_lowers_what_the_winch_feels_while_it_pays_out(machine, measured):
+    tension = readings_of(machine, measured, "pulley_friction", coefficient=0.1).tension_N
+    paying_out = np.array([[0, 0, 0], [1, -1, 0], [-1, 1, 1]])
+    assert tension == pytest.approx(TENSION_N * np.exp(-0.1 * paying_out), rel=1e-12)
+
+
+def test_creep_takes_unstrained_length_from_the_winch_by_the_decade(machine, measured):
+    length = readings_of(machine, measured, "creep", strain_per_decade=0.01, onset_s=10.0).length_m
+    decades = [[0.0], [1.0], [math.log10(91.0)]]
+    assert length == pytest.approx(LENGTH_M / (1.0 + 0.01 * np.array(decades)), rel=1e-12)
+
+
+def test_thermal_expansion_counts_from_20_degrees(machine, measured):
+    length = readings_of(machine, measured, "thermal_expansion", coefficient_per_K=1e-3).length_m
+    growth = [[1.0], [1.01], [0.985]]
+    assert length == pytest.approx(LENGTH_M / np.array(growth), rel=1e-12)
+
+
+def test_drum_layering_integrates_what_a_turn_pays_out(machine, measured):
+    gain, reference_m = 0.01, 13.0
+    values = {f"reference_{k}_m": reference_m for k in (1, 2, 3)}
+    counted = readings_of(
+        machine, measured, "drum_layering", radius_gain_per_m=gain, **values
+    ).length_m
+    # Counted length from the reference on, by quadrature of its inverse rate.
+    for true_m, shown_m in zip(LENGTH_M.flat, counted.flat, strict=True):
+        lengths = np.linspace(reference_m, true_m, 2001)
+        rate = 1.0 / (1.0 + gain * (reference_m - lengths))
+        assert shown_m == pytest.approx(reference_m + np.trapezoid(rate, lengths), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "length", "tension"),
+    [
+        ("drum_scale", {"scale": 1.01}, LENGTH_M * 1.01, TENSION_N),
+        ("length_offset", {"offset_2_m": 0.3}, LENGTH_M + np.array([0.0, 0.3, 0.0]), TENSION_N),
+        ("tension_bias", {"offset_3_N": -5.0}, LENGTH_M, TENSION_N + np.array([0.0, 0.0, -5.0])),
+        ("tension_length", {"compliance_m_per_N": 1e-4}, LENGTH_M + 1e-4 * TENSION_N, TENSION_N),
+    ],
+)
+def test_sensors_and_winches(machine, measured, name, values, length, tension):
+    readings = readings_of(machine, measured, name, **values)
+    assert readings.length_m == pytest.approx(length, rel=1e-12)
+    assert readings.tension_N == pytest.approx(tension, rel=1e-12)
+
+
+def test_a_wrong_gain_is_that_of_its_own_cable(machine, measured):
+    tension = readings_of(machine, measured, "tension_gain", cable=2, gain=1.1).tension_N
+    assert tension == pytest.approx(TENSION_N * [1.0, 1.1, 1.0], rel=1e-12)
+
+
+def parabola(row: int, cable: int) -> tuple[float, float]:
+    """Return the level force and the tension half way of a parabola, by bisection on the former.
+
+    The upward force at the exit point is H D / X + w c / 2 with the chord c, its level part X and
+    its drop D; with H it makes the tension there.
+    """
+    exit_point, weight = (
+        EXIT_POINTS_M[cable],
+        CABLE.linear_density_kg_per_m * STANDARD_GRAVITY_M_PER_S2,
+    )
+    chord = POSITION_M[row] - exit_point
+    level_m, drop_m = math.hypot(chord[0], chord[1]), -chord[2]
+    low, high = 0.0, TENSION_N[row, cable]
+    for _ in range(200):
+        force = 0.5 * (low + high)
+        upward = force * drop_m / level_m + 0.5 * weight * np.linalg.norm(chord)
+        low, high = (
+            (force, high) if math.hypot(force, upward) < TENSION_N[row, cable] else (low, force)
+        )
+    return force, TENSION_N[row, cable] - 0.5 * weight * drop_m
+
+
+def test_stiffening_adds_strain_at_the_tension_half_way(machine, measured):
+    values = {"toe_strain": 0.004, "toe_tension_N": 500.0}
+    length = readings_of(machine, measured, "stiffening", **values).length_m
+    for row, cable in np.ndindex(3, 3):
+        _, mean_N = parabola(row, cable)
+        stretch = 1.0 + mean_N / CABLE.axial_stiffness_N
+        strain = 0.004 * (1.0 - math.exp(-mean_N / 500.0))
+        expected = LENGTH_M[row, cable] * stretch / (stretch + strain)
+        assert length[row, cable] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_mast_gives_way_along_the_level_pull(machine, measured):
+    compliance = 1e-6
+    readings = readings_of(machine, measured, "mast_compliance", compliance_m_per_N=compliance)
+    for row, cable in np.ndindex(3, 3):
+        force_N, _ = parabola(row, cable)
+        shorter = compliance * force_N * force_N / TENSION_N[row, cable]
+        assert readings.length_m[row, cable] == pytest.approx(
+            LENGTH_M[row, cable] - shorter, rel=1e-9
+        )
+    # Straight cables to the moved exit points, with the tensions found, pull as before.
+    for row in range(3):
+        chords = EXIT_POINTS_M - POSITION_M[row]
+        directions = chords / np.linalg.norm(chords, axis=1)[:, None]
+        levels = -chords * [1.0, 1.0, 0.0]
+        levels /= np.linalg.norm(levels, axis=1)[:, None]
+        moves = np.array([compliance * parabola(row, cable)[0] for cable in range(3)])
+        moved = chords + moves[:, None] * levels
+        turned = moved / np.linalg.norm(moved, axis=1)[:, None]
+        change = turned.T @ readings.tension_N[row] - directions.T @ TENSION_N[row]
+        assert np.abs(change).max() < 1e-6 * TENSION_N.max()
+
+
+def test_effects_on_the_machine(machine):
+    robot = machine.robot
+    moved = machine_with(machine, "anchor_offset", cable=2, x_m=0.1, y_m=-0.2, z_m=0.3).robot
+    shift = [[0, 0, 0], [0.1, -0.2, 0.3], [0, 0, 0]]
+    assert moved.exit_points_m == pytest.approx(robot.exit_points_m + shift, rel=1e-15)
+    assert machine_with(machine, "elastic_modulus", scale=0.9).cable.axial_stiffness_N == 4.5e6
+    heavier = machine_with(machine, "linear_mass", scale=1.25).cable
+    assert heavier.linear_density_kg_per_m == pytest.approx(0.5, rel=1e-15)
+    loaded = machine_with(machine, "platform_mass", offset_kg=-20.0).robot.platform
+    assert (loaded.mass_kg, loaded.mass_offset_kg) == (130.0, -20.0)
+    assert machine_with(machine, "pulley_radius", radius_m=0.2).robot.pulley_radius_m == 0.2
+    assert machine_with(machine, "wind_drag", drag_area_m2=2.0).drag_area_m2 == 2.0
+    tilted = machine_with(machine, "base_tilt", rx_rad=0.01, ry_rad=0.02).robot
+    assert tilted.tilt_rad == pytest.approx([0.01, 0.02])
+
+
+def test_the_centre_of_mass_moves_in_the_platforms_frame(six_cable_robot):
+    machine = Machine(six_cable_robot, CABLE)
+    moved = machine_with(machine, "centre_of_mass_offset", x_m=0.1, y_m=0.2, z_m=-0.3).robot
+    expected = six_cable_robot.platform.centre_of_mass_m + np.array([0.1, 0.2, -0.3])
+    assert moved.platform.centre_of_mass_m == pytest.approx(expected, rel=1e-15)
+
+
+def test_sizes_follow_the_machine(machine):
+    """A machine twice as large and heavy has sizes of parameters in proportion."""
+    robot = Robot(2.0 * EXIT_POINTS_M, Platform(300.0))
+    twice = replace(machine, robot=robot)
+    powers = {
+        "anchor_offset": 1.0,  # with the frame
+        "mast_compliance": 0.0,  # frame over weight
+        "platform_mass": 1.0,
+        "load_step": 1.0,
+        "tension_bias": 1.0,
+        "wind_drag": 1.0,
+        "tension_length": 1.0,
+    }
+    for name, power in powers.items():
+        small, large = (effect_of(each, name).parameters[0].size_here for each in (machine, twice))
+        assert large.typical == pytest.approx(2.0**power * small.typical, rel=1e-12), name
+        assert small.plausible[1] <= small.bounds[1], name
+        assert small.typical < max(map(abs, small.plausible)), name
