@@ -12,7 +12,8 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "designer.api": "analyse catalogue diagnose read_study size write_report",
-    "designer.analysis.analyse": "Analysis PoseAnalysis",
+    "designer.analysis.analyse": "Analysis",
+    "designer.analysis.pose": "PoseAnalysis",
     "designer.grades.grade": "Grade",
     "designer.grades.registry": "Catalogue",
     "designer.diagnosis.result": "Diagnosis",
@@ -33,7 +34,8 @@ _HOMES = {
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 if TYPE_CHECKING:
-    from designer.analysis.analyse import Analysis, PoseAnalysis
+    from designer.analysis.analyse import Analysis
+    from designer.analysis.pose import PoseAnalysis
     from designer.api import analyse, catalogue, diagnose, read_study, size, write_report
     from designer.diagnosis.result import Diagnosis
     from designer.errors import DesignerError, EffectError, InputError, OutputError

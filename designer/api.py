@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from designer.analysis.analyse import PoseAnalysis, analyse, analyse_pose
+from designer.analysis.analyse import analyse
+from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.diagnosis.result import Diagnosis
 from designer.effects.load import load_effects
 from designer.errors import InputError

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from designer.analysis.analyse import Analysis, analyse, analyse_pose
+from designer.analysis.analyse import Analysis, analyse
+from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict, size_dict
 from designer.documents.plain import json_text
 from designer.grades.registry import load_catalogue

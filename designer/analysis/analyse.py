@@ -5,26 +5,24 @@ from __future__ import annotations
 import platform
 import shutil
 import weakref
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-import numpy as np
-
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
+from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.requirements import requirements_of
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
 from designer.effects.design import AsBuilt
-from designer.errors import InputError
 from designer.grades.registry import Catalogue, load_catalogue
-from designer.model.cable import Material
 from designer.model.requirement import Answer, Requirement, State, answer_of
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
@@ -36,67 +34,11 @@ from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
 from designer.selection.result import Candidate, SelectionResult
 from designer.selection.select import select
-from designer.sizing.limit import limit_ratio
-from designer.sizing.loop import LoopSizing, size_by_loop
-from designer.sizing.newton import Sizing, size_poses
-from designer.statics.inverse import MasslessStatics, solve_massless
-from designer.statics.rest import RestingPlaces, resting_places
-from designer.study import (
-    Selection,
-    Study,
-    Workspace,
-    as_built_by,
-    require_answerable,
-    require_enough_cables,
-)
+from designer.study import Study, as_built_by, require_answerable
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
-from designer.workspace.section import section_of_pose, section_of_workspace
+from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PoseAnalysis:
-    """The configured pose alone.
-
-    Parameters
-    ----------
-    material : Material
-        The family as built.
-    sizing : Sizing
-        Optimum by Newton, no leading axes.
-    massless : MasslessStatics
-        Straight weightless cables.
-    loop : LoopSizing
-        The basic loop with its iterates.
-    limit_ratio : float
-        Stress at infinite section over allowable stress; at 1 no finite cable is left.
-    rest : RestingPlaces or None
-        Whether the platform stays there on cables of the optimum; None where there is none.
-    """
-
-    material: Material
-    sizing: Sizing
-    massless: MasslessStatics
-    loop: LoopSizing
-    limit_ratio: float
-    rest: RestingPlaces | None
-
-    @property
-    def caution(self) -> str:
-        """What a reader must know of cables that hang below the platform; empty if none does."""
-        statics = self.sizing.statics
-        if not (statics.is_solved and statics.hangs_below):
-            return ""
-        chord_m = statics.geometry().chord_m
-        each = [
-            f"Cable {k + 1} hangs below the platform, {statics.length_m[k]:.4g} m long over a "
-            f"distance of {chord_m[k]:.4g} m."
-            for k in np.flatnonzero(statics.hanging_cables)
-        ]
-        if not np.isfinite(self.sizing.massless_tension_N):
-            each.append("Straight cables cannot hold this pose: what hangs there is a weight.")
-        return " ".join(each)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,66 +86,184 @@ class Scratch:
         weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Analysis:
-    """Everything that the report shows.
+    """All that is computed of a study, each stage when it is first read.
+
+    Whoever reads the answer alone has nothing computed that does not change it; `analyse` returns
+    one in which every stage is.
 
     Parameters
     ----------
     study : Study
         The problem.
     catalogue : Catalogue
-        The grades it was solved with.
+        The grades that ropes are chosen from.
     provenance : Provenance
         Versions and time.
-    pose : PoseAnalysis or None
-        If the study has a pose.
-    workspace : WorkspaceMap or None
-        If the study has a workspace.
-    selection : SelectionResult or None
-        If the study has a workspace and a selection.
-    groups : GroupChoice or None
-        If the selection has groups of cables.
-    requirements : tuple of Requirement
-        All that the study asks for, in every load case; the answer follows from these alone.
-    qualities : Qualities or None
-        Stiffness and clearances, if the study has a workspace and a cable holds in all of it.
-    section_m : float or None
-        Diameter whose mass, stiffness and strength stand for the configured family; None where the
-        declared effects leave it a family, see `designer.workspace.section` [m].
-    verification : tuple of SecondAnswer
-        The governing poses, solved again by other methods.
-    carries : Carries or None
-        What carries the choice of a rope for all cables.
-    needs : tuple of CaseNeed
-        What each load case needs of the configured family, where the study asks for no rope.
-    group_slopes : tuple of GroupSlopes
-        What the utilisation of each group of cables answers to.
-    servable : Servable or None
-        Which part of the region no rope can serve; None where nothing speaks for such a part.
-    uncertainty : UncertaintyAnalysis or None
-        How likely the chosen rope is enough where inputs are not certain.
-    scratch : Scratch or None
-        Folder that goes with this value, where no other was given for the samples.
+    folder : Path, optional
+        Existing folder that receives ``workspace.nc``; if left out, a temporary one, which goes
+        with this value.
+    reporter : Reporter
+        Shows the progress of stages.
     """
 
     study: Study
     catalogue: Catalogue
     provenance: Provenance
-    pose: PoseAnalysis | None
-    workspace: WorkspaceMap | None
-    selection: SelectionResult | None
-    groups: GroupChoice | None = None
-    requirements: tuple[Requirement, ...] = ()
-    qualities: Qualities | None = None
-    section_m: float | None = None
-    verification: tuple[SecondAnswer, ...] = ()
-    carries: Carries | None = None
-    needs: tuple[CaseNeed, ...] = ()
-    group_slopes: tuple[GroupSlopes, ...] = ()
-    servable: Servable | None = None
-    uncertainty: UncertaintyAnalysis | None = None
-    scratch: Scratch | None = field(default=None, repr=False)
+    folder: Path | None = None
+    reporter: Reporter = field(default=SILENT, repr=False)
+
+    @classmethod
+    def begin(
+        cls,
+        study: Study,
+        catalogue: Catalogue | None = None,
+        folder: Path | None = None,
+        reporter: Reporter = SILENT,
+    ) -> Analysis:
+        """Return the analysis of a study that can be answered; nothing is computed yet.
+
+        Parameters are those of `analyse`.
+
+        Raises
+        ------
+        InputError
+            If the study has neither pose nor workspace, the robot has fewer cables than degrees
+            of freedom, or a grade is not in the catalogue.
+        """
+        require_answerable(study)
+        if catalogue is None:
+            catalogue = load_catalogue(study.catalogues)
+        catalogue.require_grades_of(study)
+        return cls(study, catalogue, Provenance.now(study), folder, reporter)
+
+    @cached_property
+    def pose(self) -> PoseAnalysis | None:
+        """The configured pose alone; None where the study has none."""
+        return None if self.study.pose is None else analyse_pose(self.study)
+
+    @cached_property
+    def section_m(self) -> float | None:
+        """Diameter whose mass, stiffness and strength stand for the configured family [m].
+
+        None where the declared effects leave it a family, see `designer.workspace.section`.
+        """
+        workspace, material = self.study.workspace, self.study.material
+        if workspace is None:
+            return None
+        return section_of_workspace(as_built_by(self.study), workspace, material)
+
+    @cached_property
+    def built(self) -> AsBuilt:
+        """Robot and cables with the declared effects, as everything here is solved."""
+        return as_built_by(self.study, self.section_m)
+
+    @cached_property
+    def workspace(self) -> WorkspaceMap | None:
+        """What the configured family needs in the workspace; None where the study has none."""
+        study, built = self.study, self.built
+        if study.workspace is None:
+            return None
+        with self.reporter.task("workspace", study.workspace.sample_count) as advance:
+            return map_workspace(
+                built.robot,
+                study.workspace,
+                built.material(study.material),
+                file=(self.folder or self._scratch.folder) / "workspace.nc",
+                attributes=_attributes(study, self.provenance),
+                progress=advance,
+            )
+
+    @cached_property
+    def _scratch(self) -> Scratch:
+        return Scratch()
+
+    @cached_property
+    def selection(self) -> SelectionResult | None:
+        """One rope for all cables; None without a workspace or a selection."""
+        workspace, selection = self.study.workspace, self.study.selection
+        if workspace is None or selection is None:
+            return None
+        return select(
+            self.built.robot,
+            workspace,
+            selection,
+            self.catalogue.grades,
+            built=self.built,
+            load_cases=self.study.load_cases,
+            reporter=self.reporter,
+            proof_s=0.0 if selection.groups else workspace.proof_s,
+        )
+
+    @cached_property
+    def groups(self) -> GroupChoice | None:
+        """A rope for each group of cables; None where the selection has no groups."""
+        workspace, selection = self.study.workspace, self.study.selection
+        if workspace is None or selection is None or not selection.groups:
+            return None
+        grades, single = self.catalogue.grades, self.chosen
+        return choose_groups_of(workspace, selection, grades, self.built, single, self.reporter)
+
+    @cached_property
+    def needs(self) -> tuple[CaseNeed, ...]:
+        """What each load case needs of the configured family, where the study asks for no rope."""
+        return family_needs(self.study, self.built, self.reporter)
+
+    @cached_property
+    def qualities(self) -> Qualities | None:
+        """Stiffness and clearances; None unless a cable holds in all of a workspace."""
+        study, workspace = self.study, self.workspace
+        if study.workspace is None or workspace is None:
+            return None
+        return qualities_of(
+            study.workspace,
+            workspace,
+            self.selection,
+            self.groups,
+            self.built,
+            study.material,
+            self.needs,
+        )
+
+    @cached_property
+    def requirements(self) -> tuple[Requirement, ...]:
+        """All that the study asks for, in every load case; the answer follows from these alone."""
+        return requirements_of(self)
+
+    @cached_property
+    def verification(self) -> tuple[SecondAnswer, ...]:
+        """The governing poses, solved again by other methods."""
+        return second_answers(self)
+
+    @cached_property
+    def carries(self) -> Carries | None:
+        """What carries the choice of a rope for all cables."""
+        return carries_of(self.study, self.selection) if self.groups is None else None
+
+    @cached_property
+    def group_slopes(self) -> tuple[GroupSlopes, ...]:
+        """What the utilisation of each group of cables answers to."""
+        if self.groups is None:
+            return ()
+        return group_slopes(self.built.robot, self.study.workspace, self.groups)
+
+    @cached_property
+    def servable(self) -> Servable | None:
+        """Which part of the region no rope can serve; None where nothing speaks for such a part."""
+        workspace, survey = self.study.workspace, self.workspace
+        if survey is None or workspace is None or workspace.proof_s == 0.0:
+            return None
+        doubtful = (Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND, Verdict.RANK_DEFICIENT)
+        if not any(survey.census.statuses[verdict.label] for verdict in doubtful):
+            return None
+        with self.reporter.task("impossible", 1):
+            return servable(self.built.robot, workspace.space, Budget(workspace.proof_s))
+
+    @cached_property
+    def uncertainty(self) -> UncertaintyAnalysis | None:
+        """How likely the chosen rope is enough where inputs are not certain."""
+        return uncertainty_of(self.study, self.selection, self.built, self.reporter)
 
     @property
     def sweep_file(self) -> Path | None:
@@ -221,11 +281,6 @@ class Analysis:
         from designer.documents.plain import json_text
 
         return json_text(self.to_dict())
-
-    @property
-    def built(self) -> AsBuilt:
-        """Robot and cables with the declared effects, as everything here was solved."""
-        return as_built_by(self.study, self.section_m)
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -279,36 +334,11 @@ class Analysis:
         return self.selection is None or self.chosen is not None
 
 
-def analyse_pose(study: Study, *, finds_rest: bool = True) -> PoseAnalysis:
-    """Size the configured pose in every way.
-
-    ``finds_rest`` is whether other places to rest are looked for, which takes most of the time.
-
-    Raises
-    ------
-    InputError
-        If the study has no pose, or the robot has fewer cables than degrees of freedom.
-    """
-    require_enough_cables(study)
-    if study.pose is None:
-        fault = study.source.fault("pose", "is missing", "a pose, such as [250, 200, -50]")
-        raise InputError([fault])
-    built = as_built_by(study)
-    section_m = section_of_pose(built, study.pose, study.material)
-    robot, material = built.robot, built.material(study.material, section_m)
-    sizing = size_poses(robot, study.pose, material)
-    rest = None
-    if finds_rest and sizing.statics.is_solved:
-        cable = material.cable(float(sizing.diameter_m))
-        rest = resting_places(robot, study.pose, cable, sizing.statics.length_m)
-    return PoseAnalysis(
-        material=material,
-        sizing=sizing,
-        massless=solve_massless(robot, study.pose),
-        loop=size_by_loop(robot, study.pose, material),
-        limit_ratio=float(limit_ratio(robot, study.pose, material)),
-        rest=rest,
-    )
+_STAGES = (
+    *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
+    *("verification", "carries", "group_slopes", "servable", "uncertainty"),
+)
+"""In the order in which their progress is shown."""
 
 
 def analyse(
@@ -316,10 +346,8 @@ def analyse(
     catalogue: Catalogue | None = None,
     folder: Path | None = None,
     reporter: Reporter = SILENT,
-    *,
-    explains: bool = True,
 ) -> Analysis:
-    """Size the pose, sweep the workspace, choose a product.
+    """Size the pose, sweep the workspace, choose a product; every stage is computed here.
 
     Parameters
     ----------
@@ -331,9 +359,6 @@ def analyse(
         Existing folder that receives ``workspace.nc``; a temporary one if left out.
     reporter : Reporter
         Shows progress.
-    explains : bool
-        False leaves out what changes no answer and takes its time: second answers, what carries
-        the result, which part of the region no rope can serve, how likely the rope is enough.
 
     Raises
     ------
@@ -341,99 +366,12 @@ def analyse(
         If the study has neither pose nor workspace, the robot has fewer cables than degrees of
         freedom, or a grade is not in the catalogue.
     """
-    require_answerable(study)
-    if catalogue is None:
-        catalogue = load_catalogue(study.catalogues)
-    catalogue.require_grades_of(study)
-    scratch = Scratch() if folder is None and study.workspace is not None else None
-    if scratch is not None:
-        folder = scratch.folder
-    provenance = Provenance.now(study)
-    pose = None if study.pose is None else analyse_pose(study, finds_rest=explains)
-    built = as_built_by(study)
-    if study.workspace is not None:
-        section_m = section_of_workspace(built, study.workspace, study.material)
-        built = replace(built, section_m=section_m)
-    workspace = chosen = groups = None
-    if study.workspace is not None and folder is not None:
-        with reporter.task("workspace", study.workspace.sample_count) as advance:
-            workspace = map_workspace(
-                built.robot,
-                study.workspace,
-                built.material(study.material),
-                file=folder / "workspace.nc",
-                attributes=_attributes(study, provenance),
-                progress=advance,
-            )
-    if study.workspace is not None and study.selection is not None:
-        chosen, groups = _ropes(study, study.workspace, study.selection, built, catalogue, reporter)
-    needs = family_needs(study, built, reporter)
-    qualities = None
-    if study.workspace is not None and workspace is not None:
-        qualities = qualities_of(
-            study.workspace, workspace, chosen, groups, built, study.material, needs
-        )
-    design = None if qualities is None else qualities.cable
-    requirements = requirements_of(
-        study, built, pose, workspace, chosen, groups, needs, design, reporter
-    )
-    return Analysis(
-        study,
-        catalogue,
-        provenance,
-        pose,
-        workspace,
-        chosen,
-        groups,
-        requirements,
-        qualities,
-        built.section_m,
-        second_answers(study, built, pose, workspace, chosen) if explains else (),
-        carries_of(study, chosen) if explains and groups is None else None,
-        needs,
-        group_slopes(built.robot, study.workspace, groups) if explains and groups else (),
-        _servable(study, built, workspace, reporter) if explains else None,
-        uncertainty_of(study, chosen, built, reporter) if explains else None,
-        scratch,
-    )
-
-
-def _ropes(
-    study: Study,
-    workspace: Workspace,
-    selection: Selection,
-    built: AsBuilt,
-    catalogue: Catalogue,
-    reporter: Reporter,
-) -> tuple[SelectionResult, GroupChoice | None]:
-    """Select one rope for all cables and, where the study has groups, one for each."""
-    chosen = select(
-        built.robot,
-        workspace,
-        selection,
-        catalogue.grades,
-        built=built,
-        load_cases=study.load_cases,
-        reporter=reporter,
-        proof_s=0.0 if selection.groups else workspace.proof_s,
-    )
-    if not selection.groups:
-        return chosen, None
-    grades, single = catalogue.grades, chosen.chosen
-    return chosen, choose_groups_of(workspace, selection, grades, built, single, reporter)
-
-
-def _servable(
-    study: Study, built: AsBuilt, found: WorkspaceMap | None, reporter: Reporter
-) -> Servable | None:
-    """Bound the part that no rope can serve, where samples say that there may be one."""
-    if found is None or study.workspace is None or study.workspace.proof_s == 0.0:
-        return None
-    doubtful = (Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND, Verdict.RANK_DEFICIENT)
-    if not any(found.census.statuses[verdict.label] for verdict in doubtful):
-        return None
-    with reporter.task("impossible", 1):
-        return servable(built.robot, study.workspace.space, Budget(study.workspace.proof_s))
+    analysis = Analysis.begin(study, catalogue, folder, reporter)
+    for stage in _STAGES:
+        getattr(analysis, stage)
+    if analysis.pose is not None:
+        _ = analysis.pose.rest
+    return analysis
 
 
 def _attributes(study: Study, provenance: Provenance) -> dict[str, str]:

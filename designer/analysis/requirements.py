@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, cast
 
+from designer.analysis.pose import PoseAnalysis
 from designer.effects.design import AsBuilt
 from designer.model.cable import Cable
 from designer.model.load_case import STATIC, Loaded
@@ -31,23 +32,17 @@ from designer.study import Study
 from designer.workspace.result import WorkspaceMap
 
 if TYPE_CHECKING:
-    from designer.analysis.analyse import PoseAnalysis
+    from designer.analysis.analyse import Analysis
 
 _FAMILY = "a cable of the configured family holds"
 
 
-def requirements_of(
-    study: Study,
-    built: AsBuilt,
-    pose: PoseAnalysis | None,
-    workspace: WorkspaceMap | None,
-    selection: SelectionResult | None,
-    groups: GroupChoice | None,
-    needs: tuple[CaseNeed, ...],
-    design: DesignCable | None,
-    reporter: Reporter,
-) -> tuple[Requirement, ...]:
-    """Return all requirements of a study; ``design`` are the cables that it comes to."""
+def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
+    """Return all that the study of an analysis asks for."""
+    study, built = analysis.study, analysis.built
+    pose, workspace = analysis.pose, analysis.workspace
+    selection, groups, needs = analysis.selection, analysis.groups, analysis.needs
+    design = None if analysis.qualities is None else analysis.qualities.cable
     requirements: list[Requirement] = []
     if pose is not None:
         requirements.append(_pose(pose))
@@ -63,7 +58,7 @@ def requirements_of(
     # The chosen rope brings its own; where there is none, the design is one of the family.
     asks_for_rope = groups is not None or selection is not None
     if design is not None and ((groups is not None and groups.chosen) or not asks_for_rope):
-        requirements += _of_design(study, built, design, reporter)
+        requirements += _of_design(study, built, design, analysis.reporter)
     return tuple(requirements)
 
 

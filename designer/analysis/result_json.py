@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from designer import __version__
-from designer.analysis.analyse import Analysis, PoseAnalysis
+from designer.analysis.analyse import Analysis
 from designer.analysis.carries_json import carries_dict
 from designer.analysis.load_cases_json import load_cases_dict
+from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.analysis.uncertainty_json import uncertainty_dict
 from designer.arrays import FloatArray
@@ -29,48 +30,41 @@ from designer.workspace.result import Extreme, WorkspaceMap
 from designer.workspace.stiffness import StiffnessSurvey
 
 Json = dict[str, Any]
+IsRead = Callable[[str], bool]
+"""Whether a path of ``result.json`` is asked for, such as ``workspace.servable``."""
+
 _OF_THE_CHOICE = ("stiffness", "interference", "hanging")
 """Of ``workspace``: told of the chosen rope, so that it has to be chosen."""
+_OF_CARRIES = ("sensitivities", "reserve", "sizes_beside", "first_failures")
 
 
-def result_dict(analysis: Analysis) -> Json:
-    """Return everything that ``result.json`` holds; a part without results is None."""
+def _everything(_: str) -> bool:
+    return True
+
+
+def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
+    """Return everything that ``result.json`` holds; a part without results is None.
+
+    What changes no answer and takes its time is computed where ``is_read``, and empty elsewhere.
+    """
     study = analysis.study
+    carries = any(map(is_read, _OF_CARRIES))
     return {
         "format": RESULT_FORMAT,
         "name": study.name,
         "positive": analysis.is_positive,
         "answer": _answer(analysis),
         "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
-        "pose": None if analysis.pose is None else _pose(study, analysis.pose),
-        "workspace": (
-            None
-            if analysis.workspace is None
-            else {
-                **_workspace(analysis.workspace),
-                "orientations": _orientations(study),
-                "section_m": analysis.section_m,
-                "servable": _servable(analysis.servable),
-                **_qualities(analysis.qualities),
-            }
-        ),
+        "pose": _pose(analysis, is_read),
+        "workspace": _workspace(analysis, is_read),
         "selection": None if analysis.selection is None else _selection(analysis),
         **load_cases_dict(analysis),
-        **carries_dict(analysis.carries, analysis.group_slopes),
-        "uncertainty": uncertainty_dict(analysis.uncertainty),
+        **carries_dict(
+            analysis.carries if carries else None, analysis.group_slopes if carries else ()
+        ),
+        "uncertainty": uncertainty_dict(analysis.uncertainty if is_read("uncertainty") else None),
         "proof": _proof(analysis),
-        "verification": [
-            {
-                "method": one.method,
-                "quantity": one.quantity,
-                "unit": one.unit,
-                "ours": _number(one.ours),
-                "theirs": _number(one.theirs),
-                "difference": _number(one.difference),
-                "remark": one.remark,
-            }
-            for one in analysis.verification
-        ],
+        "verification": _verification(analysis) if is_read("verification") else [],
         "provenance": {
             **_origin(study),
             "catalogues": [
@@ -91,6 +85,29 @@ def result_dict(analysis: Analysis) -> Json:
     }
 
 
+def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
+    """Return as much of `result_dict` as the paths in ``keep`` take; no more is computed.
+
+    Where they take no answer there are only the name, the pose and the workspace.
+    """
+    paths = tuple(keep)
+    is_read = _reader(paths)
+    if evaluates_answer(paths):
+        return result_dict(analysis, is_read)
+    part: Json = {"format": RESULT_FORMAT, "name": analysis.study.name}
+    if is_read("pose"):
+        part["pose"] = _pose(analysis, is_read)
+    if is_read("workspace"):
+        part["workspace"] = _workspace(analysis, is_read)
+    return part
+
+
+def _reader(paths: Iterable[str]) -> IsRead:
+    """Return the test whether a part is read: it is one of ``paths``, or one lies in it."""
+    kept = [f"{path}." for path in paths]
+    return lambda part: any(path.startswith(f"{part}.") for path in kept)
+
+
 def evaluates_answer(keep: Iterable[str]) -> bool:
     """Tell whether what is kept takes the answer of a study, and not a part of it alone."""
     paths = [name.split(".") for name in keep]
@@ -98,10 +115,14 @@ def evaluates_answer(keep: Iterable[str]) -> bool:
     return of_the_choice or not {path[0] for path in paths} <= {"pose", "workspace", "name"}
 
 
-def size_dict(study: Study, pose: PoseAnalysis) -> Json:
-    """Return what ``designer size --json`` prints: the pose alone, under the same names."""
-    pose_alone = {"name": study.name, "pose": _pose(study, pose), "provenance": _origin(study)}
-    return {"format": RESULT_FORMAT, **pose_alone}
+def size_dict(study: Study, pose: PoseAnalysis, keep: Iterable[str] | None = None) -> Json:
+    """Return what ``designer size --json`` prints: the pose alone, under the same names.
+
+    Of ``keep``, the paths that will be read, as of `result_part`; all if left out.
+    """
+    is_read = _everything if keep is None else _reader(keep)
+    pose_alone = {"pose": _pose_dict(study, pose, is_read), "provenance": _origin(study)}
+    return {"format": RESULT_FORMAT, "name": study.name, **pose_alone}
 
 
 def _origin(study: Study) -> Json:
@@ -134,7 +155,11 @@ def _products(analysis: Analysis) -> Json:
     return {"products": [{"name": None, **product}], "total_mass_kg": _number(chosen.total_mass_kg)}
 
 
-def _pose(study: Study, pose: PoseAnalysis) -> Json:
+def _pose(analysis: Analysis, is_read: IsRead) -> Json | None:
+    return None if analysis.pose is None else _pose_dict(analysis.study, analysis.pose, is_read)
+
+
+def _pose_dict(study: Study, pose: PoseAnalysis, is_read: IsRead) -> Json:
     statics, sizing = pose.sizing.statics, pose.sizing
     diameter, is_solved = _number(sizing.diameter_m), bool(statics.is_solved)
     how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
@@ -169,7 +194,7 @@ def _pose(study: Study, pose: PoseAnalysis) -> Json:
             ],
         },
         "optimum": {"diameter_m": diameter},
-        "rest": _rest(pose.rest),
+        "rest": _rest(pose.rest) if is_read("pose.rest") else None,
     }
 
 
@@ -185,7 +210,20 @@ def _rest(rest: RestingPlaces | None) -> Json | None:
     }
 
 
-def _workspace(found: WorkspaceMap) -> Json:
+def _workspace(analysis: Analysis, is_read: IsRead) -> Json | None:
+    if analysis.workspace is None:
+        return None
+    of_the_choice = any(is_read(f"workspace.{name}") for name in _OF_THE_CHOICE)
+    return {
+        **_map(analysis.workspace),
+        "orientations": _orientations(analysis.study),
+        "section_m": analysis.section_m,
+        "servable": _servable(analysis.servable) if is_read("workspace.servable") else None,
+        **_qualities(analysis.qualities if of_the_choice else None),
+    }
+
+
+def _map(found: WorkspaceMap) -> Json:
     example, census = found.infeasible_example_m, found.census
     return {
         "samples": census.samples,
@@ -292,6 +330,21 @@ def _servable(found: Servable | None) -> Json | None:
     if found is None:
         return None
     return {"impossible": found.impossible, "possible": found.possible, "boxes": found.boxes}
+
+
+def _verification(analysis: Analysis) -> list[Json]:
+    return [
+        {
+            "method": answer.method,
+            "quantity": answer.quantity,
+            "unit": answer.unit,
+            "ours": _number(answer.ours),
+            "theirs": _number(answer.theirs),
+            "difference": _number(answer.difference),
+            "remark": answer.remark,
+        }
+        for answer in analysis.verification
+    ]
 
 
 def _proof(analysis: Analysis) -> Json:

@@ -17,11 +17,7 @@ from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import Statics, solve_sagging
 
 if TYPE_CHECKING:
-    from designer.analysis.analyse import PoseAnalysis
-    from designer.effects.design import AsBuilt
-    from designer.selection.result import SelectionResult
-    from designer.study import Study
-    from designer.workspace.result import WorkspaceMap
+    from designer.analysis.analyse import Analysis
 
 _SAME_DIAMETER = 1e-6
 """Of the diameter: what the optimisers reach."""
@@ -72,28 +68,24 @@ class SecondAnswer:
         return bool(self.remark) or off <= self.tolerance
 
 
-def second_answers(
-    study: Study,
-    built: AsBuilt,
-    pose: PoseAnalysis | None,
-    workspace: WorkspaceMap | None,
-    chosen: SelectionResult | None,
-) -> tuple[SecondAnswer, ...]:
+def second_answers(analysis: Analysis) -> tuple[SecondAnswer, ...]:
     """Verify the configured pose, the worst pose, and that of the chosen rope."""
-    found: list[SecondAnswer] = []
+    pose, workspace, built = analysis.pose, analysis.workspace, analysis.built
+    answers: list[SecondAnswer] = []
     if pose is not None:
-        found += verify("configured pose", pose.material, pose.sizing)
+        answers += verify("configured pose", pose.material, pose.sizing)
     if workspace is not None and workspace.sagging is not None:
-        material = built.material(study.material)
+        material = built.material(analysis.study.material)
         sizing = size_poses(built.robot, workspace.sagging.pose, material)
-        found += verify("worst pose", material, sizing)
-    if chosen is not None and chosen.chosen is not None:
-        most = chosen.chosen.governing
-        place = chosen.chosen.verification.worst_place
-        statics = solve_sagging(most.loaded.robot, Poses.at(place), most.loaded.cable)
+        answers += verify("worst pose", material, sizing)
+    chosen = analysis.chosen
+    if chosen is not None:
+        loaded = chosen.governing.loaded
+        place = chosen.verification.worst_place
+        statics = solve_sagging(loaded.robot, Poses.at(place), loaded.cable)
         if statics.is_solved:
-            found.append(verify_cables(f"{chosen.chosen.name}, at its worst pose", statics))
-    return tuple(found)
+            answers.append(verify_cables(f"{chosen.name}, at its worst pose", statics))
+    return tuple(answers)
 
 
 def verify(name: str, material: Material, sizing: Sizing) -> list[SecondAnswer]:

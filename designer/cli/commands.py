@@ -204,7 +204,7 @@ def size(
     if study.selection is not None and study.selection.grades is not None:
         catalogue_of(study, plugins)  # misspelt grades are told here as by `report`
     announce_compiling()
-    from designer.analysis.analyse import analyse_pose
+    from designer.analysis.pose import analyse_pose
 
     pose = analyse_pose(study)
     if as_json:

@@ -52,11 +52,11 @@ def lengths(
     catalogue = catalogue_of(study, plugins)
     announce_compiling()
 
-    from designer.analysis.analyse import analyse
+    from designer.analysis.analyse import Analysis
     from designer.analysis.lengths import lengths_of
 
     with ProgressBars() as bars:
-        found = lengths_of(analyse(study, catalogue, reporter=bars, explains=False), table.poses)
+        found = lengths_of(Analysis.begin(study, catalogue, reporter=bars), table.poses)
     if found is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         raise typer.Exit(NEGATIVE_ANSWER)

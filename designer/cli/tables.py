@@ -16,7 +16,8 @@ from designer.model.load_case import STATIC
 from designer.spelling import in_runs
 
 if TYPE_CHECKING:
-    from designer.analysis.analyse import Analysis, PoseAnalysis
+    from designer.analysis.analyse import Analysis
+    from designer.analysis.pose import PoseAnalysis
     from designer.diagnosis.check import Check
     from designer.diagnosis.result import Diagnosis
     from designer.selection.groups.result import GroupChoice

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from designer.analysis.analyse import analyse
+from designer.analysis.analyse import Analysis
 from designer.analysis.selection_json import candidates_csv
 from designer.arrays import FloatArray
 from designer.explore.question import Assignment, Question, Rope
@@ -276,10 +276,10 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     rows without a workspace.
     """
     study, catalogue = question.study, question.catalogue
-    analysis = of_ropes = analyse(study, catalogue, reporter=reporter, explains=False)
+    analysis = of_ropes = Analysis.begin(study, catalogue, reporter=reporter)
     if study.workspace is not None and study.selection is None:
         asking = replace(study, selection=question.selection)
-        of_ropes = analyse(asking, catalogue, reporter=reporter, explains=False)
+        of_ropes = Analysis.begin(asking, catalogue, reporter=reporter)
     ropes = Ropes((), None, "", question.selection.objectives, currency="", is_final=True)
     if of_ropes.selection is not None:
         ropes = ropes_of(of_ropes.selection, of_ropes.groups)

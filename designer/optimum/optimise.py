@@ -10,6 +10,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.comparison import compare
+from designer.analysis.result_json import result_part
 from designer.documents import edits
 from designer.documents.document import document_of
 from designer.errors import DesignerError, InputError
@@ -23,7 +24,7 @@ from designer.optimum.trial import Examiner, Trial
 from designer.optimum.verifier import FEW_VERIFIED, MOST_VERIFIED, Verifier
 from designer.progress import SILENT, Reporter
 from designer.study import Study
-from designer.sweep.point import explains_for, why_not
+from designer.sweep.point import why_not
 
 _MOST_PROFILES = 8
 
@@ -108,7 +109,7 @@ def _ranked(plan: Plan, searched: Searched) -> list[Trial]:
 def _in_full(plan: Plan, catalogue: Catalogue, trial: Trial) -> float | None:
     """Return the objective of a design that holds over all samples and between them; else None."""
     study = _study_of(plan, trial)
-    result = analyse(study, catalogue, explains=explains_for(plan.base.keep)).to_dict()
+    result = result_part(Analysis.begin(study, catalogue), ("positive", *plan.base.keep))
     holds = result["positive"] and not any(limit.is_broken_by(result) for limit in plan.limits)
     return plan.objective.value(result) if holds else None
 

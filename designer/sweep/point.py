@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from designer.analysis.analyse import analyse, analyse_pose
-from designer.analysis.result_json import Json, evaluates_answer, size_dict
+from designer.analysis.analyse import Analysis
+from designer.analysis.pose import analyse_pose
+from designer.analysis.result_json import Json, result_part, size_dict
 from designer.documents.document import Document
 from designer.documents.node import Key, Node
 from designer.effects.known import KnownEffects
@@ -24,12 +25,6 @@ from designer.spelling import did_you_mean
 from designer.study import Study
 
 Change = tuple[tuple[Key, ...], Node]
-
-_EXPLAINING = (
-    "verification", "sensitivities", "reserve", "sizes_beside", "first_failures",
-    "workspace.servable", "uncertainty", "pose.rest",
-)  # fmt: skip
-"""What changes no answer, and is computed only where it is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,24 +62,11 @@ class Base:
         """Return as much of ``result.json`` as what is kept of it asks for."""
         parts = {name.split(".")[0] for name in self.keep}
         if parts <= {"pose", "name"}:
-            finds_rest = any(name.startswith("pose.rest") for name in self.keep)
-            return size_dict(study, analyse_pose(study, finds_rest=finds_rest))
-        is_whole = evaluates_answer(self.keep)
-        if not is_whole:
-            if "pose" not in parts and study.workspace is not None:
-                study = replace(study, pose=None)
-            study = replace(study, selection=None, load_cases=())
+            return size_dict(study, analyse_pose(study), self.keep)
         # A proof may take its whole budget for each of thousands of studies.
         if "proof" not in parts and study.workspace is not None:
             study = replace(study, workspace=replace(study.workspace, proof_s=0.0))
-        grades = self._catalogue(study)
-        result = analyse(study, grades, explains=explains_for(self.keep)).to_dict()
-        return result if is_whole else {**result, "positive": None, "answer": None}
-
-
-def explains_for(keep: Iterable[str]) -> bool:
-    """Tell whether what is kept takes what changes no answer, and is slow to compute."""
-    return any(name.startswith(_EXPLAINING) for name in keep)
+        return result_part(Analysis.begin(study, self._catalogue(study)), self.keep)
 
 
 @cache

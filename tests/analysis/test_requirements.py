@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from designer.analysis.analyse import Analysis, analyse
+from designer.analysis.analyse import Analysis
 from designer.cli.commands import app
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
@@ -47,7 +47,7 @@ def solve(tmp_path_factory: pytest.TempPathFactory) -> Solve:
     def solved(text: str) -> Analysis:
         config = tmp_path_factory.mktemp("study") / "study.yaml"
         config.write_text(text, encoding="utf-8")
-        return analyse(read_study(config), load_catalogue(with_plugins=False), explains=False)
+        return Analysis.begin(read_study(config), load_catalogue(with_plugins=False))
 
     return solved
 

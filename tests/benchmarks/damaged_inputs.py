@@ -26,7 +26,8 @@ from functools import partial
 from pathlib import Path
 from types import FrameType
 
-from designer.analysis.analyse import analyse, analyse_pose
+from designer.analysis.analyse import analyse
+from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict, size_dict
 from designer.documents.plain import json_text
 from designer.errors import DesignerError

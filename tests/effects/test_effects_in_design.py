@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from designer.analysis.analyse import Analysis, analyse, analyse_pose
+from designer.analysis.analyse import Analysis, analyse
 from designer.analysis.findings import Findings
+from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import selection_dict
 from designer.effects.effect import Effect, Parameter, Size, Values

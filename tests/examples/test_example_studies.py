@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from designer.analysis.analyse import analyse_pose
+from designer.analysis.pose import analyse_pose
 from designer.arrays import FloatArray
 from designer.io.config import read_study
 from designer.model.robot import Poses, Robot

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from designer.analysis.analyse import analyse, analyse_pose
+from designer.analysis.analyse import Analysis, analyse
+from designer.analysis.pose import analyse_pose
 from designer.cli.commands import main
 from designer.explore.here import here
 from designer.explore.map import map_answer, unserved, values_at, worst_answer
@@ -164,7 +165,7 @@ def test_the_best_rope_is_proved_as_in_the_report(yard: Session) -> None:
     yard.edit("workspace.proof", "60 s")
     question = question_of(yard)
     quick, full = quick_ropes(question), full_ropes(question)
-    analysis = analyse(question.study, question.catalogue, explains=False)
+    analysis = Analysis.begin(question.study, question.catalogue)
     assert quick is not None
     assert quick.proof is None
     assert full is not None

@@ -27,7 +27,7 @@ from pairs.commands import COMMANDS
 from pairs.options import GRADES, OPTIONS, Option, base_of, study_of
 
 import designer
-from designer.analysis.analyse import Analysis, analyse
+from designer.analysis.analyse import Analysis
 from designer.errors import InputError
 from designer.grades.files import read_grade
 from designer.grades.registry import Catalogue
@@ -66,7 +66,7 @@ def study_in(text: dict[str, Any], folder: Path) -> Study:
 
 def analysed(text: dict[str, Any], folder: Path) -> Analysis:
     """Return the analysis of a study's text; `InputError` where it is refused."""
-    return analyse(study_in(text, folder), catalogue(), explains="uncertainty" in text)
+    return Analysis.begin(study_in(text, folder), catalogue())
 
 
 def outcome_of(options: Sequence[Option], folder: Path) -> Outcome:

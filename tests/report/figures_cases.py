@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.analysis.analyse import Analysis, Provenance, analyse_pose
+from designer.analysis.analyse import Analysis, Provenance
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
@@ -18,7 +17,6 @@ from designer.model.cable import Material
 from designer.model.region import PointList, Prism, Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.study import HangsBelow, Source, Study, Workspace
-from designer.workspace.sweep import map_workspace
 
 STEEL = Material(7800.0, 200e9, 180e6)
 THREE = Robot(frozen_array([[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]), Platform(4000.0))
@@ -88,13 +86,8 @@ def study_of(name: str) -> Study:
 
 def with_maps(study: Study) -> tuple[Analysis, WorkspaceMaps]:
     """Return the analysis of a study, and what its figures show."""
-    assert study.workspace is not None
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "workspace.nc"
-        found = map_workspace(study.robot, study.workspace, study.material, file=file)
-        empty = Catalogue((), (), ())
-        analysis = Analysis(study, empty, Provenance.now(), analyse_pose(study), found, file, None)
-        return analysis, workspace_maps(analysis)
+    analysis = Analysis(study, Catalogue((), (), ()), Provenance.now())
+    return analysis, workspace_maps(analysis)
 
 
 @cache

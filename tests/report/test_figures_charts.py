@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from figures_cases import CASES, THREE, maps_of, pose_at, solved
 
-from designer.analysis.analyse import analyse_pose
 from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.pose import analyse_pose
 from designer.grades.registry import load_catalogue
 from designer.model.region import Prism
 from designer.report import format as fmt

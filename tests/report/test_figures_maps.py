@@ -7,13 +7,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from altered import altered
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
 from designer.analysis import grids
-from designer.analysis.analyse import analyse_pose
 from designer.analysis.edge import edge_profile, first_failure_m
 from designer.analysis.field import Field, cable_curves_m, chords_m, field_at, largest_sag
 from designer.analysis.maps import as_built, workspace_maps
+from designer.analysis.pose import analyse_pose
 from designer.io.config import read_study
 from designer.model.region import Prism
 from designer.model.robot import Poses
@@ -360,7 +361,7 @@ class TestMaps:
     def test_a_study_without_a_workspace_has_no_maps(self) -> None:
         analysis, _ = solved("served")
         with pytest.raises(ValueError, match="no workspace"):
-            workspace_maps(replace(analysis, workspace=None))
+            workspace_maps(altered(analysis, workspace=None))
 
     def test_unsolved_pose_keeps_its_chords(self) -> None:
         pose = analyse_pose(pose_at("served", [250.0, -20.0, -50.0]))

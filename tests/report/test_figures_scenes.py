@@ -20,9 +20,9 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, THREE, maps_of, pose_at, solved
 
-from designer.analysis.analyse import analyse_pose
 from designer.analysis.field import Field
 from designer.analysis.maps import WorkspaceMaps
+from designer.analysis.pose import analyse_pose
 from designer.errors import MissingLibraryError
 from designer.model.region import Prism
 from designer.report.figures import opengl, overlay, palette, stage

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from altered import altered
 from markupsafe import Markup, escape
 from report_cases import CASES, DEFAULTS, FAST
 from report_parts import cells, facts, said, table, tables, texts
@@ -242,7 +243,7 @@ def test_doubtful_figures_carry_their_doubt(analyses: dict[str, Analysis]) -> No
         chosen=changed,
         outcomes=(dataclasses.replace(outcome, candidates=tuple(candidates), best=changed),),
     )
-    report = design_report(dataclasses.replace(analysis, selection=selection), draws=False)
+    report = design_report(altered(analysis, selection=selection), draws=False)
     (row,) = table(report.section("selection"), "Sizes that hold everywhere").groups[0].rows
     assert row.note == "Doubtful figures: looks misprinted"
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from altered import altered
 from report_parts import cells, facts, statements, table, tables
 
 from designer.analysis.analyse import Analysis
@@ -113,7 +114,7 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     assert found.selection is not None
     alone = replace(found.selection, chosen=None, reason="no single product holds")
     groups = replace(found.groups, single=None)
-    without = replace(found, selection=alone, groups=groups)
+    without = altered(found, selection=alone, groups=groups)
     assert without.is_positive
     page = first_page(Source(without, Findings()))
     assert page.verdict.title == "Yes"

@@ -6,6 +6,7 @@ import dataclasses
 import json
 
 import pytest
+from altered import altered
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
@@ -25,7 +26,7 @@ LOST = "plugin acme (acme 1.2): effect 'creep' is in 'builtin-effects' already: 
 def test_both_kinds_of_problem_are_told_once(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["markup"]
     known = dataclasses.replace(analysis.study.known_effects, problems=(EVIL, LOST))
-    spoilt = dataclasses.replace(
+    spoilt = altered(
         analysis,
         study=dataclasses.replace(analysis.study, known_effects=known),
         catalogue=dataclasses.replace(analysis.catalogue, problems=(EVIL,)),
@@ -53,9 +54,7 @@ def test_few_grades_are_named_and_many_are_counted(analyses: dict[str, Analysis]
 def _allowing(analysis: Analysis, grades: tuple[str, ...]) -> Analysis:
     assert analysis.study.selection is not None
     selection = dataclasses.replace(analysis.study.selection, grades=grades)
-    return dataclasses.replace(
-        analysis, study=dataclasses.replace(analysis.study, selection=selection)
-    )
+    return altered(analysis, study=dataclasses.replace(analysis.study, selection=selection))
 
 
 def test_markup_of_a_plugin_stays_text() -> None:

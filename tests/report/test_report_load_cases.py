@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from altered import altered
 from report_parts import cells, said, statements, table
 
 from designer.analysis.analyse import Analysis
@@ -123,7 +124,7 @@ def test_what_fails_is_on_page_one(found: Analysis, source: Source) -> None:
         replace(each, state=State.FAILS) if each.id == "sheave_ratio" else each
         for each in found.requirements
     ]
-    page = first_page(replace(source, analysis=replace(found, requirements=tuple(bent))))
+    page = first_page(replace(source, analysis=altered(found, requirements=tuple(bent))))
     assert statements(page)["Sheave does not hold"].tone == "bad"
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from altered import altered
 from report_parts import facts, pictures, said, statements, tables
 
 from designer.analysis import grids
@@ -119,7 +120,7 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
     found = not_kept.qualities
     assert found is not None and found.interference is not None
     none_of_the_samples = replace(found.interference, violating=0)
-    changed = replace(not_kept, qualities=replace(found, interference=none_of_the_samples))
+    changed = altered(not_kept, qualities=replace(found, interference=none_of_the_samples))
     section = clearance.section(Source(changed, Findings()))
     assert "only between the samples" in said(section)
 
@@ -128,7 +129,7 @@ def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
     shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
-    section = stiffness.section(Source(replace(kept, qualities=shaky), Findings()))
+    section = stiffness.section(Source(altered(kept, qualities=shaky), Findings()))
     verdict = statements(section)["Some poses are not stable"]
     assert verdict.tone == "bad"
     assert "not stay where it is put in 5.00\u00a0% of the samples" in verdict.text

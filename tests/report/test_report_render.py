@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pypdf
 import pytest
+from altered import altered
 from jinja2 import UndefinedError
 from report_parts import table
 from test_report_context import with_pictures
@@ -121,7 +122,7 @@ def test_markup_in_names_stays_text(analyses: dict[str, Analysis]) -> None:
         for o in analysis.selection.outcomes
     )
     selection = dataclasses.replace(analysis.selection, chosen=swapped, outcomes=outcomes)
-    changed = dataclasses.replace(analysis, selection=selection)
+    changed = altered(analysis, selection=selection)
     html = render_html(with_pictures(design_report(changed, draws=False)))
     assert "<script" not in html
     assert "onerror=alert(2)>" not in html

@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +20,21 @@ import pytest
 from sweep_cases import STUDY, SWEEP, written
 
 import designer
+from designer.analysis import analyse as stages
 from designer.cli.commands import main
 from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
-from designer.resources import example_file
-from designer.study import Study
-from designer.sweep import point as points
 from designer.sweep import run as running
 from designer.sweep import store as stores
 from designer.sweep.plan import Plan
-from designer.sweep.point import Base, value_at, why_negative
+from designer.sweep.point import Base, why_negative
 from designer.sweep.read import read_sweep
 from designer.sweep.run import run
 from designer.sweep.store import Store, opened, read_store
+
+REGION = """workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}, samples: 50}
+selection: {}
+"""
 
 
 def in_threads() -> ThreadPoolExecutor:
@@ -91,49 +94,53 @@ keep: [pose.optimum.diameter_m, pose.sagging.lengths_m.3]
     ],
 )
 def test_a_rope_is_chosen_where_something_that_is_kept_depends_on_it(
-    keep: tuple[str, ...], chooses: bool, monkeypatch: pytest.MonkeyPatch
+    keep: tuple[str, ...], chooses: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class AskedError(Exception):
+    class SelectedError(Exception):
         pass
 
-    def analyse(study: Study, *_: object, **__: object) -> None:
-        raise AskedError(study.selection is not None)
+    def select(*_: object, **__: object) -> None:
+        raise SelectedError
 
-    monkeypatch.setattr(points, "analyse", analyse)
-    base = Base(read_document(example_file("yard")), keep, with_plugins=False)
-    with pytest.raises(AskedError) as asked:
+    monkeypatch.setattr(stages, "select", select)
+    (tmp_path / "crane.yaml").write_text(STUDY + REGION)
+    base = Base(read_document(tmp_path / "crane.yaml"), keep, with_plugins=False)
+    with pytest.raises(SelectedError) if chooses else nullcontext():
         base.result(base.study())
-    assert asked.value.args == (chooses,)
 
 
 @pytest.mark.parametrize(
-    ("keep", "verdict", "has_pose"),
+    ("keep", "parts"),
     [
-        ("workspace.sagging.diameter_m", None, False),
-        ("answer.verdict", "yes", True),
-        ("selection.chosen.size_id", "yes", True),
+        ("name", {"pose"}),
+        ("pose.optimum.diameter_m", {"pose"}),
+        ("workspace.sagging.diameter_m", {"workspace"}),
+        ("answer.verdict", {"pose", "workspace", "answer", "positive"}),
     ],
 )
-def test_no_answer_is_told_that_was_not_evaluated_whole(
-    keep: str, verdict: str | None, has_pose: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_no_more_is_solved_than_what_is_kept_takes(
+    keep: str, parts: set[str], tmp_path: Path
 ) -> None:
-    class Found:
-        def __init__(self, study: Study, *_: object, **__: object) -> None:
-            assert (study.pose is not None) is has_pose
-
-        def to_dict(self) -> dict[str, Any]:
-            answer = {"verdict": "yes", "reasons": []}
-            return {"positive": True, "answer": answer, "workspace": {"sagging": None}}
-
-    region = "workspace: {region: {prism: anchors, inset: 2 m, z: [1, 7]}}\nselection: {}\n"
-    (tmp_path / "crane.yaml").write_text(STUDY + region)
-    monkeypatch.setattr(points, "analyse", Found)
+    (tmp_path / "crane.yaml").write_text(STUDY + REGION.partition("selection")[0])
     base = Base(read_document(tmp_path / "crane.yaml"), (keep,), with_plugins=False)
     result = base.result(base.study())
-    assert value_at(result, "answer.verdict") == verdict
-    assert (value_at(result, "positive") is None) is (verdict is None)
-    told = "no cable of the family holds in all of the workspace" if verdict is None else ""
-    assert why_negative(result) == told
+    assert parts == result.keys() & {"pose", "workspace", "answer", "positive"}
+    assert why_negative(result) == ""
+
+
+def test_what_is_slow_and_changes_no_answer_is_solved_where_it_is_kept(tmp_path: Path) -> None:
+    (tmp_path / "crane.yaml").write_text(STUDY + REGION.partition("selection")[0])
+    document = read_document(tmp_path / "crane.yaml")
+    slow = ("pose.rest.stable", "verification.0.method")
+    for keep, solved in (((*slow, "positive"), True), (("positive",), False)):
+        base = Base(document, keep, with_plugins=False)
+        result = base.result(base.study())
+        assert (result["pose"]["rest"] is not None) is bool(result["verification"]) is solved
+
+
+def test_a_workspace_that_none_holds_is_why_there_is_nothing() -> None:
+    told = why_negative({"workspace": {"sagging": None}})
+    assert told == "no cable of the family holds in all of the workspace"
 
 
 def test_what_a_study_of_one_pose_has_not_is_left_empty(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import SupportsFloat
 
 import numpy as np
 
-from designer.analysis.analyse import PoseAnalysis
+from designer.analysis.pose import PoseAnalysis
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.blocks import (

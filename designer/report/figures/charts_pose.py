@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from designer.analysis.analyse import PoseAnalysis
+from designer.analysis.pose import PoseAnalysis
 from designer.arrays import FloatArray
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style

@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QTableView
 from window_driver import Driver
 
-from designer.analysis.analyse import analyse
+from designer.analysis.analyse import Analysis
 from designer.model.requirement import Answer, Requirement
 
 
@@ -52,7 +52,7 @@ def test_every_requirement_is_shown_and_a_click_goes_to_its_pose(yard: Driver) -
     yard.press("evaluate all")
     yard.rest()
     ropes, question = yard.window.answers["ropes"], yard.window.live.question
-    analysis = analyse(question.study, question.catalogue, explains=False)
+    analysis = Analysis.begin(question.study, question.catalogue)
     assert ropes.answer is analysis.answer is Answer.NO
     assert [each.words for each in ropes.requirements] == [
         each.words for each in analysis.requirements
