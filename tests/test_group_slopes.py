@@ -13,9 +13,9 @@ from designer.model.cable import Cable, Cables
 from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.report.design import carries
+from designer.selection.candidate import Candidate
 from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.groups.trials import GroupVerification
-from designer.selection.products import Product
 from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Workspace
 
@@ -24,7 +24,7 @@ PLACE = np.array([12.0, 5.0, 6.5])
 GROUPS = CableGroup("near", (1, 2)), CableGroup("far", (3,))
 
 
-def rope(diameter_mm: float) -> Product:
+def rope(diameter_mm: float) -> Candidate:
     size = Size(
         f"{diameter_mm:g} mm", diameter_mm / 1e3, 780 * diameter_mm**2, 0.00415 * diameter_mm**2
     )
@@ -33,7 +33,7 @@ def rope(diameter_mm: float) -> Product:
         id="rope", manufacturer="maker", product="rope", construction="7x19", core="WSC",
         finish="bright", sizes=(size,), source=Reference("a", "b"), trust="B", modulus=modulus,
     )  # fmt: skip
-    return Product(grade, size, grade.cable(size, 5.0))
+    return Candidate(grade, size, grade.cable(size, 5.0))
 
 
 def choice() -> GroupChoice:

@@ -28,11 +28,12 @@ from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
+from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed, family_needs, most_needed
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
-from designer.selection.result import Candidate, SelectionResult
+from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.study import Study, as_built_by, require_answerable
 from designer.workspace.hanging import HangingCables

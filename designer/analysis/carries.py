@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from designer.analysis.first_failures import FirstFailure, first_failures
 from designer.analysis.reserve import Reserve, payload_reserve, region_reserve
 from designer.analysis.sensitivities import Sensitivities, sensitivities
+from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseFound
-from designer.selection.result import Candidate, SelectionResult
+from designer.selection.result import SelectionResult
 from designer.study import Study
 
 

@@ -18,7 +18,8 @@ from designer.grades.grade import Size
 from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
-from designer.selection.result import Candidate, GradeOutcome
+from designer.selection.candidate import Candidate
+from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging

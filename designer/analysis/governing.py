@@ -9,8 +9,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses
+from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseFound
-from designer.selection.result import Candidate
 from designer.statics.inverse import Statics
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 from designer.statics.task import PulleyRun

@@ -8,8 +8,9 @@ from typing import Any
 from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite
 from designer.model.space import turn_of
+from designer.selection.candidate import Candidate
 from designer.selection.groups.result import GroupChoice
-from designer.selection.result import Candidate, GradeOutcome, SelectionResult
+from designer.selection.result import GradeOutcome, SelectionResult
 
 Json = dict[str, Any]
 

@@ -10,7 +10,7 @@ from designer.diagnosis.result import Choice, Diagnosis, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
-from designer.selection.compare import Entry
+from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.stiffening import as_it_meets
@@ -68,7 +68,7 @@ class _Selected:
     """A choice, the product behind it, and the machine that it was chosen for."""
 
     choice: Choice
-    product: Entry | None
+    product: Candidate | None
     built: AsBuilt
 
 

@@ -16,9 +16,9 @@ from designer.model.load_case import STATIC
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
+from designer.selection.candidate import Candidate, candidates_of, is_allowed, undominated
 from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
-from designer.selection.products import Product, is_allowed, products_of, undominated
 from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.shape import sag_ratio
@@ -215,7 +215,7 @@ def _governing(statics: Statics, used: FloatArray) -> FloatArray:
 def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) -> BoolArray:
     """Tell which positions (n, 3) no rope serves, in one of the orientations asked for at least.
 
-    Tried are the ropes that no other one beats, see `designer.selection.products.undominated`.
+    Tried are the ropes that no other one beats, see `designer.selection.candidate.undominated`.
     What the study leaves out with some rope is not asked for.
     """
     left = np.ones(len(positions_m), dtype=np.bool_)
@@ -234,9 +234,9 @@ def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) 
     return left
 
 
-def _strongest_first(question: Question) -> list[Product]:
+def _strongest_first(question: Question) -> list[Candidate]:
     grades = [g for g in question.catalogue.grades if is_allowed(g, question.selection.grades)]
-    products = undominated(products_of(question.selection, grades, question.built))
+    products = undominated(candidates_of(question.selection, grades, question.built))
     return sorted(products, key=lambda one: -one.cable.allowable_tension_N)
 
 

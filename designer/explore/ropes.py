@@ -15,11 +15,12 @@ from designer.explore.question import Assignment, Question, Rope
 from designer.grades.grade import Grade, Size
 from designer.model.requirement import Answer, Requirement, State
 from designer.progress import SILENT, Reporter
-from designer.selection.compare import Entry, burdens, failure_words, is_undominated
+from designer.selection.candidate import Candidate
+from designer.selection.compare import burdens, failure_words, is_undominated
 from designer.selection.groups.result import GroupChoice
 from designer.selection.proven import CaseProof
 from designer.selection.requirements import sheave_ratio_of
-from designer.selection.result import Candidate, SelectionResult
+from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
 from designer.selection.verify import Verification
 from designer.study import Objective, Selection
@@ -207,13 +208,13 @@ def quick_ropes(question: Question) -> Ropes | None:
     )
 
 
-def _failed_by_table(entry: Entry, selection: Selection) -> Requirement | None:
+def _failed_by_table(entry: Candidate, selection: Selection) -> Requirement | None:
     """Return what the sheave alone decides against a rope; None for nothing."""
     ratios = sheave_ratio_of(entry.grade, entry.size, selection)
     return next((each for each in ratios if not each.holds), None)
 
 
-def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
+def _quick_row(entry: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:
     met = entry.verification
     if is_best:
         standing, reason = "chosen", "best at the samples"
@@ -237,7 +238,7 @@ def _quick_row(entry: Entry, is_best: bool, is_in_front: bool) -> RopeRow:
     )
 
 
-def _figures(one: Entry | Candidate) -> dict[str, Any]:
+def _figures(one: Candidate | Candidate) -> dict[str, Any]:
     met, figures = one.verification, one.figures
     return {
         "utilisation": met.utilisation,

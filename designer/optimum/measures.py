@@ -24,10 +24,9 @@ from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.model.space import Space
 from designer.progress import SILENT
+from designer.selection.candidate import Candidate, candidates_of, is_allowed, undominated
 from designer.selection.cases import governing
-from designer.selection.compare import Entry
 from designer.selection.criteria import criteria_of
-from designer.selection.products import is_allowed, products_of, undominated
 from designer.selection.requirements import CaseLoads, evaluate
 from designer.selection.screen import Screen
 from designer.selection.select import at_samples
@@ -121,7 +120,7 @@ class Quick:
         return climbed(self.evenly.space, closer, places[at], float(demand[at]))
 
     @cached_property
-    def rope(self) -> Entry:
+    def rope(self) -> Candidate:
         """Return the rope that would be chosen.
 
         Raises
@@ -149,12 +148,12 @@ class Quick:
                     return entry
         raise _nearest_to_holding(screen, ranked)
 
-    def _holds(self, entry: Entry) -> bool:
+    def _holds(self, entry: Candidate) -> bool:
         allowable = governing(entry.cases).loaded.cable.allowable_tension_N
         is_far = entry.verification.utilisation < _CLOSE
         return is_far or self._tension_N(entry) <= allowable
 
-    def _tension_N(self, entry: Entry) -> float:
+    def _tension_N(self, entry: Candidate) -> float:
         """Return what a rope meets in the case that governs, about its worst sample as well."""
         found = governing(entry.cases)
         one, hangs_below = found.loaded, self.evenly.hangs_below
@@ -207,7 +206,7 @@ class Quick:
     @property
     def usable_volume_m3(self) -> float:
         """What the rope serves that serves most [m³]."""
-        products = products_of(self.selection, self._grades, self._built)
+        products = candidates_of(self.selection, self._grades, self._built)
         cables = [one.cable for one in products]
         met = verify_sizes(self._built.robot, self.evenly, cables, gives_up=False)
         volume = self.evenly.region.volume_m3 or 0.0
@@ -229,7 +228,7 @@ def climbed(space: Space, demand: Demand, place: FloatArray, value: float) -> Wo
     return Worst(place, value)
 
 
-def _why_no_rope(found: list[Entry]) -> tuple[float, str]:
+def _why_no_rope(found: list[Candidate]) -> tuple[float, str]:
     """Return how far the ropes are from holding, and why none does."""
     if not found:
         return 2.0, "no rope can be tried"
@@ -258,7 +257,7 @@ def _violated(unmet: Iterable[Requirement]) -> NotHeldError:
     return NotHeldError(_shortfall(worst), reason)
 
 
-def _nearest_to_holding(screen: Screen, strong: Sequence[Entry]) -> NotHeldError:
+def _nearest_to_holding(screen: Screen, strong: Sequence[Candidate]) -> NotHeldError:
     """Return what the rope fails that is nearest to meeting all requirements."""
     rejected = [(entry, entry.rejected_by) for entry in strong if entry.rejected_by is not None]
     if not rejected:
@@ -365,7 +364,7 @@ def promising(study: Study, grades: tuple[Grade, ...]) -> tuple[Grade, ...]:
     if study.selection is None:
         return ()
     allowed = [grade for grade in grades if is_allowed(grade, study.selection.grades)]
-    products = products_of(study.selection, allowed, as_built_by(study))
+    products = candidates_of(study.selection, allowed, as_built_by(study))
     by_price = "cost" in study.selection.objectives
     kept = {id(one.size) for one in undominated(products, by_price=by_price)}
     trimmed = [

@@ -23,7 +23,7 @@ from designer.model.region import Prism, Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.plan import Budget, Limit, Plan
 from designer.optimum.variables import variables_of
-from designer.selection.products import common_currency, is_allowed
+from designer.selection.candidate import common_currency, is_allowed
 from designer.spelling import did_you_mean
 from designer.study import Study
 from designer.sweep.point import Base, value_at, why_no_value

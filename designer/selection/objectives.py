@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -34,11 +35,11 @@ MEANINGS: Mapping[Objective, Meaning] = {
 class Figures:
     """What a candidate is compared by; NaN where it is not known."""
 
-    mass_kg: float  # Of all cables, each at the longest length that it needs [kg]
-    cost: float  # Price of these lengths, in the currency of the comparison
-    drum_diameter_m: float  # Drum or sheave that the grade's D/d asks for [m]
-    max_tension_N: float  # Largest tension, which the winch has to bear [N]
-    stiffness_N_per_m: float  # Smallest force over displacement of the platform [N/m]
+    mass_kg: float = math.nan  # Of all cables, each at the longest length that it needs [kg]
+    cost: float = math.nan  # Price of these lengths, in the currency of the comparison
+    drum_diameter_m: float = math.nan  # Drum or sheave that the grade's D/d asks for [m]
+    max_tension_N: float = math.nan  # Largest tension, which the winch has to bear [N]
+    stiffness_N_per_m: float = math.nan  # Smallest force over displacement of the platform [N/m]
 
     def value(self, objective: Objective) -> float:
         """Return the figure of an objective, in the sense in which it is shown."""
@@ -50,3 +51,7 @@ class Figures:
         if np.isnan(value):
             return np.inf
         return -value if MEANINGS[objective].more_is_better else value
+
+
+UNKNOWN = Figures()
+"""Of a candidate that was not solved yet."""

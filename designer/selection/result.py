@@ -6,83 +6,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 from designer.grades.grade import Grade, Size
-from designer.model.cable import Cable, Material
+from designer.model.cable import Material
 from designer.model.load_case import STATIC
-from designer.model.requirement import Requirement
 from designer.model.verdict import Verdict
-from designer.selection.cases import CaseFound, governing
-from designer.selection.objectives import Figures
+from designer.selection.candidate import Candidate
 from designer.selection.proven import CaseProof
 from designer.selection.usable import Usable
-from designer.selection.verify import Verification
 from designer.study import Objective
 
 Outcome = Literal["fits", "rejected", "too_thin", "no_finite_cable", "open"]
-Standing = Literal[
-    "chosen", "undominated", "dominated", "not_comparable", "rejected", "too_thin", "not_held"
-]
-"""What became of a candidate; those of the first two span the Pareto set."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Candidate:
-    """One size of one grade, solved over the whole workspace.
-
-    Parameters
-    ----------
-    grade, size
-        The product.
-    cable : Cable
-        Its figures as the solver takes them, efficiency and safety factor applied.
-    efficiency : float
-        Share of the breaking load that end fittings and bending leave.
-    continuous_diameter_m : float
-        Optimum in the grade's continuous family [m]; NaN where the family has none.
-    verification : Verification
-        What it meets in the load case that governs.
-    cases : tuple of CaseFound
-        What it meets in each load case, up to the first that it does not hold.
-    figures : Figures
-        What it is compared by.
-    standing : str
-        What became of it.
-    reason : str
-        Why, for the reader of a report.
-    requirements : tuple of Requirement
-        All that the study asks of it; empty where that was not evaluated in full.
-    """
-
-    grade: Grade
-    size: Size
-    cable: Cable
-    efficiency: float
-    continuous_diameter_m: float
-    verification: Verification
-    cases: tuple[CaseFound, ...]
-    figures: Figures
-    standing: Standing
-    reason: str
-    requirements: tuple[Requirement, ...] = ()
-
-    @property
-    def verified(self) -> bool:
-        """Whether it holds everywhere, between the samples as well, with its own figures."""
-        return self.verification.holds and self.verification.is_refined
-
-    @property
-    def governing(self) -> CaseFound:
-        """The load case that asks for most."""
-        return governing(self.cases)
-
-    @property
-    def total_mass_kg(self) -> float:
-        """Mass of all cables at the longest length each needs [kg]."""
-        return self.figures.mass_kg
-
-    @property
-    def name(self) -> str:
-        """Grade and size."""
-        return f"{self.grade.id}, {self.size.id}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

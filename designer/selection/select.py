@@ -19,7 +19,15 @@ from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
 from designer.progress import Reporter, Silent
 from designer.proof.prove import Budget
+from designer.selection.candidate import (
+    Candidate,
+    candidates_of,
+    common_currency,
+    cost,
+    is_allowed,
+)
 from designer.selection.cases import (
+    CaseFound,
     Cases,
     as_stiff_as,
     governing,
@@ -29,14 +37,13 @@ from designer.selection.cases import (
     together,
     worst_of_each,
 )
-from designer.selection.compare import Entry, best_of, may_win, settle, standing_of
+from designer.selection.compare import best_of, may_win, settle, standing_of
 from designer.selection.continuous import ContinuousOptimum, continuous_optimum
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, Figures
-from designer.selection.products import common_currency, cost, is_allowed, products_of
 from designer.selection.proven import CaseProof, prove_governing
-from designer.selection.result import Candidate, GradeOutcome, NotTried, Outcome, SelectionResult
+from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable
 from designer.selection.verify import Verification, verify_sizes
@@ -44,7 +51,8 @@ from designer.statics.sizes import is_quick
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
-_FEW = 16  # places that tell which grade serves most, where each pose takes long
+_FEW = 16
+"""Places that tell which grade serves most, where each pose takes long: a guess is enough."""
 
 
 def select(
@@ -99,7 +107,7 @@ def best_product(
     *,
     built: AsBuilt | None = None,
     load_cases: Sequence[LoadCase] = (),
-) -> Entry | None:
+) -> Candidate | None:
     """Return the product that `select` would choose, without what becomes of the others.
 
     None where nothing holds.
@@ -118,7 +126,7 @@ def at_samples(
     grades: Sequence[Grade],
     built: AsBuilt,
     load_cases: Sequence[LoadCase],
-) -> list[Entry]:
+) -> list[Candidate]:
     """Return every product that a study allows with what it meets at the samples alone.
 
     Nothing is searched between them; stiffness, which takes long, is not known.
@@ -155,43 +163,43 @@ class _Trial:
         self, grades: Sequence[Grade], *, only_fitting: bool = False
     ) -> tuple[list[GradeOutcome], list[NotTried]]:
         """Try all sizes of these grades; what became of them, or of those with one that holds."""
-        entries = self.sampled(grades)
-        tried = {id(entry.size) for entry in entries}
+        candidates = self.sampled(grades)
+        tried = {id(candidate.size) for candidate in candidates}
         why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
             NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in tried
         ]
-        front, allowed = self.choose(entries)
+        front, allowed = self.choose(candidates)
         outcomes = []
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
-                own = [e for e in entries if e.grade is grade]
-                fitting = [e for e in own if id(e) in allowed]
+                own = [c for c in candidates if c.grade is grade]
+                fitting = [c for c in own if id(c) in allowed]
                 its_best = best_of(fitting, self.selection.objectives, _nothing_left)
                 if its_best is not None or (own and not only_fitting):
                     outcomes.append(self._outcome(grade, own, front, its_best))
                 advance(1)
         return outcomes, not_tried
 
-    def choose(self, entries: Sequence[Entry]) -> tuple[list[Entry], set[int]]:
-        """Return the Pareto set, the best first, and by `id` the entries that it was chosen from.
+    def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[int]]:
+        """Return the Pareto set, the best first, and by `id` what it was chosen from.
 
         The best is searched in every load case, proved as far as that goes, and meets every
-        requirement. Where no entry meets all, it is the best of those that are strong enough.
+        requirement. Where no candidate meets all, it is the best of those that are strong enough.
         """
         objectives = self.selection.objectives
-        self.screen.reject_by_table(entries)
-        with self.reporter.task("search", len(entries)) as advance:
+        self.screen.reject_by_table(candidates)
+        with self.reporter.task("search", len(candidates)) as advance:
             thorough: set[int] = set()
 
-            def search(entry: Entry) -> Verification:
+            def search(candidate: Candidate) -> Verification:
                 advance(1)
-                return self.searched(entry, in_all=id(entry) in thorough)
+                return self.searched(candidate, in_all=id(candidate) in thorough)
 
             while True:
-                meeting = [e for e in entries if e.rejected_by is None]
-                meets_all = any(may_win(e, objectives) for e in meeting)
-                allowed = meeting if meets_all else entries
+                meeting = [c for c in candidates if c.rejected_by is None]
+                meets_all = any(may_win(c, objectives) for c in meeting)
+                allowed = meeting if meets_all else candidates
                 front = settle(allowed, objectives, search)
                 if not front:
                     break
@@ -205,119 +213,118 @@ class _Trial:
                     self.screen.evaluated(best)
                     front = front if meets_all else [best]
                     break
-        return front, {id(e) for e in allowed}
+        return front, {id(c) for c in allowed}
 
-    def _proves(self, entry: Entry) -> bool:
+    def _proves(self, candidate: Candidate) -> bool:
         """Prove that a candidate holds in all poses; tell whether a worse pose was found."""
-        if self.proof_s == 0.0 or id(entry.size) in self.proofs:
+        if self.proof_s == 0.0 or id(candidate.size) in self.proofs:
             return False
         with self.reporter.task("proof", 100) as advance:
-            proof, cases = prove_governing(entry.cases, Budget(self.proof_s), advance)
+            proof, cases = prove_governing(candidate.cases, Budget(self.proof_s), advance)
             # A proof is of one stiffness: where a worse pose changes it, that is proved anew.
             while (settled := tuple(map(resettled, cases))) != cases:
                 proof, cases = prove_governing(settled, Budget(self.proof_s), lambda _: None)
-            entry.cases = cases
-        self.proofs[id(entry.size)] = proof
-        entry.cable = as_stiff_as(entry.cable, governing(entry.cases))
-        entry.verification = most = together(entry.cases)
-        entry.figures = replace(entry.figures, max_tension_N=most.max_tension_N)
+            candidate.cases = cases
+        self.proofs[id(candidate.size)] = proof
+        candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
+        candidate.verification = together(candidate.cases)
+        tension_N = candidate.verification.max_tension_N
+        candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
         return proof.found.worst is not None
 
-    def searched(self, entry: Entry, *, in_all: bool = False) -> Verification:
+    def searched(self, candidate: Candidate, *, in_all: bool = False) -> Verification:
         """Search for the extremes of a candidate between the samples.
 
         Where it governs and near there, or in every load case.
         """
-        entry.cases = searched_all(entry.cases) if in_all else searched(entry.cases)
-        entry.cable = as_stiff_as(entry.cable, governing(entry.cases))
+        candidate.cases = searched_all(candidate.cases) if in_all else searched(candidate.cases)
+        candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
         if "stiffness" in self.selection.objectives:
-            self._add_stiffness(entry, searched=True)
-        return together(entry.cases)
+            self._add_stiffness(candidate, searched=True)
+        return together(candidate.cases)
 
-    def sampled(self, grades: Sequence[Grade]) -> list[Entry]:
+    def sampled(self, grades: Sequence[Grade]) -> list[Candidate]:
         """Solve all samples with all sizes that the sheave allows."""
-        products = products_of(self.selection, grades, self.built)
+        candidates = candidates_of(self.selection, grades, self.built)
         cables = [
-            [one.cable for one in products_of(self.selection.under(case), grades, self.built)]
+            [c.cable for c in candidates_of(self.selection.under(case), grades, self.built)]
             for case in self.cases.each
         ]
         count = self.cases.sample_count * self.cases.passes(cables)
         with self.reporter.task("sizes", count) as advance:
             sampled = self.cases.sampled(cables, advance)
-        entries = []
-        for product, cases in zip(products, sampled, strict=True):
-            grade, size = product.grade, product.size
-            cable = as_stiff_as(product.cable, governing(cases))
-            found = together(cases)
-            if not math.isfinite(found.utilisation):  # lengths of other poses mean nothing
-                found = replace(found, longest_m=np.full_like(found.longest_m, np.nan))
-            length, ratio = float(found.longest_m.sum()), grade.sheave_ratio
-            figures = Figures(
-                mass_kg=cable.linear_density_kg_per_m * length,
-                cost=cost(product, length, self.currency),
-                drum_diameter_m=ratio.suggested * size.diameter_m if ratio else math.nan,
-                max_tension_N=found.max_tension_N,
-                stiffness_N_per_m=math.nan,
-            )
-            entries.append(Entry(grade, size, cable, product.efficiency, cases, found, figures))
+        for candidate, cases in zip(candidates, sampled, strict=True):
+            self._meets(candidate, cases)
         if "stiffness" in self.selection.objectives:
-            holding = [entry for entry in entries if entry.verification.holds]
+            holding = [c for c in candidates if c.verification.holds]
             with self.reporter.task("stiffness", len(holding)) as advance:
-                for entry in holding:
-                    self._add_stiffness(entry, searched=False)
+                for candidate in holding:
+                    self._add_stiffness(candidate, searched=False)
                     advance(1)
-        return entries
+        return candidates
 
-    def _add_stiffness(self, entry: Entry, *, searched: bool) -> None:
-        where = self.cases.robot, self.cases.workspace, entry.cable
-        found = smallest_stiffness_N_per_m(*where, searched=searched)
-        entry.figures = replace(entry.figures, stiffness_N_per_m=found)
+    def _meets(self, candidate: Candidate, cases: tuple[CaseFound, ...]) -> None:
+        """Note what a candidate meets over the samples, and what it is compared by."""
+        met = together(cases)
+        if not math.isfinite(met.utilisation):  # lengths of other poses mean nothing
+            met = replace(met, longest_m=np.full_like(met.longest_m, np.nan))
+        length_m, ratio = float(met.longest_m.sum()), candidate.grade.sheave_ratio
+        candidate.cases, candidate.verification = cases, met
+        candidate.cable = as_stiff_as(candidate.cable, governing(cases))
+        candidate.figures = Figures(
+            mass_kg=candidate.cable.linear_density_kg_per_m * length_m,
+            cost=cost(candidate, length_m, self.currency),
+            drum_diameter_m=ratio.suggested * candidate.size.diameter_m if ratio else math.nan,
+            max_tension_N=met.max_tension_N,
+            stiffness_N_per_m=math.nan,
+        )
+
+    def _add_stiffness(self, candidate: Candidate, *, searched: bool) -> None:
+        robot, workspace = self.cases.robot, self.cases.workspace
+        smallest = smallest_stiffness_N_per_m(robot, workspace, candidate.cable, searched=searched)
+        candidate.figures = replace(candidate.figures, stiffness_N_per_m=smallest)
 
     def _outcome(
-        self, grade: Grade, entries: Sequence[Entry], front: Sequence[Entry], best: Entry | None
+        self,
+        grade: Grade,
+        candidates: Sequence[Candidate],
+        front: Sequence[Candidate],
+        best: Candidate | None,
     ) -> GradeOutcome:
-        allowance = Allowance.of(self.selection)
+        """Return what became of a grade, and of each of its sizes."""
         not_held = [
-            one.sampled.worst_places[:1]
-            for entry in entries
-            for one in entry.cases
-            if one.sampled.not_held and one.case.region is None
+            case.sampled.worst_places[:1]
+            for candidate in candidates
+            for case in candidate.cases
+            if case.sampled.not_held and case.case.region is None
         ]
         optimum = continuous_optimum(
-            self.cases.workspace, grade, allowance, self.built, doubtful=not_held[:1]
+            self.cases.workspace,
+            grade,
+            Allowance.of(self.selection),
+            self.built,
+            doubtful=not_held[:1],
         )
-        objectives = self.selection.objectives
-        candidates = {
-            id(entry): Candidate(
-                grade=grade,
-                size=entry.size,
-                cable=entry.cable,
-                efficiency=entry.efficiency,
-                continuous_diameter_m=optimum.diameter_m,
-                verification=entry.verification,
-                cases=worst_of_each(entry.cases),
-                figures=entry.figures,
-                standing=standing,
-                reason=reason,
-                requirements=self.screen.requirements(entry),
-            )
-            for entry in entries
-            for standing, reason in [standing_of(entry, front, objectives)]
-        }
+        for candidate in candidates:
+            standing, reason = standing_of(candidate, front, self.selection.objectives)
+            candidate.standing, candidate.reason = standing, reason
+            candidate.requirements = self.screen.requirements(candidate)
+            candidate.continuous_diameter_m = optimum.diameter_m
+            candidate.cases = worst_of_each(candidate.cases)
         return GradeOutcome(
             grade=grade,
             family=optimum.family,
             continuous_diameter_m=optimum.diameter_m,
-            candidates=tuple(candidates.values()),
-            outcome=_outcome_of(entries, optimum) if best is None else "fits",
-            best=None if best is None else candidates[id(best)],
+            candidates=tuple(candidates),
+            outcome=_outcome_of(candidates, optimum) if best is None else "fits",
+            best=best,
             verdict=optimum.verdict,
         )
 
 
-def _outcome_of(entries: Sequence[Entry], optimum: ContinuousOptimum) -> Outcome:
+def _outcome_of(candidates: Sequence[Candidate], optimum: ContinuousOptimum) -> Outcome:
     """Return what became of a grade of which no size meets all that is asked."""
-    if any(entry.verification.holds for entry in entries):
+    if any(candidate.verification.holds for candidate in candidates):
         return "rejected"
     if math.isfinite(optimum.diameter_m):
         return "too_thin"
@@ -325,8 +332,8 @@ def _outcome_of(entries: Sequence[Entry], optimum: ContinuousOptimum) -> Outcome
     return "no_finite_cable" if proved else "open"
 
 
-def _nothing_left(entry: Entry) -> Verification:
-    raise AssertionError(f"{entry.name} is the best of its grade and was not searched")
+def _nothing_left(candidate: Candidate) -> Verification:
+    raise AssertionError(f"{candidate.label} is the best of its grade and was not searched")
 
 
 def _usable(
@@ -352,8 +359,9 @@ def _usable(
             return max(float(serves(robot, workspace, c, few).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
-    one = shown[0] if len(shown) == 1 else max(shown, key=most_served)
-    return usable(robot, workspace, one.grade, [(c.size, c.cable) for c in one.candidates])
+    outcome = shown[0] if len(shown) == 1 else max(shown, key=most_served)
+    sizes = [(candidate.size, candidate.cable) for candidate in outcome.candidates]
+    return usable(robot, workspace, outcome.grade, sizes)
 
 
 def _reason(

@@ -58,6 +58,11 @@ class Verification:
         return self.utilisation <= 1.0
 
 
+_UNKNOWN = np.full(3, np.nan)
+NOT_TRIED = Verification(_UNKNOWN, np.nan, np.nan, _UNKNOWN, _UNKNOWN, is_refined=False)
+"""Of a cable that was not solved yet."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Sampled:
     """What one cable meets over the samples of a workspace.

@@ -16,12 +16,12 @@ from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
 from designer.model.region import PointList, Prism
 from designer.model.robot import Poses, Robot
+from designer.selection.candidate import Candidate, priced, undominated
 from designer.selection.groups.balance import balance_at
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.choose import choose_groups, choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.groups.trials import Trials, verify_groups
-from designer.selection.products import Product, priced, undominated
 from designer.selection.select import select
 from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Selection, Workspace
@@ -59,8 +59,8 @@ def rope(diameters_mm: list[float], name: str = "rope", modulus_Pa: float = 62.7
     )
 
 
-def products_of(grade: Grade, safety_factor: float = 5.0) -> tuple[Product, ...]:
-    return tuple(Product(grade, size, grade.cable(size, safety_factor)) for size in grade.sizes)
+def candidates_of(grade: Grade, safety_factor: float = 5.0) -> tuple[Candidate, ...]:
+    return tuple(Candidate(grade, size, grade.cable(size, safety_factor)) for size in grade.sizes)
 
 
 def points_in(low_m: list[float], high_m: list[float], count: int = 40) -> FloatArray:
@@ -94,7 +94,7 @@ EIGHT = {
 
 
 def mass_by_hand(
-    robot: Robot, workspace: Workspace, groups: list[CableGroup], chosen: tuple[Product, ...]
+    robot: Robot, workspace: Workspace, groups: list[CableGroup], chosen: tuple[Candidate, ...]
 ) -> float:
     """Mass of all cables at their longest; inf if they do not hold. Nothing of the search's."""
     of_cable = {c: one for group, one in zip(groups, chosen, strict=True) for c in group.cables}
@@ -114,7 +114,7 @@ def lightest_by_hand(
     robot: Robot,
     workspace: Workspace,
     groups: list[CableGroup],
-    products: tuple[Product, ...],
+    products: tuple[Candidate, ...],
     most_distinct: int,
 ) -> float:
     return min(
@@ -136,7 +136,7 @@ def check_against_hand(choice: GroupChoice, truth: float) -> None:
 def test_brute_force_finds_the_same(case, most_distinct) -> None:
     robot, workspace = case
     groups = groups_of(robot)
-    products = products_of(rope(EIGHT[robot.n_cables]))
+    products = candidates_of(rope(EIGHT[robot.n_cables]))
     truth = lightest_by_hand(robot, workspace, groups, products, most_distinct)
     assert np.isfinite(truth)
     choice = choose_groups(robot, workspace, groups, products, most_distinct=most_distinct)
@@ -147,7 +147,7 @@ def test_brute_force_finds_the_same(case, most_distinct) -> None:
 
 def test_groups_save_mass_where_loads_differ(case) -> None:
     robot, workspace = case
-    groups, products = groups_of(robot), products_of(rope(EIGHT[robot.n_cables]))
+    groups, products = groups_of(robot), candidates_of(rope(EIGHT[robot.n_cables]))
     one = choose_groups(robot, workspace, groups, products, most_distinct=1)
     assert one.chosen is not None
     single = one.chosen.products[0]
@@ -163,7 +163,7 @@ def test_without_its_shortcuts_the_search_finds_the_same(case, monkeypatch) -> N
     robot, workspace = case
     monkeypatch.setattr("designer.selection.groups.choose.is_sound", lambda *_: False)
     monkeypatch.setattr("designer.selection.groups.choose.is_monotone", lambda *_: False)
-    groups, products = groups_of(robot), products_of(rope(EIGHT[robot.n_cables]))
+    groups, products = groups_of(robot), candidates_of(rope(EIGHT[robot.n_cables]))
     choice = choose_groups(robot, workspace, groups, products)
     check_against_hand(choice, lightest_by_hand(robot, workspace, groups, products, 3))
     assert "balance" not in choice.proof_sentence
@@ -172,7 +172,7 @@ def test_without_its_shortcuts_the_search_finds_the_same(case, monkeypatch) -> N
 
 def test_the_argument_on_weight_cuts_whole_blocks(fast_robot) -> None:
     robot, workspace = three(fast_robot)
-    choice = choose_groups(robot, workspace, groups_of(robot), products_of(rope(EIGHT[3])))
+    choice = choose_groups(robot, workspace, groups_of(robot), candidates_of(rope(EIGHT[3])))
     assert choice.by_weight
     assert max(one.excluded for one in choice.proposals) > 8
 
@@ -180,7 +180,7 @@ def test_the_argument_on_weight_cuts_whole_blocks(fast_robot) -> None:
 def test_balance_alone_finds_the_same(fast_robot, monkeypatch) -> None:
     robot, workspace = three(fast_robot)
     monkeypatch.setattr("designer.selection.groups.choose.is_monotone", lambda *_: False)
-    groups, products = groups_of(robot), products_of(rope(EIGHT[3]))
+    groups, products = groups_of(robot), candidates_of(rope(EIGHT[3]))
     choice = choose_groups(robot, workspace, groups, products)
     assert choice.by_balance
     check_against_hand(choice, lightest_by_hand(robot, workspace, groups, products, 3))
@@ -193,7 +193,7 @@ def test_robots_without_a_shortcut(fast_robot, change) -> None:
         robot = replace(robot, pulley_radius_m=0.5)
     else:
         workspace = replace(workspace, hangs_below="exclude")
-    groups, products = groups_of(robot), products_of(rope(EIGHT[3]))
+    groups, products = groups_of(robot), candidates_of(rope(EIGHT[3]))
     choice = choose_groups(robot, workspace, groups, products)
     assert not choice.by_balance
     assert not choice.by_weight
@@ -206,7 +206,7 @@ def test_robots_without_a_shortcut(fast_robot, change) -> None:
 def test_answer_holds_between_the_samples(fast_robot) -> None:
     prism = Prism.box((150.0, 300.0), (80.0, 200.0), (-160.0, -70.0))
     workspace = Workspace(prism, samples=300)
-    groups, products = groups_of(fast_robot), products_of(rope(EIGHT[3], modulus_Pa=60e9), 3.0)
+    groups, products = groups_of(fast_robot), candidates_of(rope(EIGHT[3], modulus_Pa=60e9), 3.0)
     choice = choose_groups(fast_robot, workspace, groups, products)
     assert choice.proof == "optimal"
     assert choice.chosen is not None
@@ -240,7 +240,7 @@ def test_balance_lets_pass_what_holds_and_not_much_more(case, is_feasible) -> No
         weights = rng.uniform(0.1, 6.0, 3)
         softness = rng.uniform(0.3, 1.0, 3)
         each = [Cable(0.02, w, 2e7 * s, 1.0) for w, s in zip(weights, softness, strict=True)]
-        bare = tuple(Product(grade, grade.sizes[0], cable) for cable in each)
+        bare = tuple(Candidate(grade, grade.sizes[0], cable) for cable in each)
         cables = Trials(robot, workspace, bare, members).cables((0, 1, 2))
         statics = solve_sagging(robot, Poses.at(position), cables)
         if not statics.is_solved:
@@ -268,7 +268,7 @@ def _near(workspace: Workspace) -> FloatArray:
 def test_no_member_of_a_block_by_weight_holds(fast_robot) -> None:
     robot, workspace = three(fast_robot)
     assert is_monotone(robot, workspace)
-    products = products_of(rope([8, 12, 16, 20, 24, 28, 32, 36]))
+    products = candidates_of(rope([8, 12, 16, 20, 24, 28, 32, 36]))
     members = [np.array([0]), np.array([1]), np.array([2])]
     trials = Trials(robot, workspace, products, members)
     trials.add_witnesses(_near(workspace))
@@ -287,7 +287,7 @@ def test_no_member_of_a_block_by_weight_holds(fast_robot) -> None:
 def test_no_member_of_a_block_by_trial_holds(six_cable_robot) -> None:
     robot, workspace = six(six_cable_robot)
     assert not is_monotone(robot, workspace)
-    products = products_of(rope(EIGHT[6]))
+    products = candidates_of(rope(EIGHT[6]))
     trials = Trials(robot, workspace, products, [np.arange(0, 2), np.arange(2, 4), np.arange(4, 6)])
     trials.add_witnesses(_near(workspace))
     refuted = trials.refutation((0, 0, 0))
@@ -299,7 +299,7 @@ def test_no_member_of_a_block_by_trial_holds(six_cable_robot) -> None:
 
 def test_stopped_early_it_reports_a_true_bound(case) -> None:
     robot, workspace = case
-    groups, products = groups_of(robot), products_of(rope(EIGHT[robot.n_cables]))
+    groups, products = groups_of(robot), candidates_of(rope(EIGHT[robot.n_cables]))
     truth = lightest_by_hand(robot, workspace, groups, products, 3)
     strongest = products[-1]
     choice = choose_groups(robot, workspace, groups, products, single=strongest, most_proposals=0)
@@ -312,7 +312,7 @@ def test_stopped_early_it_reports_a_true_bound(case) -> None:
 
 def test_too_thin_for_all_is_proved(case) -> None:
     robot, workspace = case
-    products = products_of(rope([2.0, 3.0, 4.0]))
+    products = candidates_of(rope([2.0, 3.0, 4.0]))
     choice = choose_groups(robot, workspace, groups_of(robot), products)
     assert choice.chosen is None
     assert choice.proof == "infeasible"
@@ -338,11 +338,11 @@ def test_beaten_products_are_not_offered() -> None:
     )
     weak = replace(weak, sizes=sizes)
     softer = replace(weak, id="softer", modulus=replace(good.modulus, value_Pa=10e9))
-    offered = undominated([*products_of(weak), *products_of(good), *products_of(softer)])
+    offered = undominated([*candidates_of(weak), *candidates_of(good), *candidates_of(softer)])
     assert [one.label for one in offered] == [
         "10 mm of good", "10 mm of softer", "12 mm of good", "12 mm of softer",
     ]  # fmt: skip
-    assert [one.label for one in undominated([*products_of(good)] * 2)] == [
+    assert [one.label for one in undominated([*candidates_of(good)] * 2)] == [
         "10 mm of good", "12 mm of good",
     ]  # fmt: skip
 
@@ -369,7 +369,7 @@ def test_cost_decides_where_the_study_says_so(fast_robot) -> None:
         ),
     )
     other = replace(dear, id="other", currency="USD", sizes=dear.sizes[:3])
-    products = (*products_of(grade), *products_of(dear), *products_of(cheap), *products_of(other))
+    products = tuple(c for each in (grade, dear, cheap, other) for c in candidates_of(each))
     assert {one.grade.id for one in priced(products)} == {"dear", "cheap"}
     choice = choose_groups(robot, workspace, groups, products, objective="cost")
     assert choice.unit == "EUR"
@@ -402,14 +402,14 @@ def test_study_with_effects_and_safety_factor(fast_robot) -> None:
     assert choice.single is not None
     assert choice.single.total_mass_kg == pytest.approx(single.total_mass_kg, rel=1e-12)
     assert choice.most_distinct == 2
-    heavier = [Product(grade, s, built.cable(grade.cable(s, 5.0))) for s in grade.sizes]
+    heavier = [Candidate(grade, s, built.cable(grade.cable(s, 5.0))) for s in grade.sizes]
     truth = lightest_by_hand(robot, workspace, groups_of(robot), tuple(heavier), 2)
     check_against_hand(choice, truth)
 
 
 def test_verification_that_fails_says_where(fast_robot) -> None:
     robot, workspace = three(fast_robot)
-    thin = products_of(rope([10.0]))[0].cable
+    thin = candidates_of(rope([10.0]))[0].cable
     found = verify_groups(robot, workspace, Cables((thin,) * 3), [np.arange(3)])
     assert not found.holds
     there = solve_sagging(robot, Poses.at(found.worst_place[0]), thin)

@@ -14,9 +14,9 @@ from ropes import rope
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.region import PointList, Prism
+from designer.selection.candidate import common_currency
 from designer.selection.compare import dominator_of, is_undominated
 from designer.selection.objectives import MEANINGS, Figures
-from designer.selection.products import common_currency
 from designer.selection.select import best_product, select
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m

@@ -14,7 +14,7 @@ from designer.cli.commands import main
 from designer.model.cable import Material
 from designer.model.region import Prism
 from designer.model.robot import Poses
-from designer.selection.result import Candidate
+from designer.selection.candidate import Candidate
 from designer.selection.select import select
 from designer.sizing.newton import size_poses
 from designer.study import Selection, Workspace

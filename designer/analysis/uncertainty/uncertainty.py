@@ -22,8 +22,9 @@ from designer.model.load_case import LoadCase
 from designer.model.robot import Robot
 from designer.model.uncertainty import Input, Spread, Uncertainty, Uniform
 from designer.progress import Advance, Reporter
+from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance
-from designer.selection.result import Candidate, SelectionResult
+from designer.selection.result import SelectionResult
 from designer.study import Selection, Study
 
 CONFIDENCE = 0.95

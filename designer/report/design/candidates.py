@@ -9,13 +9,9 @@ from collections.abc import Callable, Iterable, Sequence
 from designer.report import format as fmt
 from designer.report.blocks import MOST_ROWS, Column, Group, Row, Table, Tone
 from designer.report.figures.charts_selection import rank
+from designer.selection.candidate import Candidate, Standing
 from designer.selection.objectives import MEANINGS
-from designer.selection.result import (
-    Candidate,
-    GradeOutcome,
-    SelectionResult,
-    Standing,
-)
+from designer.selection.result import GradeOutcome, SelectionResult
 from designer.study import Objective
 
 _MOST_NAMES = 3

@@ -9,7 +9,8 @@ from designer.analysis.analyse import Analysis
 from designer.model.cable import Material
 from designer.report import format as fmt
 from designer.report.blocks import Block, Box, Column, Subheading, Table
-from designer.selection.result import Candidate, GradeOutcome
+from designer.selection.candidate import Candidate
+from designer.selection.result import GradeOutcome
 
 _OF_CASES = (
     " The best diameter is for the static load of the study, the size is what holds in every load "

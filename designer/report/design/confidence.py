@@ -22,7 +22,7 @@ from designer.report.design.scope import (
 from designer.report.design.uncertainty import statement
 from designer.report.design.verification import verification_statement
 from designer.report.material_class import class_of
-from designer.selection.result import Candidate
+from designer.selection.candidate import Candidate
 from designer.statics.task import LONG
 from designer.study import Study
 from designer.workspace.hanging import Hanging

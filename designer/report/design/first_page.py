@@ -22,10 +22,11 @@ from designer.report.design.selection import product_name
 from designer.report.design.source import Source
 from designer.report.design.workspace_figures import cover_picture
 from designer.report.material_class import class_of
+from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
-from designer.selection.result import Candidate, SelectionResult
+from designer.selection.result import SelectionResult
 from designer.sizing.newton import size_poses
 from designer.study import CableGroup
 

@@ -10,9 +10,9 @@ from designer.report import format as fmt
 from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.report.material_class import class_of
+from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseFound
 from designer.selection.family_need import CaseNeed
-from designer.selection.result import Candidate
 from designer.selection.samples import FEW_SAMPLES
 from designer.statics.cable_loss import Fate
 from designer.study import Study

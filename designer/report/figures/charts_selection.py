@@ -15,8 +15,9 @@ from designer.report.blocks import MOST_ROWS
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.report.material_class import CLASSES, class_of
+from designer.selection.candidate import Candidate
 from designer.selection.objectives import MEANINGS
-from designer.selection.result import Candidate, GradeOutcome, SelectionResult
+from designer.selection.result import GradeOutcome, SelectionResult
 from designer.study import Objective
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from designer.model.verdict import Verdict
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
-from designer.selection.result import Candidate
+from designer.selection.candidate import Candidate
 from designer.selection.usable import Usable
 from designer.workspace.result import Census
 

@@ -37,7 +37,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.model.robot import Poses, Robot
-from designer.selection.products import Product
+from designer.selection.candidate import Candidate
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.study import Workspace
 
@@ -91,7 +91,7 @@ class Balance:
 
 
 def balance_at(
-    robot: Robot, place: FloatArray, products: tuple[Product, ...], members: Members
+    robot: Robot, place: FloatArray, products: tuple[Candidate, ...], members: Members
 ) -> Balance | None:
     """Return the constraints of a pose; None if an exit point does not lie above its cable."""
     pose = Poses.at(place)

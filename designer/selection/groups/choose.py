@@ -14,7 +14,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import prod
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.robot import Robot
 from designer.progress import SILENT, Reporter
+from designer.selection.candidate import Candidate, candidates_of, is_allowed, priced, undominated
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
 from designer.selection.groups.master import Assignment, Block, Guide, Master, alone
@@ -35,11 +35,7 @@ from designer.selection.groups.result import (
     Proposal,
 )
 from designer.selection.groups.trials import GroupVerification, Refutation, Trials, verify_groups
-from designer.selection.products import Product, is_allowed, priced, products_of, undominated
 from designer.study import CableGroup, Selection, Workspace
-
-if TYPE_CHECKING:
-    from designer.selection.result import Candidate
 
 MOST_PROPOSALS = 100
 """Where to stop and report a gap."""
@@ -55,11 +51,11 @@ def choose_groups(
     robot: Robot,
     workspace: Workspace,
     groups: Sequence[CableGroup],
-    products: Sequence[Product],
+    products: Sequence[Candidate],
     *,
     most_distinct: int | None = None,
     objective: GroupObjective = "mass",
-    single: Product | None = None,
+    single: Candidate | None = None,
     progress: Callable[[], None] = lambda: None,
     most_proposals: int = MOST_PROPOSALS,
 ) -> GroupChoice:
@@ -71,7 +67,7 @@ def choose_groups(
         How many different products there may be; one for each group if left out.
     objective : str
         ``mass``, or ``cost`` of the products that have a price.
-    single : Product, optional
+    single : Candidate, optional
         The best product for all cables together: where the search starts from.
     progress : callable
         Called after each proposal.
@@ -123,7 +119,7 @@ def choose_groups_of(
     tension that it meets stays.
     """
     allowed = [grade for grade in grades if is_allowed(grade, selection.grades)]
-    offered = products_of(selection, allowed, built)
+    offered = candidates_of(selection, allowed, built)
     tension_N = math.nan if single is None else single.verification.max_tension_N
     with reporter.task("groups", MOST_PROPOSALS) as advance:
         for _ in range(_MOST_ROUNDS):
@@ -156,7 +152,7 @@ class _Search:
         robot: Robot,
         workspace: Workspace,
         groups: Sequence[CableGroup],
-        products: tuple[Product, ...],
+        products: tuple[Candidate, ...],
         most_distinct: int,
         by_price: bool,
         progress: Callable[[], None],
@@ -184,7 +180,7 @@ class _Search:
         self._guides: list[Guide] = []
         self._settled: set[Assignment] = set()
 
-    def start(self, single: Product | None) -> None:
+    def start(self, single: Candidate | None) -> None:
         """Verify one product for all cables: the given one, or else the strongest."""
         strength = [one.cable.allowable_tension_N for one in self.products]
         at = int(np.argmax(strength)) if single is None else self.products.index(single)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from designer.arrays import FloatArray
+from designer.selection.candidate import Candidate
 from designer.selection.groups.trials import GroupVerification
-from designer.selection.products import Product
 from designer.study import CableGroup
 
 Outcome = Literal["holds", "fails", "not_better"]
@@ -21,7 +21,7 @@ class Proposal:
 
     Parameters
     ----------
-    products : tuple of Product
+    products : tuple of Candidate
         Of each group.
     bound : float
         Mass or cost that it cannot fall below: straight cables stretched as far as they may be.
@@ -41,7 +41,7 @@ class Proposal:
         Whether the linearisation had a say in it.
     """
 
-    products: tuple[Product, ...]
+    products: tuple[Candidate, ...]
     bound: float
     total: float | None
     outcome: Outcome
@@ -58,7 +58,7 @@ class Assigned:
 
     Parameters
     ----------
-    products : tuple of Product
+    products : tuple of Candidate
         Of each group.
     verification : GroupVerification
         What it meets.
@@ -68,7 +68,7 @@ class Assigned:
         What was minimised: that mass, or the cost of these lengths.
     """
 
-    products: tuple[Product, ...]
+    products: tuple[Candidate, ...]
     verification: GroupVerification
     total_mass_kg: float
     total: float
@@ -133,7 +133,7 @@ class GroupChoice:
     trials: int
 
     @property
-    def by_cable(self) -> tuple[Product, ...]:
+    def by_cable(self) -> tuple[Candidate, ...]:
         """The chosen product of each cable, in the order of their numbers; empty without any."""
         if self.chosen is None:
             return ()

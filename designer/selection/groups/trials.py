@@ -16,9 +16,9 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.selection.candidate import Candidate
 from designer.selection.groups.balance import Members
 from designer.selection.groups.master import Assignment
-from designer.selection.products import Product
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
@@ -143,7 +143,7 @@ class Trials:
     """
 
     def __init__(
-        self, robot: Robot, workspace: Workspace, products: Sequence[Product], members: Members
+        self, robot: Robot, workspace: Workspace, products: Sequence[Candidate], members: Members
     ) -> None:
         self.robot, self.workspace = robot, workspace
         self.products, self.members = products, members

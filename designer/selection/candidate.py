@@ -1,0 +1,186 @@
+"""What may go onto the cables: a size of a grade as it would be there, and what is known of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from designer.effects.design import AsBuilt
+from designer.grades.grade import Grade, Size
+from designer.model.cable import Cable
+from designer.model.load_case import STATIC
+from designer.model.requirement import Requirement
+from designer.selection.cases import CaseFound, governing
+from designer.selection.efficiency import Allowance
+from designer.selection.objectives import UNKNOWN, Figures
+from designer.selection.verify import NOT_TRIED, Sampled, Verification
+from designer.study import Objective, Selection
+
+Standing = Literal[
+    "chosen", "undominated", "dominated", "not_comparable", "rejected", "too_thin", "not_held"
+]
+"""What became of a candidate; those of the first two span the Pareto set."""
+
+
+@dataclass(slots=True, eq=False)
+class Candidate:
+    """One size of one grade as it would be on the machine; what is known of it grows.
+
+    First its figures alone, then what it meets over the samples, then between them; last whether
+    it is chosen, and why.
+
+    Parameters
+    ----------
+    grade, size
+        The product.
+    cable : Cable
+        Its figures as the solver takes them, efficiency and safety factor applied.
+    efficiency : float
+        Share of the breaking load that end fittings and bending leave.
+    continuous_diameter_m : float
+        Optimum in the grade's continuous family [m]; NaN where the family has none.
+    verification : Verification
+        What it meets in the load case that governs.
+    cases : tuple of CaseFound
+        What it meets in each direction of each load case, of each case in the worst one where its
+        standing is known; up to the first that it does not hold.
+    figures : Figures
+        What it is compared by.
+    rejected_by : Requirement or None
+        A requirement beside strength that it is known to fail.
+    standing : str
+        What became of it; empty where it was not compared.
+    reason : str
+        Why, for the reader of a report.
+    requirements : tuple of Requirement
+        All that the study asks of it; empty where that was not evaluated in full.
+    """
+
+    grade: Grade
+    size: Size
+    cable: Cable
+    efficiency: float = 1.0
+    continuous_diameter_m: float = math.nan
+    verification: Verification = NOT_TRIED
+    cases: tuple[CaseFound, ...] = ()
+    figures: Figures = UNKNOWN
+    rejected_by: Requirement | None = None
+    standing: Standing | Literal[""] = ""
+    reason: str = ""
+    requirements: tuple[Requirement, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Grade and size."""
+        return f"{self.grade.id}, {self.size.id}"
+
+    @property
+    def label(self) -> str:
+        """Size and grade in one line."""
+        return f"{self.size.id} of {self.grade.id}"
+
+    @property
+    def largest_strain(self) -> float:
+        """Strain at the allowable tension; the cable never stretches more."""
+        return self.cable.allowable_tension_N / self.cable.axial_stiffness_N
+
+    @property
+    def verified(self) -> bool:
+        """Whether it holds everywhere, between the samples as well, with its own figures."""
+        return self.verification.holds and self.verification.is_refined
+
+    @property
+    def governing(self) -> CaseFound:
+        """The load case that asks for most."""
+        return governing(self.cases)
+
+    @property
+    def sampled(self) -> Sampled:
+        """What it meets over the samples in the load case that governs."""
+        return self.governing.sampled
+
+    @property
+    def in_case(self) -> str:
+        """That case, as it ends a sentence; empty where the study has none."""
+        case = self.governing.case
+        return "" if case is STATIC else f" in the load case '{case.name}'"
+
+    @property
+    def total_mass_kg(self) -> float:
+        """Mass of all cables at the longest length each needs [kg]."""
+        return self.figures.mass_kg
+
+    def key(self, objectives: Sequence[Objective]) -> tuple[float, ...]:
+        """Sort by the objective that decides; then by the others, in their order."""
+        return (*(self.figures.burden(o) for o in objectives), self.figures.mass_kg)
+
+
+def is_allowed(grade: Grade, named: Sequence[str] | None) -> bool:
+    """Tell whether a study that names these grades, or none, considers a grade."""
+    return grade.why_only_by_name is None if named is None else grade.id in named
+
+
+def candidates_of(selection: Selection, grades: Sequence[Grade], built: AsBuilt) -> list[Candidate]:
+    """Return every size of these grades that the sheave allows, with its figures as built."""
+    allowance = Allowance.of(selection)
+    sizes = ((g, s, allowance.efficiency(g, s.diameter_m)) for g in grades for s in g.sizes)
+    return [
+        Candidate(grade, size, built.of_products.cable(allowance.cable(grade, size)), efficiency)
+        for grade, size, efficiency in sizes
+        if not math.isnan(efficiency)
+    ]
+
+
+def common_currency(grades: Sequence[Grade]) -> str | None:
+    """Return the currency in which most sizes are priced; None where none is."""
+    currencies = [g.currency for g in grades for s in g.sizes if g.currency and s.price_per_m]
+    return max(sorted(set(currencies)), key=currencies.count, default=None)
+
+
+def cost(candidate: Candidate, length_m: float, currency: str | None) -> float:
+    """Return the price of this length; NaN without one in the currency of the comparison."""
+    if candidate.size.price_per_m is None or candidate.grade.currency != currency:
+        return math.nan
+    return candidate.size.price_per_m * length_m
+
+
+def priced(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Return the candidates with a price, in the currency that most of them have."""
+    sold = [c for c in candidates if c.size.price_per_m is not None and c.grade.currency]
+    currencies = [candidate.grade.currency or "" for candidate in sold]
+    commonest = max(sorted(set(currencies), reverse=True), key=currencies.count, default=None)
+    return tuple(candidate for candidate in sold if candidate.grade.currency == commonest)
+
+
+def undominated(
+    candidates: Sequence[Candidate], *, by_price: bool = False
+) -> tuple[Candidate, ...]:
+    """Return the candidates that no other one beats, the lightest first.
+
+    One beats another if it is not heavier, not stiffer, not weaker, and, where the price decides,
+    not dearer. Weight and stiffness are what a cable loads the others with; so what holds with the
+    beaten rope holds with the better one, as a rule. Of equal ropes the first one stays.
+    """
+    figures = np.array(
+        [
+            (
+                candidate.cable.linear_density_kg_per_m,
+                -candidate.cable.allowable_tension_N,
+                candidate.cable.axial_stiffness_N,
+                (candidate.size.price_per_m or 0.0) if by_price else 0.0,
+            )
+            for candidate in candidates
+        ]
+    ).reshape(-1, 4)
+
+    def is_beaten(k: int) -> bool:
+        beats = (figures <= figures[k]).all(axis=1)
+        is_better = (figures < figures[k]).any(axis=1)
+        return bool((beats & (is_better | (np.arange(len(figures)) < k))).any())
+
+    unbeaten = [k for k in range(len(figures)) if not is_beaten(k)]
+    return tuple(candidates[k] for k in sorted(unbeaten, key=lambda k: tuple(figures[k])))
