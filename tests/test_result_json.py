@@ -94,6 +94,19 @@ def test_promised_names_are_there(result: Any) -> None:
     assert result["provenance"]["catalogues"][0].keys() >= {"name", "source"}
 
 
+def test_what_a_reviewer_asks_next_is_there(result: Any, analysis: Analysis) -> None:
+    findings, choice = result["findings"], analysis.findings.massless_choice
+    assert choice is not None
+    assert findings["without_cable_weight"]["size_id"] == choice.size.id
+    assert findings["without_cable_weight"]["safety_factor"] == choice.safety_factor
+    assert findings["other_hangs_below"]["policy"] == "exclude"
+    assert 0.0 < findings["hanging_share"] < 1.0
+    assert findings["unserved"] is None
+    assert findings["not_in_equilibrium"] == []
+    low, high = findings["modulus_utilisation"]
+    assert low != high
+
+
 def test_values_are_the_papers(result: Any) -> None:
     pose = result["pose"]
     assert pose["sagging"]["diameter_m"] == pytest.approx(32.59917e-3, abs=5e-9)

@@ -16,6 +16,9 @@ from typing import Any
 
 from designer import __version__
 from designer.analysis.carries import Carries, carries_of
+from designer.analysis.findings import Findings, find
+from designer.analysis.governing import GoverningPose, governing_pose
+from designer.analysis.governing_ropes import GoverningRopes, governing_ropes
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.analysis.pose import PoseAnalysis, analyse_pose
 from designer.analysis.requirements import requirements_of
@@ -29,12 +32,15 @@ from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
 from designer.selection.candidate import Candidate
+from designer.selection.cases import CaseFound
 from designer.selection.family_need import CaseNeed, family_needs, most_needed
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
 from designer.selection.qualities import Qualities, qualities_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
+from designer.sizing.newton import Sizing, size_poses
+from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Study, as_built_by, require_answerable
 from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
@@ -233,6 +239,47 @@ class Analysis:
         return requirements_of(self)
 
     @cached_property
+    def cases(self) -> tuple[CaseFound, ...]:
+        """What the chosen rope, or the configured family where none is asked for, meets."""
+        if self.chosen is not None:
+            return self.chosen.cases
+        return tuple(need.found for need in self.needs)
+
+    @cached_property
+    def governing(self) -> GoverningPose | None:
+        """The pose at which the chosen rope for all cables is used most; None without one."""
+        chosen, selection = self.chosen, self.study.selection
+        if chosen is None or selection is None:
+            return None
+        return governing_pose(chosen, selection.safety_factor)
+
+    @cached_property
+    def ropes(self) -> GoverningRopes | None:
+        """The ropes of the answer as loaded where they are used most; None without any."""
+        return governing_ropes(self)
+
+    @cached_property
+    def worst_sizing(self) -> Sizing | None:
+        """The cable that the worst pose of the workspace needs; None where none is finite."""
+        if self.workspace is None or self.workspace.sagging is None:
+            return None
+        material = self.built.material(self.study.material)
+        return size_poses(self.built.robot, self.workspace.sagging.pose, material)
+
+    @cached_property
+    def outside(self) -> Statics | None:
+        """The design in the configured pose, where that is not one of the workspace."""
+        pose, qualities = self.study.pose, self.qualities
+        if not self.study.pose_outside or pose is None or qualities is None:
+            return None
+        return solve_sagging(self.built.robot, pose, qualities.cable.cable)
+
+    @cached_property
+    def findings(self) -> Findings:
+        """What a reviewer asks next."""
+        return find(self)
+
+    @cached_property
     def verification(self) -> tuple[SecondAnswer, ...]:
         """The governing poses, solved again by other methods."""
         return second_answers(self)
@@ -338,6 +385,7 @@ class Analysis:
 _STAGES = (
     *("pose", "workspace", "selection", "groups", "needs", "qualities", "requirements"),
     *("verification", "carries", "group_slopes", "servable", "uncertainty"),
+    *("worst_sizing", "outside", "governing", "findings"),
 )
 """In the order in which their progress is shown."""
 
@@ -372,6 +420,10 @@ def analyse(
         getattr(analysis, stage)
     if analysis.pose is not None:
         _ = analysis.pose.rest
+    if analysis.ropes is not None:
+        _ = analysis.ropes.worst, analysis.ropes.straight
+    for case in analysis.cases:
+        _ = case.most_used
     return analysis
 
 

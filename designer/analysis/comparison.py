@@ -40,7 +40,8 @@ _ANSWERS = {
 }
 """Values of ``result.json`` that a reader compares first, and what they are called."""
 _APART = (
-    "inputs", "provenance", "verification", "name", "format", "pose.loop", "answer.reasons"
+    "inputs", "provenance", "verification", "name", "format", "pose.loop", "answer.reasons",
+    "findings",
 )  # fmt: skip
 """What is compared by itself, or tells only how and when."""
 _LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried")

@@ -8,11 +8,11 @@ cable below the platform count, or not? How wide is the strip that cannot be ser
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from designer.analysis.adrift import Adrift, adrift_in
-from designer.analysis.analyse import Analysis
 from designer.arrays import FloatArray
 from designer.grades.grade import Size
 from designer.model.region import Prism
@@ -29,6 +29,9 @@ from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
+
+if TYPE_CHECKING:
+    from designer.analysis.analyse import Analysis
 
 _MOST_SAMPLES = 20_000
 _FEW_PLACES, _FEW_POSITIONS = 2000, 100  # of robots that are slow to solve

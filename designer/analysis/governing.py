@@ -113,7 +113,7 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
     ``safety_factor`` is that of the study, for load cases without their own.
     """
     found = chosen.governing
-    statics = found.statics()
+    statics = found.statics
     if statics is None or not statics.is_solved.all():
         return None
     pulls = _pulls_N(statics)

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.governing import GoverningPose, governing_pose
+from designer.analysis.governing import GoverningPose
 from designer.documents.plain import finite
 from designer.model.requirement import Requirement
 from designer.model.space import turn_of
@@ -26,7 +26,7 @@ def load_cases_dict(analysis: Analysis) -> Json:
             for one in analysis.needs
         ]
         return {"load_cases": needs, "checks": checks, "governing": None}
-    pose = governing_pose(chosen, study.selection.safety_factor)
+    pose = analysis.governing
     return {
         "load_cases": [_case(one) for one in chosen.cases],
         "checks": checks,
@@ -56,7 +56,7 @@ def _governing(pose: GoverningPose) -> Json:
     plain: Json = finite(
         {
             "load_case": found.case.name,
-            "cable": found.most_used(),
+            "cable": found.most_used,
             "lost_cable": found.loaded.lost_cable,
             "pose": place[:3],
             "rotation_vector": turn_of(place),
@@ -72,7 +72,7 @@ def _governing(pose: GoverningPose) -> Json:
 
 
 def _case(found: CaseFound) -> Json:
-    met, loaded, loss = found.verification, found.loaded, found.loss()
+    met, loaded, loss = found.verification, found.loaded, found.loss
     place = met.worst_place
     after = {
         "fate": None if loss is None else Fate(int(loss.fate[0])).label,
@@ -86,7 +86,7 @@ def _case(found: CaseFound) -> Json:
         "max_tension_N": met.max_tension_N,
         "allowable_tension_N": loaded.cable.allowable_tension_N,
         "axial_stiffness_N": loaded.cable.axial_stiffness_N,
-        "cable": found.most_used(),
+        "cable": found.most_used,
         "pose": place[:3],
         "rotation_vector": turn_of(place),
         "lost_cable": loaded.lost_cable,

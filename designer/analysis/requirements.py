@@ -126,7 +126,7 @@ def _need(need: CaseNeed) -> Requirement:
         source="cable, load_cases",
         state=state,
         load_case=found.case.name,
-        cable=found.most_used() if need.is_held else None,
+        cable=found.most_used if need.is_held else None,
         place=found.verification.worst_place,
         loaded=found.loaded,
         remark=remark,

@@ -11,6 +11,7 @@ import numpy as np
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries_json import carries_dict
+from designer.analysis.findings_json import findings_dict
 from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import groups_dict, selection_dict
@@ -63,6 +64,7 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
             analysis.carries if carries else None, analysis.group_slopes if carries else ()
         ),
         "uncertainty": uncertainty_dict(analysis.uncertainty if is_read("uncertainty") else None),
+        "findings": findings_dict(analysis.findings) if is_read("findings") else None,
         "proof": _proof(analysis),
         "verification": _verification(analysis) if is_read("verification") else [],
         "provenance": {

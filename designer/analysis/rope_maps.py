@@ -2,87 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from designer.analysis import grids
-from designer.analysis.analyse import Analysis
 from designer.analysis.field import Field
+from designer.analysis.governing_ropes import GoverningRopes
 from designer.analysis.maps import Focus, WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.cable import Cable, Cables
 from designer.model.region import Prism, Rectangle
-from designer.model.robot import Poses, Robot
-from designer.selection.cases import CaseFound
-from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.study import Workspace
+from designer.model.robot import Poses
+from designer.statics.inverse import solve_massless
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Rope:
-    """The ropes of the answer as they are loaded where they are used most.
-
-    Parameters
-    ----------
-    robot, cable, workspace
-        What is solved.
-    name : str
-        Of the ropes.
-    load_case : str
-        Of these loads.
-    place : array (n_coordinates,)
-        The worst place that is known [m, rad].
-    """
-
-    robot: Robot
-    cable: Cable | Cables
-    workspace: Workspace
-    name: str
-    load_case: str
-    place: FloatArray
-
-    def statics(self, place: FloatArray) -> Statics:
-        """Return the equilibrium at places (..., n_coordinates)."""
-        return solve_sagging(self.robot, Poses.at(place), self.cable)
-
-    def used(self, statics: Statics) -> FloatArray:
-        """Return the largest tension over allowable tension of any cable (...)."""
-        return np.asarray((statics.cable_tension_N / self.cable.allowable_tension_N).max(axis=-1))
-
-
-def rope_of(analysis: Analysis) -> Rope | None:
-    """Return the ropes of the answer; None where none is chosen.
-
-    Of one rope for all cables in the governing load case, or where that keeps lengths in the worst
-    of the others; where all do, in the static load of the study, as ropes for groups of cables.
-    """
-    study, robot, groups = analysis.study, analysis.built.robot, analysis.groups
-    chosen = analysis.chosen
-    if analysis.qualities is None or study.workspace is None:
-        return None
-    design = analysis.qualities.cable
-    if groups is not None and groups.chosen is not None:
-        met = groups.chosen.verification
-        place = met.worst_place[int(np.argmax(met.utilisation))]
-        return Rope(robot, design.cable, study.workspace, design.name, "static", place)
-    if chosen is None or groups is not None:
-        return None
-    whole = [one for one in chosen.cases if not one.loaded.keeps_lengths]
-    if not whole:
-        place = chosen.verification.worst_place
-        return Rope(robot, chosen.cable, study.workspace, design.name, "static", place)
-    most: CaseFound = max(whole, key=lambda one: one.utilisation)
-    place = most.verification.worst_place
-    one = most.loaded
-    return Rope(one.robot, one.cable, most.workspace, design.name, most.case.name, place)
-
-
-def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
+def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
     """Return the maps of a region with the values of a rope instead of what each pose needs."""
     region, place = rope.workspace.region, rope.place
-    statics = rope.statics(place)
+    statics = rope.worst
     focus = Focus(place[:3], "worst pose", statics if statics.is_solved else None, _at(rope, place))
     shell: dict[str, Field] = {}
     if isinstance(region, Prism):
@@ -98,7 +36,7 @@ def rope_maps(family: WorkspaceMaps, rope: Rope) -> WorkspaceMaps:
     return replace(family, study=study, focus=focus, section=section, shell=shell, edge=None)
 
 
-def _over(rope: Rope, position_m: FloatArray) -> Field:
+def _over(rope: GoverningRopes, position_m: FloatArray) -> Field:
     """Return the field at positions (..., 3), each in the orientation that asks for the most."""
     space, axes = rope.workspace.space, position_m.shape[:-1]
     places = space.places(position_m.reshape(-1, 3))
@@ -109,7 +47,7 @@ def _over(rope: Rope, position_m: FloatArray) -> Field:
     return _at(rope, places.reshape(*axes, -1))
 
 
-def _at(rope: Rope, place: FloatArray) -> Field:
+def _at(rope: GoverningRopes, place: FloatArray) -> Field:
     statics = rope.statics(place)
     nothing = np.full(place.shape[:-1], np.nan)
     return Field(

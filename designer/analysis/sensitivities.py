@@ -83,7 +83,7 @@ def sensitivities(found: CaseFound, efficiency: float, breaking_load_N: float) -
     """Return the slopes at the worst pose of a load case, of a rope with these figures."""
     if found.loaded.keeps_lengths:
         return _by_differences(found, efficiency, breaking_load_N)
-    statics = found.statics()
+    statics = found.statics
     solved = statics is not None and bool(statics.is_solved[0])
     ties: tuple[Slopes, ...] = ()
     if statics is not None and solved:

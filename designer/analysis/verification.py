@@ -13,7 +13,7 @@ import numpy as np
 from designer.model.cable import Material
 from designer.model.robot import Poses
 from designer.physics.quadrature import end_position_m
-from designer.sizing.newton import Sizing, size_poses
+from designer.sizing.newton import Sizing
 from designer.statics.inverse import Statics, solve_sagging
 
 if TYPE_CHECKING:
@@ -70,14 +70,13 @@ class SecondAnswer:
 
 def second_answers(analysis: Analysis) -> tuple[SecondAnswer, ...]:
     """Verify the configured pose, the worst pose, and that of the chosen rope."""
-    pose, workspace, built = analysis.pose, analysis.workspace, analysis.built
+    pose, worst = analysis.pose, analysis.worst_sizing
     answers: list[SecondAnswer] = []
     if pose is not None:
         answers += verify("configured pose", pose.material, pose.sizing)
-    if workspace is not None and workspace.sagging is not None:
-        material = built.material(analysis.study.material)
-        sizing = size_poses(built.robot, workspace.sagging.pose, material)
-        answers += verify("worst pose", material, sizing)
+    if worst is not None:
+        material = analysis.built.material(analysis.study.material)
+        answers += verify("worst pose", material, worst)
     chosen = analysis.chosen
     if chosen is not None:
         loaded = chosen.governing.loaded

@@ -129,7 +129,7 @@ def _summary_of_selection(
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
     for one in chosen.cases:
         if one.case is not STATIC:
-            met, cable = one.verification, one.most_used()
+            met, cable = one.verification, one.most_used
             at = ", ".join(f"{x:.4g}" for x in met.worst_place[:3])
             more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
             used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"

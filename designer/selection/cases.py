@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -41,7 +41,7 @@ _MOST_ROUNDS = 6
 _SAME = 1e-9
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class CaseFound:
     """What a cable meets in one load case, or in one direction of it.
 
@@ -100,15 +100,17 @@ class CaseFound:
             return float(settled_demand(other, hangs_below)(place)[0])
         return float(rope_demand(other.robot, other.cable, hangs_below)(place)[0, 0])
 
+    @cached_property
     def loss(self) -> CableLoss | None:
-        """Return what becomes of that pose; None where no lengths are kept."""
+        """What becomes of that pose; None where no lengths are kept."""
         return settled(self.loaded, self.pose) if self.loaded.keeps_lengths else None
 
+    @cached_property
     def statics(self) -> Statics | None:
-        """Return the equilibrium there (1,), at rest on kept lengths; None where there is none."""
+        """The equilibrium there (1,), at rest on kept lengths; None where there is none."""
         if not np.isfinite(self.utilisation):
             return None
-        loss = self.loss()
+        loss = self.loss
         if loss is not None:
             return loss.statics
         return solve_sagging(self.loaded.robot, self.pose, self.loaded.cable)
@@ -119,9 +121,10 @@ class CaseFound:
         every = np.arange(1, self.loaded.robot.n_cables + 1)
         return np.asarray(every[every != self.loaded.lost_cable])
 
+    @cached_property
     def most_used(self) -> int | None:
-        """Return the cable that is used most there, from 1; None where nothing holds the pose."""
-        statics = self.statics()
+        """The cable that is used most there, from 1; None where nothing holds the pose."""
+        statics = self.statics
         if statics is None or not statics.is_solved[0]:
             return None
         return int(self.cables[statics.cable_tension_N[0].argmax()])

@@ -286,7 +286,7 @@ def _breaking_load(found: CaseFound, selection: Selection) -> Requirement:
         capacity=found.loaded.cable.allowable_tension_N,
         unit="N",
         utilisation=verification.utilisation,
-        cable=found.most_used(),
+        cable=found.most_used,
         place=verification.worst_place,
         loaded=found.loaded,
     )
@@ -315,7 +315,7 @@ def equilibrium_of(found: CaseFound) -> Requirement:
 
 
 def _why_not_held(found: CaseFound) -> tuple[State, str]:
-    loss = found.loss()
+    loss = found.loss
     if loss is not None and Fate(int(loss.fate[0])) is not Fate.NOT_HELD:
         return State.OPEN, Fate(int(loss.fate[0])).words
     loaded = found.loaded

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import Analysis, analyse
-from designer.analysis.findings import Findings
 from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import selection_dict
@@ -168,7 +167,7 @@ def test_candidates_are_proved_with_the_mass_that_they_have_there(iced: Analysis
 
 
 def test_the_report_says_what_stands_for_the_family(iced: Analysis) -> None:
-    (items,) = assumptions.section(Source(iced, Findings())).blocks
+    (items,) = assumptions.section(Source(iced)).blocks
     (words,) = (text for text in items.items if "that the study declares" in text)
     assert "do not act alike on all sections" in words
     assert "20\u00a0°C" in words

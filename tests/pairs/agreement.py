@@ -128,7 +128,7 @@ def tension_at(one: Situation, pose: Pose, ours: CaseFound | None = None) -> tup
         return best.utilisation, ""
     lengths, wrong, start = best.total_m, "", pose
     if ours is not None:
-        loss = ours.loss()
+        loss = ours.loss
         lengths = loss.before.length_m[0]
         start = Pose.of(loss.rest.place[0]) if np.isfinite(loss.rest.position_m).all() else pose
         hung = hang(one.problem, pose, lengths, near=best)

@@ -19,7 +19,6 @@ from pairs.table import (
     wrong_with,
 )
 
-from designer.analysis.findings import find
 from designer.report.design.confidence import confidence
 
 TABLE = read_table()
@@ -61,7 +60,7 @@ def test_table_is_what_studies_are_read_as(tmp_path: Path) -> None:
 
 def test_effect_on_readings_is_told_as_not_covered(tmp_path: Path) -> None:
     analysis = analysed(study_of("crane", BY_ID["reading_effect"], BY_ID["pulleys"]), tmp_path)
-    told = {one.title: one.text for one in confidence(analysis, find(analysis))}
+    told = {one.title: one.text for one in confidence(analysis, analysis.findings)}
     assert "drum_scale" in told["Effects not covered"]
     assert "pulley_radius" in told["Declared effects"]
     assert "drum_scale" not in told["Declared effects"]

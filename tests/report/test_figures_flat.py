@@ -10,7 +10,6 @@ import pytest
 from report_parts import pictures
 
 from designer.analysis.analyse import Analysis, Provenance
-from designer.analysis.findings import Findings
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
@@ -93,7 +92,7 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
     points = PointList(frozen_array([[-5.0, 0, 10], [0, 0, 12], [5, 0, 10]]))
     listed = analysed(replace(facade, workspace=replace(facade.workspace, region=points)), tmp_path)
     for analysis in (flat, listed):
-        source = Source(analysis, Findings(), draws=True)
+        source = Source(analysis, draws=True)
         assert source.robot is not None
         shown = pictures(section(source))
         assert any("z [m]" in picture.svg for picture in shown)

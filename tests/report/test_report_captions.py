@@ -10,7 +10,6 @@ from figures_cases import maps_of
 from report_parts import pictures
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.analysis.maps import Served, workspace_maps
 from designer.report.design import pose, workspace
 from designer.report.design import workspace_figures as captions
@@ -34,7 +33,7 @@ def test_where_sag_hardly_matters_one_figure_less_says_so(crane: list[str]) -> N
 
 
 def test_figures_that_would_be_flat_are_left_out(yard: Analysis) -> None:
-    charts = Source(yard, Findings(), draws=True, missing="no scenes")
+    charts = Source(yard, draws=True, missing="no scenes")
     shown = [picture.caption for picture in pictures(workspace.family(charts))]
     assert len(pictures(workspace.section(charts))) == 1
     assert len(shown) == 3 and "All samples by verdict." not in shown  # every sample is held

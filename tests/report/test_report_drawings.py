@@ -11,7 +11,6 @@ import pytest
 from report_parts import pictures
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings, find
 from designer.report.blocks import Report
 from designer.report.design import selection as choice
 from designer.report.design.candidates import thin_table
@@ -63,7 +62,7 @@ def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
 
 def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    charts = report_from(Source(analysis, find(analysis), draws=True, missing="no scenes"))
+    charts = report_from(Source(analysis, draws=True, missing="no scenes"))
     assert len(pictures(charts.section("workspace"))) == 1
     assert len(pictures(charts.section("family"))) == 4
     reader = pypdf.PdfReader(io.BytesIO(render_pdf(render_html(charts, paged=True))))
@@ -80,6 +79,6 @@ def test_grades_that_all_cannot_hold_have_no_chart(analyses: dict[str, Analysis]
     assert selection is not None
     needs = [o.continuous_diameter_m for o in selection.outcomes]
     assert all(math.isnan(need) for need in needs)
-    source = Source(analyses["no_finite_cable"], Findings(), draws=True, missing="no scenes")
+    source = Source(analyses["no_finite_cable"], draws=True, missing="no scenes")
     assert not any("A row for each" in p.alternative for p in pictures(choice.section(source)))
     assert thin_table(selection.outcomes) is not None

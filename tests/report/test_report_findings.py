@@ -7,7 +7,7 @@ import pytest
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings, distance_to_sides_m, find
+from designer.analysis.findings import distance_to_sides_m
 from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.selection.verify import verify
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 def test_massless_choice_is_thinner_and_falls_short(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    choice = find(analysis).massless_choice
+    choice = analysis.findings.massless_choice
     assert choice is not None
     assert analysis.selection is not None
     assert analysis.selection.chosen is not None
@@ -31,7 +31,7 @@ def test_massless_choice_is_thinner_and_falls_short(analyses: dict[str, Analysis
 
 def test_massless_choice_is_verified_like_any_size(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    findings = find(analysis)
+    findings = analysis.findings
     choice, outcome = findings.massless_choice, findings.chosen_outcome
     assert choice is not None
     assert outcome is not None
@@ -43,7 +43,7 @@ def test_massless_choice_is_verified_like_any_size(analyses: dict[str, Analysis]
 
 def test_modulus_matters_little_where_sag_rules(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    low, high = find(analysis).modulus_utilisation or (np.nan, np.nan)
+    low, high = analysis.findings.modulus_utilisation or (np.nan, np.nan)
     assert analysis.selection is not None
     chosen = analysis.selection.chosen
     assert chosen is not None
@@ -57,7 +57,7 @@ def test_limit_ratio_of_the_rope_is_that_of_a_very_thick_one(
     analyses: dict[str, Analysis],
 ) -> None:
     analysis = analyses["positive"]
-    findings = find(analysis)
+    findings = analysis.findings
     assert analysis.selection is not None
     chosen, outcome = analysis.selection.chosen, findings.chosen_outcome
     assert chosen is not None
@@ -71,7 +71,7 @@ def test_limit_ratio_of_the_rope_is_that_of_a_very_thick_one(
 
 def test_other_policy_is_the_opposite(analyses: dict[str, Analysis]) -> None:
     included, excluded = analyses["positive"], analyses["exclude"]
-    other = find(included).other_policy
+    other = included.findings.other_policy
     assert other is not None
     assert other.hangs_below == "exclude"
     assert excluded.workspace is not None
@@ -83,16 +83,16 @@ def test_other_policy_is_the_opposite(analyses: dict[str, Analysis]) -> None:
 
 
 def test_no_policy_where_nothing_hangs(yard: Analysis) -> None:
-    assert find(yard).other_policy is None
+    assert yard.findings.other_policy is None
 
 
 def test_unserved_samples_lie_along_the_sides(analyses: dict[str, Analysis]) -> None:
-    unserved = find(analyses["no_finite_cable"]).unserved
+    unserved = analyses["no_finite_cable"].findings.unserved
     assert unserved is not None
     # Reference: no finite cable at 4.8 m from the edge of the hull or nearer, at z = -40 m.
     assert 1.0 < unserved.depth_m < 4.81
     assert 100.0 < unserved.inradius_m < 144.4
-    assert find(analyses["positive"]).unserved is None
+    assert analyses["positive"].findings.unserved is None
 
 
 def test_distance_to_sides() -> None:
@@ -102,7 +102,7 @@ def test_distance_to_sides() -> None:
 
 
 def test_nothing_is_found_for_a_pose_alone(pose_only: Analysis) -> None:
-    findings = find(pose_only)
+    findings = pose_only.findings
     assert findings.chosen_outcome is None
     assert findings.other_policy is None
     assert findings.unserved is None
@@ -111,14 +111,14 @@ def test_nothing_is_found_for_a_pose_alone(pose_only: Analysis) -> None:
 def test_hanging_share_is_that_of_the_chosen_rope(
     analyses: dict[str, Analysis], yard: Analysis, pose_only: Analysis
 ) -> None:
-    included = find(analyses["positive"]).hanging
+    included = analyses["positive"].findings.hanging
     assert analyses["positive"].workspace is not None
     census = analyses["positive"].workspace.census
     assert included is not None
     # The rope needs less than half the diameter of the idealised cable, so it hangs less often.
     assert 0.0 < included < census.hangs_below / census.samples
-    assert find(yard).hanging == 0.0
-    assert find(pose_only).hanging is None
+    assert yard.findings.hanging == 0.0
+    assert pose_only.findings.hanging is None
 
 
 def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> None:
@@ -128,10 +128,10 @@ def test_findings_and_assumptions_are_of_the_machine_as_built(solve, yard) -> No
 
     text = example_file("yard").read_text(encoding="utf-8")
     built = solve(text + "\neffects: {pulley_radius: {radius_m: 0.3}, linear_mass: {scale: 2}}\n")
-    assumptions = said(section(Source(built, Findings())))
+    assumptions = said(section(Source(built)))
     assert "300 mm radius" in assumptions
     assert "the study declares: pulley_radius, linear_mass. They act" in assumptions
-    assert "without pulleys" in said(section(Source(yard, Findings())))
+    assert "without pulleys" in said(section(Source(yard)))
     assert built.selection is not None
     outcome = built.selection.outcomes[0]
     # The mass was found of the study's own cable: a rope of the catalogue keeps its data sheet.

@@ -10,7 +10,6 @@ from altered import altered
 from report_parts import cells, facts, statements, table, tables
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import groups_dict
 from designer.cli.tables import summary_rows
@@ -65,7 +64,7 @@ def test_result_has_the_groups_beside_the_single_choice(found: Analysis) -> None
 
 
 def test_section_says_the_same(found: Analysis) -> None:
-    section = groups_of_cables.section(Source(found, Findings()))
+    section = groups_of_cables.section(Source(found))
     assert statements(section)["Products were found for the groups"].tone == "good"
     rows = cells(section, "What each group gets")
     assert [row[1] for row in rows] == ["1, 2", "3"]
@@ -93,14 +92,14 @@ def test_nothing_found_is_said(none: Analysis) -> None:
     assert part["groups"] == []
     assert part["group_choice"]["proof"] == "infeasible"
     assert part["group_choice"]["total_mass_kg"] is None
-    section = groups_of_cables.section(Source(none, Findings()))
+    section = groups_of_cables.section(Source(none))
     assert statements(section)["No products were found for the groups"].tone == "bad"
     assert not any(one.caption.startswith("What each group") for one in tables(section))
 
 
 def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    assert groups_of_cables.section(Source(analysis, Findings())) is None
+    assert groups_of_cables.section(Source(analysis)) is None
     assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
     assert result_dict(analysis)["selection"]["group_choice"] is None
 
@@ -116,7 +115,7 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     groups = replace(found.groups, single=None)
     without = altered(found, selection=alone, groups=groups)
     assert without.is_positive
-    page = first_page(Source(without, Findings()))
+    page = first_page(Source(without))
     assert page.verdict.title == "Yes"
     assert page.reasons == page.actions == ()
     assert page.card is not None and page.card.heading == "Ropes for groups of cables"
@@ -129,6 +128,6 @@ def test_where_no_groups_are_found_the_answer_is_no(none: Analysis) -> None:
     assert not none.is_positive
     assert result_dict(none)["answer"]["verdict"] in ("no", "open")
     assert result_dict(none)["answer"]["products"] == []
-    page = first_page(Source(none, Findings()))
+    page = first_page(Source(none))
     assert page.verdict.title == "No"
     assert "No products were found for the groups" in [reason.title for reason in page.reasons]

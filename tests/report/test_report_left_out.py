@@ -10,7 +10,6 @@ from altered import altered
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.report.blocks import Bullets, Report, Section
 from designer.report.design import left_out
@@ -31,7 +30,7 @@ def test_both_kinds_of_problem_are_told_once(analyses: dict[str, Analysis]) -> N
         study=dataclasses.replace(analysis.study, known_effects=known),
         catalogue=dataclasses.replace(analysis.catalogue, problems=(EVIL,)),
     )
-    section = left_out.section(Source(spoilt, Findings()))
+    section = left_out.section(Source(spoilt))
     assert section is not None
     assert str(section.blocks[-2]).endswith("These could not be loaded:")
     assert section.blocks[-1] == Bullets((EVIL, LOST))
@@ -43,7 +42,7 @@ def test_few_grades_are_named_and_many_are_counted(analyses: dict[str, Analysis]
     analysis = analyses["positive"]
     names = [g.id for g in analysis.catalogue.grades if not g.why_only_by_name]
     few, many = (
-        said(left_out.section(Source(_allowing(analysis, tuple(some)), Findings())))
+        said(left_out.section(Source(_allowing(analysis, tuple(some)))))
         for some in (names[3:], names[:3])
     )
     assert all(name in few for name in names[:3])

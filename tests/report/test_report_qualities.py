@@ -14,7 +14,6 @@ from report_parts import facts, pictures, said, statements, tables
 
 from designer.analysis import grids
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.analysis.section import Section
 from designer.report.design import clearance, stiffness
@@ -121,7 +120,7 @@ def test_a_clearance_broken_between_samples_only(not_kept: Analysis) -> None:
     assert found is not None and found.interference is not None
     none_of_the_samples = replace(found.interference, violating=0)
     changed = altered(not_kept, qualities=replace(found, interference=none_of_the_samples))
-    section = clearance.section(Source(changed, Findings()))
+    section = clearance.section(Source(changed))
     assert "only between the samples" in said(section)
 
 
@@ -129,7 +128,7 @@ def test_unstable_poses_are_told(kept: Analysis) -> None:
     found = kept.qualities
     assert found is not None and found.stiffness is not None
     shaky = replace(found, stiffness=replace(found.stiffness, unstable=3, softest_m_per_N=np.inf))
-    section = stiffness.section(Source(altered(kept, qualities=shaky), Findings()))
+    section = stiffness.section(Source(altered(kept, qualities=shaky)))
     verdict = statements(section)["Some poses are not stable"]
     assert verdict.tone == "bad"
     assert "not stay where it is put in 5.00\u00a0% of the samples" in verdict.text
@@ -149,7 +148,7 @@ def test_a_list_of_points_has_no_map(solve: Solve) -> None:
     points = "{points: [[0, 0, 4], [2, 1, 5]]}"
     analysis = solve(SIX.format(region=points, clearance="0.1 m", selection=""))
     for make in (stiffness.section, clearance.section):
-        section = make(Source(analysis, Findings(), draws=True))
+        section = make(Source(analysis, draws=True))
         assert section is not None
         assert pictures(section) == []
 
@@ -161,7 +160,7 @@ cable: {density: 5290 kg/m^3, youngs_modulus: 62.7 GPa, allowable_stress: 198 MP
 workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 """
     analysis = solve(text)
-    section = clearance.section(Source(analysis, Findings(), draws=True))
+    section = clearance.section(Source(analysis, draws=True))
     assert "There is nothing to compare" in statements(section)
     assert tables(section) == []
     assert result_dict(analysis)["workspace"]["interference"]["min_distance_m"] is None

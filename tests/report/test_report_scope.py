@@ -9,7 +9,6 @@ import pytest
 from report_parts import statements
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
 from designer.analysis.result_json import result_dict
 from designer.arrays import frozen_array
 from designer.cli.tables import summary_rows
@@ -84,7 +83,7 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
     both, tone = said(Selection(termination_efficiency=0.95, sheave_diameter_m=sheave_m))
     assert f"90.0 % for {chosen.size.id} (D/d 25)" in both
     assert tone == ""
-    page = first_page(Source(analysis, Findings()))
+    page = first_page(Source(analysis))
     assert "Losses of strength" in [statement.title for statement in page.confidence]
     assert page.card is not None
     assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts.items]
@@ -123,7 +122,7 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
     assert flagged.tone in ("doubt", "bad")
     assert statements(section(source))[flagged.title] == flagged
     assert ("", "[bold red]lies outside the region[/]") in [*summary_rows(moved)]
-    assert flagged.title not in statements(section(Source(inside, Findings())))
+    assert flagged.title not in statements(section(Source(inside)))
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:

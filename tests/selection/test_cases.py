@@ -201,11 +201,11 @@ def test_a_lost_cable_is_told() -> None:
     chosen = chosen_for(study, (LoadCase("static"), lost)).chosen
     assert chosen is not None
     found = chosen.cases[1]
-    loss = found.loss()
+    loss = found.loss
     assert loss is not None
     assert loss.fate[0] == Fate.RESTS_ELSEWHERE
     assert found.loaded.lost_cable == 2
-    assert found.most_used() in (1, 3)
+    assert found.most_used in (1, 3)
     assert float(loss.largest_tension_N[0]) == pytest.approx(
         found.verification.max_tension_N, rel=1e-9
     )

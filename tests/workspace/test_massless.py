@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from designer.analysis.analyse import analyse
-from designer.analysis.findings import Findings
 from designer.arrays import frozen_array
 from designer.cli.tables import summary_rows
 from designer.io.config import read_study
@@ -98,7 +97,7 @@ def test_terminal_and_report_say_that_there_is_none(tmp_path) -> None:
     analysis = analyse(ipanema(ACROSS), folder=tmp_path)
     said = dict(summary_rows(analysis))
     assert said["  massless"] == "none: straight cables do not hold every pose"
-    section = workspace_section(Source(analysis, Findings(), draws=False, missing="pictures"))
+    section = workspace_section(Source(analysis, draws=False, missing="pictures"))
     assert section is not None
     texts = [block for block in section.blocks if isinstance(block, str)]
     assert any(text.startswith("Straight weightless cables do not hold every") for text in texts)

@@ -31,7 +31,7 @@ from designer.study import Study
 def section(source: Source) -> Section | None:
     """Return all that the study asks for, and whether it holds."""
     requirements = source.analysis.requirements
-    pose = source.governing
+    pose = source.analysis.governing
     shown: tuple[Block | None, ...] = ()
     if pose is not None:
         picture = _picture(pose) if source.draws_scenes else None

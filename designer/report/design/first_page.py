@@ -27,7 +27,6 @@ from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import SelectionResult
-from designer.sizing.newton import size_poses
 from designer.study import CableGroup
 
 _MOST_SIZES = 2
@@ -85,7 +84,7 @@ class FirstPage:
 
 def first_page(source: Source) -> FirstPage:
     """Return the first page."""
-    analysis, findings = source.analysis, source.findings
+    analysis, findings = source.analysis, source.analysis.findings
     return FirstPage(
         verdict=_verdict(analysis, findings),
         card=_card(analysis),
@@ -100,7 +99,7 @@ def first_page(source: Source) -> FirstPage:
 
 def _picture(source: Source) -> Picture | None:
     if source.draws_scenes and source.maps is not None:
-        return cover_picture(source.rope_maps or source.maps, source.rope)
+        return cover_picture(source.rope_maps or source.maps, source.analysis.ropes)
     return replace(source.robot, kind="robot") if source.robot else None
 
 
@@ -279,10 +278,9 @@ def _needs_card(need: CaseNeed) -> Card | None:
 
 def diameter_heading(analysis: Analysis, what: str) -> str:
     """Return ``Diameter that the pose needs`` only where no thinner cable is proved to hold it."""
-    workspace, pose, study = analysis.workspace, analysis.pose, analysis.study
-    sizing = pose.sizing if pose is not None else None
-    if what == "workspace" and workspace is not None and workspace.sagging is not None:
-        sizing = size_poses(analysis.built.robot, workspace.sagging.pose, study.material)
+    sizing = analysis.pose.sizing if analysis.pose is not None else None
+    if what == "workspace" and analysis.worst_sizing is not None:
+        sizing = analysis.worst_sizing
     if sizing is not None and sizing.is_thinnest:
         return f"Diameter that the {what} needs"
     return f"Thinnest diameter found for the {what}"

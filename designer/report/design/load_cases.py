@@ -54,7 +54,7 @@ def section(source: Source) -> Section | None:
         "load-cases",
         "Load cases",
         _statement(chosen),
-        *carried_away(source.findings),
+        *carried_away(source.analysis.findings),
         _asked(study),
         None if chosen is None else _met(chosen, leaves_out=leaves_out),
         _LEFT_OUT if leaves_out else None,
@@ -98,7 +98,7 @@ def _of_family(source: Source, needs: tuple[CaseNeed, ...]) -> Section:
     return Section.of(
         "load-cases",
         "Load cases",
-        *carried_away(source.findings),
+        *carried_away(source.analysis.findings),
         _asked(study),
         Table.of(caption, columns, *rows),
         _LEFT_OUT if leaves_out else None,
@@ -124,7 +124,7 @@ def _need_row(one: CaseNeed, *, governs: bool) -> Row:
         found.case.name,
         size if one.is_held else "none holds",
         tension if one.is_held else fmt.MISSING,
-        str(found.most_used() or "") if one.is_held else fmt.MISSING,
+        str(found.most_used or "") if one.is_held else fmt.MISSING,
         fmt.position(met.worst_place[:3]),
         fmt.printed(found.loaded.words) or fmt.MISSING,
     )
@@ -166,7 +166,7 @@ def _statement(chosen: Candidate | None) -> Statement:
     where = fmt.position(most.verification.worst_place[:3])
     words = f", {fmt.printed(most.loaded.words)}" if most.loaded.words else ""
     text = (
-        f"The load case '{most.case.name}' governs: cable {most.most_used()} is used to "
+        f"The load case '{most.case.name}' governs: cable {most.most_used} is used to "
         f"{fmt.utilisation(most.utilisation)} with the platform at {where}{words}."
     )
     return Statement("The chosen rope is strong enough in every load case", text, "good")
@@ -247,7 +247,7 @@ def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
             largest,
             allowable,
             *([fmt.newtons(cable.axial_stiffness_N)] if cable.stiffening else []),
-            str(found.most_used() or ""),
+            str(found.most_used or ""),
             fmt.position(met.worst_place[:3]),
             fmt.printed(found.loaded.words) or "–",
             *([fmt.share(found.sampled.counted, found.sampled.samples)] if leaves_out else []),
@@ -266,7 +266,7 @@ def _lost(chosen: Candidate) -> str:
     """Return what becomes of the platform at the worst pose of each case that keeps lengths."""
     parts = []
     for found in chosen.cases:
-        loss = found.loss()
+        loss = found.loss
         if loss is None:
             continue
         fate = Fate(int(loss.fate[0]))

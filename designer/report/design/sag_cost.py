@@ -6,12 +6,10 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import MasslessChoice
-from designer.analysis.rope_maps import Rope
-from designer.model.robot import Poses
+from designer.analysis.governing_ropes import GoverningRopes
 from designer.report import format as fmt
 from designer.report.blocks import Block, Column, Table
 from designer.report.design.source import Source
-from designer.statics.inverse import solve_massless
 
 
 def sag_cost(source: Source) -> tuple[Block, ...]:
@@ -20,10 +18,10 @@ def sag_cost(source: Source) -> tuple[Block, ...]:
     Also what a design without it would have bought, and how it would fare. Without a rope of the
     configured family at the worst pose, or the configured one; empty where nothing compares.
     """
-    analysis, choice = source.analysis, source.findings.massless_choice
-    if source.rope is not None:
+    analysis, choice = source.analysis, source.analysis.findings.massless_choice
+    if source.analysis.ropes is not None:
         said = (_consequence(analysis, choice),) if choice and not analysis.has_groups else ()
-        return (*_of_rope(source.rope), *said)
+        return (*_of_rope(source.analysis.ropes), *said)
     found = _at_the_worst_poses(analysis) or _at_the_configured_pose(analysis)
     if found is None:
         return ()
@@ -43,10 +41,9 @@ def sag_cost(source: Source) -> tuple[Block, ...]:
 _HEADS = ("", Column("Without"), Column("With"), Column("Factor"))
 
 
-def _of_rope(rope: Rope) -> tuple[Block, ...]:
+def _of_rope(rope: GoverningRopes) -> tuple[Block, ...]:
     """Return tension and utilisation without and with the weight of the ropes."""
-    statics = rope.statics(rope.place)
-    straight = solve_massless(rope.robot, Poses.at(rope.place)).tension_N
+    statics, straight = rope.worst, rope.straight.tension_N
     if not statics.is_solved or not (straight >= 0.0).all():
         return ("Straight weightless cables cannot hold the worst pose at all.",)
     without = float((straight / rope.cable.allowable_tension_N).max())

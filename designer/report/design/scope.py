@@ -12,7 +12,6 @@ from designer.model.space import Orientations
 from designer.report import format as fmt
 from designer.report.blocks import Fact, Statement, Tone
 from designer.selection.efficiency import Allowance
-from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study
 
 _MOST_LISTED = 6
@@ -89,14 +88,13 @@ def strength_statement(
 
 def pose_statement(analysis: Analysis) -> Iterator[Statement]:
     """Yield where the configured pose is not one of the workspace, and what holds there."""
-    outside, pose, qualities = analysis.study.pose_outside, analysis.study.pose, analysis.qualities
+    outside, statics, qualities = analysis.study.pose_outside, analysis.outside, analysis.qualities
     if not outside:
         return
     tone: Tone = "doubt"
     text = f"It {outside}."
-    if pose is not None and qualities is not None:
+    if statics is not None and qualities is not None:
         cable, name = qualities.cable.cable, qualities.cable.name
-        statics = solve_sagging(analysis.built.robot, pose, cable)
         used, said = np.inf, f"With {name} no equilibrium was found there."
         if statics.is_solved:
             used = float((statics.cable_tension_N / cable.allowable_tension_N).max())

@@ -7,9 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings, find
-from designer.analysis.governing import GoverningPose, governing_pose
-from designer.analysis.rope_maps import Rope, rope_maps, rope_of
+from designer.analysis.rope_maps import rope_maps
 from designer.report.blocks import Picture
 from designer.report.pictures import scene
 
@@ -25,8 +23,6 @@ class Source:
     ----------
     analysis : Analysis
         All results.
-    findings : Findings
-        What follows from them.
     draws : bool
         Whether figures are drawn.
     missing : str
@@ -34,7 +30,6 @@ class Source:
     """
 
     analysis: Analysis
-    findings: Findings
     draws: bool = False
     missing: str = ""
 
@@ -53,16 +48,11 @@ class Source:
         return workspace_maps(self.analysis)
 
     @cached_property
-    def rope(self) -> Rope | None:
-        """The ropes of the answer as loaded where they are used most; None without any."""
-        return rope_of(self.analysis)
-
-    @cached_property
     def rope_maps(self) -> WorkspaceMaps | None:
         """What the maps of these ropes show; None without them."""
-        if self.maps is None or self.rope is None:
+        if self.maps is None or self.analysis.ropes is None:
             return None
-        return rope_maps(self.maps, self.rope)
+        return rope_maps(self.maps, self.analysis.ropes)
 
     @cached_property
     def robot(self) -> Picture | None:
@@ -81,17 +71,9 @@ class Source:
         drawn = robot_scene(statics, loads=loads)
         return scene(f"{caption}.", "The robot with its cables, in space", drawn)
 
-    @cached_property
-    def governing(self) -> GoverningPose | None:
-        """The pose at which the chosen rope for all cables is used most; None without one."""
-        study, found = self.analysis.study, self.analysis.selection
-        if found is None or found.chosen is None or study.selection is None:
-            return None
-        return governing_pose(found.chosen, study.selection.safety_factor)
-
 
 def source_of(analysis: Analysis, *, draws: bool = True) -> Source:
     """Return what a report is made from; with ``draws`` false, without figures."""
     from designer.report.figures.opengl import why_no_scenes
 
-    return Source(analysis, find(analysis), draws, why_no_scenes() if draws else "")
+    return Source(analysis, draws, why_no_scenes() if draws else "")

@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.findings import OtherPolicy
-from designer.analysis.rope_maps import Rope
+from designer.analysis.governing_ropes import GoverningRopes
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
@@ -45,15 +45,16 @@ def section(source: Source) -> Section | None:
     study, found = source.analysis.study, source.analysis.workspace
     if study.workspace is None or found is None:
         return None
-    if source.rope is None:
+    ropes, maps = source.analysis.ropes, source.rope_maps
+    if ropes is None:
         title = "The workspace at rest" if study.load_cases else "The workspace"
         return Section.of("workspace", title, *_of_family(source, study, found))
     return Section.of(
         "workspace",
         "The workspace with the chosen rope",
-        _served(source.rope, source.analysis),
+        _served(ropes, source.analysis),
         _facts(study, study.workspace, found),
-        *(rope_figures(source.rope_maps, source.rope) if source.rope_maps is not None else ()),
+        *(rope_figures(maps, ropes) if maps is not None else ()),
         _hanging_share(source),
     )
 
@@ -61,9 +62,9 @@ def section(source: Source) -> Section | None:
 def family(source: Source) -> Section | None:
     """Return what all poses ask of the configured family, where a rope is the answer."""
     study, found = source.analysis.study, source.analysis.workspace
-    if study.workspace is None or found is None or source.rope is None:
+    if study.workspace is None or found is None or source.analysis.ropes is None:
         return None
-    outcome = source.findings.chosen_outcome
+    outcome = source.analysis.findings.chosen_outcome
     return Section.of(
         "family",
         "The configured cable family",
@@ -74,9 +75,9 @@ def family(source: Source) -> Section | None:
 
 def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Block | None]:
     assert study.workspace is not None
-    other = source.findings.other_policy
+    other = source.analysis.findings.other_policy
     yield _statement(found)
-    if source.rope is None:
+    if source.analysis.ropes is None:
         yield _facts(study, study.workspace, found)
     yield _extremes(study.workspace.region, found)
     yield _weight_effect(found)
@@ -88,9 +89,9 @@ def _of_family(source: Source, study: Study, found: WorkspaceMap) -> Iterator[Bl
     yield from _figures(source)
 
 
-def _served(rope: Rope, analysis: Analysis) -> Statement:
+def _served(rope: GoverningRopes, analysis: Analysis) -> Statement:
     """Return to how much the ropes are used at most, and where."""
-    used = float(rope.used(rope.statics(rope.place)))
+    used = float(rope.used(rope.worst))
     text = (
         f"{rope.name} is used to {fmt.utilisation(used)} at most, in the load case "
         f"'{rope.load_case}' at {fmt.position(rope.place)}."
@@ -103,7 +104,7 @@ def _served(rope: Rope, analysis: Analysis) -> Statement:
 
 
 def _hanging_share(source: Source) -> str:
-    share, study = source.findings.hanging, source.analysis.study
+    share, study = source.analysis.findings.hanging, source.analysis.study
     assert study.workspace is not None
     if share is None:
         return ""

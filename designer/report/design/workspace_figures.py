@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from designer.analysis.field import Field
+from designer.analysis.governing_ropes import GoverningRopes
 from designer.analysis.maps import Served, WorkspaceMaps
-from designer.analysis.rope_maps import Rope
 from designer.report import format as fmt
 from designer.report.blocks import Box, Picture
 from designer.report.figures.colours import DIAMETER, RATIO, UTILISATION, tension_of
@@ -53,7 +53,7 @@ def workspace_figures(maps: WorkspaceMaps, *, draws_scenes: bool) -> Iterator[Pi
         yield replace(share, kind="half")
 
 
-def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
+def rope_figures(maps: WorkspaceMaps, rope: GoverningRopes) -> Iterator[Picture]:
     """Yield the maps of the ropes of the answer."""
     from designer.report.figures.sections import slice_panels
 
@@ -70,7 +70,7 @@ def rope_figures(maps: WorkspaceMaps, rope: Rope) -> Iterator[Picture]:
     yield chart(caption, f"Two maps in {view}", drawn)
 
 
-def cover_picture(maps: WorkspaceMaps, rope: Rope | None) -> Picture:
+def cover_picture(maps: WorkspaceMaps, rope: GoverningRopes | None) -> Picture:
     """Return the region in space for the first page: of the ropes, else of the family."""
     from designer.report.figures.scenes import cover_scene
 
