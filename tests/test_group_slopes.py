@@ -13,9 +13,8 @@ from designer.model.cable import Cable, Cables
 from designer.model.region import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.report.design import carries
+from designer.selection.assignment import Assignment, GroupVerification
 from designer.selection.candidate import Candidate
-from designer.selection.groups.result import Assigned, GroupChoice
-from designer.selection.groups.trials import GroupVerification
 from designer.statics.inverse import solve_sagging
 from designer.study import CableGroup, Workspace
 
@@ -36,14 +35,11 @@ def rope(diameter_mm: float) -> Candidate:
     return Candidate(grade, size, grade.cable(size, 5.0))
 
 
-def choice() -> GroupChoice:
-    products = rope(12.0), rope(8.0)
+def assignment() -> Assignment:
     places = PLACE + np.array([[0.0, 0.0, 0.0], [3.0, 5.0, -1.0]])
-    met = GroupVerification(places, np.array([0.9, 0.8]), np.full(3, 80.0), True)
-    chosen = Assigned(products, met, 100.0, 100.0)
-    return GroupChoice(
-        GROUPS, 2, chosen, None, "mass", "kg", 100.0, "optimal", False, True, True, 2, 2, (), 1,
-    )  # fmt: skip
+    lengths = np.full(3, 80.0)
+    met = GroupVerification(places, np.array([0.9, 0.8]), lengths, lengths, True)
+    return Assignment(GROUPS, (rope(12.0), rope(8.0)), met)
 
 
 def used(robot: Robot, each: list[Cable], place: np.ndarray, cables: list[int]) -> float:
@@ -60,16 +56,15 @@ def robot() -> Robot:
 @pytest.fixture(scope="module")
 def found(robot: Robot) -> tuple[GroupSlopes, ...]:
     workspace = Workspace(Prism.box((8, 22), (4, 14), (1, 7)))
-    return group_slopes(robot, workspace, choice())
+    return group_slopes(robot, workspace, assignment())
 
 
 def test_slopes_of_groups_are_those_of_differences(
     robot: Robot, found: tuple[GroupSlopes, ...]
 ) -> None:
-    known, step = choice(), 1e-5
-    assert known.chosen is not None
+    known, step = assignment(), 1e-5
     cables = [one.cable for one in known.by_cable]
-    for one, place in zip(found, known.chosen.verification.worst_place, strict=True):
+    for one, place in zip(found, known.verification.worst_place, strict=True):
         members = [cable - 1 for cable in one.group.cables]
         assert one.utilisation == pytest.approx(used(robot, cables, place, members), rel=1e-12)
 

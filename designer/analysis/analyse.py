@@ -31,6 +31,7 @@ from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
+from designer.selection.assignment import Assignment, for_all
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseFound
 from designer.selection.family_need import CaseNeed, family_needs, most_needed
@@ -205,12 +206,17 @@ class Analysis:
 
     @cached_property
     def groups(self) -> GroupChoice | None:
-        """A rope for each group of cables; None where the selection has no groups."""
+        """How a rope for each group was sought; None where the selection has no groups."""
         workspace, selection = self.study.workspace, self.study.selection
         if workspace is None or selection is None or not selection.groups:
             return None
         grades, single = self.catalogue.grades, self.chosen
         return choose_groups_of(workspace, selection, grades, self.built, single, self.reporter)
+
+    @property
+    def assignment(self) -> Assignment:
+        """Which rope goes onto which cable; without ropes where none were found or asked for."""
+        return for_all(self.chosen) if self.groups is None else self.groups.chosen
 
     @cached_property
     def needs(self) -> tuple[CaseNeed, ...]:
@@ -226,8 +232,7 @@ class Analysis:
         return qualities_of(
             study.workspace,
             workspace,
-            self.selection,
-            self.groups,
+            self.assignment,
             self.built,
             study.material,
             self.needs,
@@ -287,14 +292,12 @@ class Analysis:
     @cached_property
     def carries(self) -> Carries | None:
         """What carries the choice of a rope for all cables."""
-        return carries_of(self.study, self.selection) if self.groups is None else None
+        return carries_of(self.study, self.selection, self.assignment.rope)
 
     @cached_property
     def group_slopes(self) -> tuple[GroupSlopes, ...]:
         """What the utilisation of each group of cables answers to."""
-        if self.groups is None:
-            return ()
-        return group_slopes(self.built.robot, self.study.workspace, self.groups)
+        return group_slopes(self.built.robot, self.study.workspace, self.assignment)
 
     @cached_property
     def servable(self) -> Servable | None:
@@ -368,18 +371,6 @@ class Analysis:
     def chosen(self) -> Candidate | None:
         """The product chosen for all cables; None without one."""
         return self.selection.chosen if self.selection is not None else None
-
-    @property
-    def has_groups(self) -> bool:
-        """Whether products for groups of cables are the answer."""
-        return self.groups is not None and self.groups.chosen is not None
-
-    @property
-    def has_products(self) -> bool:
-        """Whether a product was found, or one for each group where the study has groups."""
-        if self.groups is not None:
-            return self.groups.chosen is not None
-        return self.selection is None or self.chosen is not None
 
 
 _STAGES = (

@@ -72,34 +72,37 @@ class Carries:
         )
 
 
-def carries_of(study: Study, found: SelectionResult | None) -> Carries | None:
+def carries_of(
+    study: Study, selection: SelectionResult | None, rope: Candidate | None
+) -> Carries | None:
     """Return what carries the choice of a rope for all cables; None without one."""
-    chosen = found.chosen if found is not None else None
-    if found is None or chosen is None or study.selection is None or study.workspace is None:
+    if selection is None or rope is None or study.selection is None or study.workspace is None:
         return None
-    size = chosen.size
+    breaking_load_N = rope.size.minimum_breaking_load_N
     return Carries(
-        governing=chosen.governing,
-        sensitivities=sensitivities(
-            chosen.governing, chosen.efficiency, size.minimum_breaking_load_N
-        ),
-        payload=payload_reserve(chosen.cases),
-        region=region_reserve(chosen.cases, study.workspace.region),
-        sizes=tuple(_sizes(found, chosen, study.selection.safety_factor)),
-        failures=first_failures(chosen.governing),
+        governing=rope.governing,
+        sensitivities=sensitivities(rope.governing, rope.efficiency, breaking_load_N),
+        payload=payload_reserve(rope.cases),
+        region=region_reserve(rope.cases, study.workspace.region),
+        sizes=tuple(_sizes(selection, rope, study.selection.safety_factor)),
+        failures=first_failures(rope.governing),
     )
 
 
-def _sizes(found: SelectionResult, chosen: Candidate, safety_factor: float) -> Iterator[SizeBeside]:
+def _sizes(
+    selection: SelectionResult, rope: Candidate, safety_factor: float
+) -> Iterator[SizeBeside]:
     """Yield the size and those beside it, by diameter."""
-    worst = chosen.governing
-    for one in found.beside(chosen):
-        most = one.governing
-        used, tension_N, case = most.utilisation, most.verification.max_tension_N, most.case
-        for same in (o for o in one.cases if o.case is worst.case):
-            here = worst.loaded.on(*same.loaded.bare)
-            there_N = worst.tension_N(here)
-            if there_N / here.cable.allowable_tension_N > used:
-                used, tension_N, case = there_N / here.cable.allowable_tension_N, there_N, same.case
+    worst = rope.governing
+    for candidate in selection.beside(rope):
+        governing = candidate.governing
+        case, tension_N = governing.case, governing.verification.max_tension_N
+        utilisation = governing.utilisation
+        for case_found in (c for c in candidate.cases if c.case is worst.case):
+            loaded = worst.loaded.on(*case_found.loaded.bare)
+            at_worst_N = worst.tension_N(loaded)
+            if at_worst_N / loaded.cable.allowable_tension_N > utilisation:
+                utilisation = at_worst_N / loaded.cable.allowable_tension_N
+                tension_N, case = at_worst_N, case_found.case
         factor = case.safety_factor or safety_factor
-        yield SizeBeside(one, case.name, tension_N, used, factor / used)
+        yield SizeBeside(candidate, case.name, tension_N, utilisation, factor / utilisation)

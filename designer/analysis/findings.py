@@ -147,7 +147,7 @@ def find(analysis: Analysis) -> Findings:
         findings,
         chosen_outcome=outcome,
         chosen_limit_ratio=float(limit_ratio(robot, worst, outcome.family)),
-        massless_choice=None if analysis.has_groups else _massless_choice(analysis, outcome),
+        massless_choice=_massless_choice(analysis, outcome),
         modulus_utilisation=modulus_utilisation(chosen),
     )
 
@@ -174,8 +174,9 @@ def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
 
 def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
     workspace, found = analysis.study.workspace, analysis.workspace
-    has_cases = bool(analysis.study.load_cases)
-    if workspace is None or found is None or found.massless is None or has_cases:
+    if workspace is None or found is None or found.massless is None:
+        return None
+    if analysis.study.load_cases or analysis.assignment.has_groups:
         return None
     needed_N = found.massless.max_tension_N
     for first in outcome.candidates:
@@ -201,8 +202,7 @@ def _hanging(analysis: Analysis) -> float | None:
     workspace, found = analysis.study.workspace, analysis.workspace
     if workspace is None or found is None:
         return None
-    chosen = analysis.chosen
-    if analysis.qualities is None or not (chosen or analysis.has_groups):
+    if analysis.qualities is None or not analysis.assignment.is_found:
         return found.census.hangs_below / found.census.samples
     robot, cable = analysis.built.robot, analysis.qualities.cable.cable
     hangs = [

@@ -67,23 +67,16 @@ def governing_ropes(analysis: Analysis) -> GoverningRopes | None:
     Of one rope for all cables in the governing load case, or where that keeps lengths in the worst
     of the others; where all do, in the static load of the study, as ropes for groups of cables.
     """
-    study, robot, groups = analysis.study, analysis.built.robot, analysis.groups
-    chosen = analysis.chosen
-    if analysis.qualities is None or study.workspace is None:
+    study, robot, assignment = analysis.study, analysis.built.robot, analysis.assignment
+    if analysis.qualities is None or study.workspace is None or not assignment.is_found:
         return None
-    design = analysis.qualities.cable
-    if groups is not None and groups.chosen is not None:
-        verification = groups.chosen.verification
-        place = verification.worst_place[int(np.argmax(verification.utilisation))]
-        return GoverningRopes(robot, design.cable, study.workspace, design.name, "static", place)
-    if chosen is None or groups is not None:
-        return None
-    of_poses = [case for case in chosen.cases if not case.loaded.keeps_lengths]
+    name = analysis.qualities.cable.name
+    cases = () if assignment.rope is None else assignment.rope.cases
+    of_poses = [case for case in cases if not case.loaded.keeps_lengths]
     if not of_poses:
-        place = chosen.verification.worst_place
-        return GoverningRopes(robot, chosen.cable, study.workspace, design.name, "static", place)
+        verification = assignment.verification
+        place = verification.worst_place[verification.most_used]
+        return GoverningRopes(robot, assignment.cable, study.workspace, name, "static", place)
     worst = governing(of_poses)
     place, loaded = worst.verification.worst_place, worst.loaded
-    return GoverningRopes(
-        loaded.robot, loaded.cable, worst.workspace, design.name, worst.case.name, place
-    )
+    return GoverningRopes(loaded.robot, loaded.cable, worst.workspace, name, worst.case.name, place)

@@ -16,7 +16,7 @@ from designer.analysis.sensitivities import Sensitivity, outward
 from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cables
 from designer.model.robot import Poses, Robot
-from designer.selection.groups.result import Assigned, GroupChoice
+from designer.selection.assignment import Assignment
 from designer.statics.geometry import load_wrench_N
 from designer.statics.inverse import solve_sagging
 from designer.statics.slopes import utilisation_slopes
@@ -57,21 +57,18 @@ class GroupSlopes:
 
 
 def group_slopes(
-    robot: Robot, workspace: Workspace | None, choice: GroupChoice
+    robot: Robot, workspace: Workspace | None, assignment: Assignment
 ) -> tuple[GroupSlopes, ...]:
     """Return the slopes of each group; none where no ropes for groups were found."""
-    found = choice.chosen
-    if found is None or workspace is None:
+    if workspace is None or not assignment.has_groups:
         return ()
-    return tuple(_slopes(robot, workspace, choice, found, g) for g in range(len(choice.groups)))
+    return tuple(_slopes(robot, workspace, assignment, g) for g in range(len(assignment.groups)))
 
 
-def _slopes(
-    robot: Robot, workspace: Workspace, choice: GroupChoice, found: Assigned, g: int
-) -> GroupSlopes:
-    place = found.verification.worst_place[g]
-    cables = Cables(tuple(one.cable for one in choice.by_cable))
-    members = [np.array(group.cables) - 1 for group in choice.groups]
+def _slopes(robot: Robot, workspace: Workspace, assignment: Assignment, g: int) -> GroupSlopes:
+    group, place = assignment.groups[g], assignment.verification.worst_place[g]
+    cables = Cables(tuple(rope.cable for rope in assignment.by_cable))
+    members = [np.array(group.cables) - 1 for group in assignment.groups]
     statics = solve_sagging(robot, Poses.at(place[None]), cables)
     used = statics.cable_tension_N[0] / cables.allowable_tension_N
     most = int(members[g][used[members[g]].argmax()])
@@ -83,8 +80,8 @@ def _slopes(
             "leave a choice, so that the utilisation has no slope."
         )
         none = np.full(len(members), np.nan)
-        own = _named(choice, found, g, (math.nan, math.nan), (none, none))
-        return GroupSlopes(choice.groups[g], most + 1, float(used[most]), tuple(own), nothing, why)
+        own = _named(assignment, g, (math.nan, math.nan), (none, none))
+        return GroupSlopes(group, most + 1, float(used[most]), tuple(own), nothing, why)
     (one,) = slopes
     body = robot.platform
     twice = replace(body, mass_kg=2.0 * body.mass_kg, wrench_N=2.0 * body.wrench_N)
@@ -93,9 +90,9 @@ def _slopes(
     region = float(one.position_per_m @ outward(workspace.region, place[:3]))
     mass = one.cable_load_m_per_N @ -robot.upright[2] * cables.weight_N_per_m
     of_ropes = (_sums(one.stiffness, members), _sums(mass, members))
-    own = _named(choice, found, g, (payload, region), of_ropes, float(used[most]))
+    own = _named(assignment, g, (payload, region), of_ropes, float(used[most]))
     exits = one.exit_points_per_m
-    return GroupSlopes(choice.groups[g], most + 1, float(used[most]), tuple(own), exits)
+    return GroupSlopes(group, most + 1, float(used[most]), tuple(own), exits)
 
 
 def _sums(of_cables: FloatArray, members: list[IntArray]) -> FloatArray:
@@ -103,8 +100,7 @@ def _sums(of_cables: FloatArray, members: list[IntArray]) -> FloatArray:
 
 
 def _named(
-    choice: GroupChoice,
-    found: Assigned,
+    assignment: Assignment,
     g: int,
     payload_and_region: tuple[float, float],
     of_ropes: tuple[FloatArray, FloatArray],
@@ -115,11 +111,11 @@ def _named(
     def relative(name: str, value: float, unit: str, slope: float) -> Sensitivity:
         return Sensitivity(name, value, unit, slope / value, slope / used)
 
-    rope = found.products[g]
+    rope = assignment.ropes[g]
     yield relative("payload", 1.0, "", payload_and_region[0])
     yield relative("breaking_load", rope.size.minimum_breaking_load_N, "N", -used)
     yield relative("efficiency", rope.efficiency, "", -used)
-    for k, (group, other) in enumerate(zip(choice.groups, found.products, strict=True)):
+    for k, (group, other) in enumerate(zip(assignment.groups, assignment.ropes, strict=True)):
         stiffness, mass = (float(slopes[k]) for slopes in of_ropes)
         density = other.cable.linear_density_kg_per_m
         yield relative(f"modulus_{group.name}", other.cable.axial_stiffness_N, "N", stiffness)

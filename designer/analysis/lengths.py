@@ -73,8 +73,8 @@ class Lengths:
 def lengths_of(analysis: Analysis, poses: Poses) -> Lengths | None:
     """Solve poses (n_poses,) with the cables of the design; None if there is no such cable.
 
-    The cables are the products for groups, else the chosen rope, else the thinnest of the
-    configured family that holds the workspace or, where there is none, the configured pose.
+    The cables are the ropes of the answer, else the thinnest of the configured family that holds
+    the workspace or, where there is none, the configured pose.
     """
     if analysis.qualities is not None:
         cable = analysis.qualities.cable

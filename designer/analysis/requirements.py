@@ -13,6 +13,7 @@ from designer.model.load_case import STATIC, Loaded
 from designer.model.requirement import Requirement, State
 from designer.model.verdict import Verdict
 from designer.progress import Reporter
+from designer.selection.assignment import Assignment
 from designer.selection.criteria import criteria_of
 from designer.selection.family_need import CaseNeed
 from designer.selection.groups.result import GroupChoice
@@ -28,7 +29,7 @@ from designer.selection.requirements import (
 )
 from designer.selection.result import SelectionResult
 from designer.sizing.newton import size_poses
-from designer.study import Study
+from designer.study import Selection, Study
 from designer.workspace.result import WorkspaceMap
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
     """Return all that the study of an analysis asks for."""
     study, built = analysis.study, analysis.built
     pose, workspace = analysis.pose, analysis.workspace
-    selection, groups, needs = analysis.selection, analysis.groups, analysis.needs
+    assignment, needs = analysis.assignment, analysis.needs
     design = None if analysis.qualities is None else analysis.qualities.cable
     requirements: list[Requirement] = []
     if pose is not None:
@@ -50,14 +51,16 @@ def requirements_of(analysis: Analysis) -> tuple[Requirement, ...]:
         requirements += map(_need, needs)
     elif workspace is not None:
         requirements.append(_workspace(study, built, workspace))
-    if groups is not None:
-        requirements += _groups(study, groups)
-    elif selection is not None:
-        chosen = selection.chosen
-        requirements += [_no_rope(selection)] if chosen is None else chosen.requirements
-    # The chosen rope brings its own; where there is none, the design is one of the family.
-    asks_for_rope = groups is not None or selection is not None
-    if design is not None and ((groups is not None and groups.chosen) or not asks_for_rope):
+    if assignment.rope is not None:
+        requirements += assignment.rope.requirements
+    elif study.selection is not None and assignment.has_groups:
+        requirements += _of_groups(study.selection, assignment)
+    elif analysis.groups is not None:
+        requirements.append(_no_ropes(analysis.groups))
+    elif analysis.selection is not None:
+        requirements.append(_no_rope(analysis.selection))
+    # A rope for all cables brings its own; where there is none, the design is one of the family.
+    if design is not None and (study.selection is None or assignment.has_groups):
         requirements += _of_design(study, built, design, analysis.reporter)
     return tuple(requirements)
 
@@ -154,31 +157,30 @@ def _no_rope(selection: SelectionResult) -> Requirement:
     )
 
 
-def _groups(study: Study, groups: GroupChoice) -> Iterator[Requirement]:
-    """Yield what groups of cables are used to, or that no products for them were found."""
-    assert study.selection is not None
-    chosen = groups.chosen
-    if chosen is None:
-        yield Requirement(
-            id="rope",
-            title="Rope",
-            formula="ropes of the allowed grades for the groups hold every pose that counts",
-            source="selection.groups, selection.grades, selection.safety_factor",
-            state=State.FAILS if groups.proof == "infeasible" else State.OPEN,
-            load_case="all",
-            remark=groups.proof_sentence,
-        )
-        return
-    verification = chosen.verification
-    for group, product, used, place in zip(
-        groups.groups, chosen.products, verification.utilisation, verification.worst_place,
-        strict=True,
-    ):  # fmt: skip
-        allowable_N = product.cable.allowable_tension_N
+def _no_ropes(groups: GroupChoice) -> Requirement:
+    """Return that no ropes for the groups were found."""
+    return Requirement(
+        id="rope",
+        title="Rope",
+        formula="ropes of the allowed grades for the groups hold every pose that counts",
+        source="selection.groups, selection.grades, selection.safety_factor",
+        state=State.FAILS if groups.proof == "infeasible" else State.OPEN,
+        load_case="all",
+        remark=groups.proof_sentence,
+    )
+
+
+def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Requirement]:
+    """Yield what groups of cables are used to."""
+    met = assignment.verification
+    for group, rope, used, place in zip(
+        assignment.groups, assignment.ropes, met.utilisation, met.worst_place, strict=True
+    ):
+        allowable_N = rope.cable.allowable_tension_N
         yield Requirement(
             id="breaking_load",
             title=f"Breaking load, {group.name}",
-            formula=f"T ≤ η F / S; S = {study.selection.safety_factor:g}",
+            formula=f"T ≤ η F / S; S = {selection.safety_factor:g}",
             source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
             state=State.HOLDS if used <= 1.0 else State.FAILS,
             load_case=STATIC.name,
@@ -188,7 +190,7 @@ def _groups(study: Study, groups: GroupChoice) -> Iterator[Requirement]:
             utilisation=float(used),
             place=place,
         )
-        yield from sheave_ratio_of(product.grade, product.size, study.selection)
+        yield from sheave_ratio_of(rope.grade, rope.size, selection)
 
 
 def _of_design(

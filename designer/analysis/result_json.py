@@ -141,20 +141,18 @@ def _answer(analysis: Analysis) -> Json:
 
 
 def _products(analysis: Analysis) -> Json:
-    """Return what to put on each cable: the products of groups where there are any."""
-    choice = analysis.groups
-    if choice is not None:
-        if choice.chosen is None:
-            return {"products": [], "total_mass_kg": None}
-        names = ("name", "cables", "grade", "size_id")
-        products = [{name: one[name] for name in names} for one in groups_dict(choice)["groups"]]
-        return {"products": products, "total_mass_kg": _number(choice.chosen.total_mass_kg)}
-    chosen = analysis.chosen
-    if chosen is None:
-        return {"products": [], "total_mass_kg": None}
-    cables = list(range(1, analysis.study.robot.n_cables + 1))
-    product = {"cables": cables, "grade": chosen.grade.id, "size_id": chosen.size.id}
-    return {"products": [{"name": None, **product}], "total_mass_kg": _number(chosen.total_mass_kg)}
+    """Return what to put on each cable, by groups of them: one rope for all has no name."""
+    assignment = analysis.assignment
+    products = [
+        {
+            "name": group.name or None,
+            "cables": list(group.cables),
+            "grade": rope.grade.id,
+            "size_id": rope.size.id,
+        }
+        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
+    ]
+    return {"products": products, "total_mass_kg": _number(assignment.total_mass_kg)}
 
 
 def _pose(analysis: Analysis, is_read: IsRead) -> Json | None:

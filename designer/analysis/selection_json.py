@@ -54,7 +54,7 @@ _CHOICE = {
     "unit": "unit",
     "max_distinct_products": "most_distinct",
     "total_mass_kg": "chosen.total_mass_kg",
-    "total": "chosen.total",
+    "total": "total",
     "bound": "bound",
     "gap": "gap",
     "proof": "proof",
@@ -138,14 +138,12 @@ def groups_dict(choice: GroupChoice | None) -> Json:
 
 
 def _groups(choice: GroupChoice) -> Iterator[Json]:
-    if choice.chosen is None:
-        return
-    met = choice.chosen.verification
-    for k, (group, product) in enumerate(zip(choice.groups, choice.chosen.products, strict=True)):
+    chosen, met = choice.chosen, choice.chosen.verification
+    for k, (group, rope) in enumerate(zip(chosen.groups, chosen.ropes, strict=True)):
         yield {
             "name": group.name,
             "cables": list(group.cables),
-            **_plain(product, {key: _CANDIDATE[key] for key in (*_PRODUCT, "axial_stiffness_N")}),
+            **_plain(rope, {key: _CANDIDATE[key] for key in (*_PRODUCT, "axial_stiffness_N")}),
             "utilisation": finite(met.utilisation[k]),
             "longest_m": finite(met.longest_m[[c - 1 for c in group.cables]]),
             **_place(met.worst_place[k]),

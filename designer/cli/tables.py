@@ -158,21 +158,22 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
 
 
 def _summary_of_groups(choice: GroupChoice) -> Iterator[Row]:
-    if choice.chosen is None:
+    chosen = choice.chosen
+    if not chosen.is_found:
         yield "groups", f"{bad('none')}: {escape(choice.proof_sentence)}"
         return
-    found = zip(choice.groups, choice.chosen.products, strict=True)
-    n_products = len({*choice.chosen.products})
+    n_products = len(chosen.products)
     yield "cables", f"[bold]{n_products} product{'' if n_products == 1 else 's'} for the groups[/]"
-    for (group, product), used in zip(found, choice.chosen.verification.utilisation, strict=True):
-        yield f"  {escape(group.name)}", f"{escape(product.label)}, {used:.1%} used"
+    utilisation = chosen.verification.utilisation
+    for group, rope, used in zip(chosen.groups, chosen.ropes, utilisation, strict=True):
+        yield f"  {escape(group.name)}", f"{escape(rope.label)}, {used:.1%} used"
     saving = ""
     if choice.saving_kg is not None and abs(choice.saving_kg) < 1e-6:
         saving = ", as with one product for all"
     elif choice.saving_kg is not None:
         saving = f", {abs(choice.saving_kg):.4g} kg {'less' if choice.saving_kg > 0.0 else 'more'}"
     gap = "proved least" if choice.proof == "optimal" else f"gap {choice.gap:.2%}"
-    yield "  groups' mass", f"{choice.chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
+    yield "  groups' mass", f"{chosen.total_mass_kg:.4g} kg in all{saving}; {gap}"
 
 
 def print_pose(study: Study, pose: PoseAnalysis) -> None:

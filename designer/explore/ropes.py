@@ -328,14 +328,11 @@ def _full_row(candidate: Candidate) -> RopeRow:
 
 
 def _groups(choice: GroupChoice) -> Groups:
-    single = math.nan if choice.single is None else choice.single.total_mass_kg
-    if choice.chosen is None:
-        return Groups((), math.nan, single, choice.proof_sentence)
-    met = choice.chosen.verification
+    chosen = choice.chosen
+    utilisation = chosen.verification.utilisation
     rows = tuple(
-        GroupRow(group.name, group.cables, Rope(product.grade.id, product.size.id), float(used))
-        for group, product, used in zip(
-            choice.groups, choice.chosen.products, met.utilisation, strict=True
-        )
+        GroupRow(group.name, group.cables, Rope(rope.grade.id, rope.size.id), float(used))
+        for group, rope, used in zip(chosen.groups, chosen.ropes, utilisation, strict=True)
     )
-    return Groups(rows, choice.chosen.total_mass_kg, single, choice.proof_sentence)
+    masses = chosen.total_mass_kg, choice.single.total_mass_kg
+    return Groups(rows, *masses, choice.proof_sentence)

@@ -9,11 +9,10 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
-from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable, Cables, Material
+from designer.selection.assignment import Assignment
+from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed
-from designer.selection.groups.result import GroupChoice
-from designer.selection.result import SelectionResult
 from designer.study import Workspace
 from designer.workspace.hanging import HangingCables, survey_hanging
 from designer.workspace.interference import Interference, survey
@@ -31,13 +30,13 @@ class DesignCable:
         As they are on the machine.
     name : str
         What they are, for the reader of a report.
-    products : tuple of (Grade, Size)
-        One for all cables, or each cable's; empty where they are of the configured family.
+    ropes : tuple of Candidate
+        Each cable's; empty where they are of the configured family.
     """
 
     cable: Cable | Cables
     name: str
-    products: tuple[tuple[Grade, Size], ...] = ()
+    ropes: tuple[Candidate, ...] = ()
 
     @property
     def turn_m(self) -> FloatArray:
@@ -45,7 +44,7 @@ class DesignCable:
 
         About the centre of the rope, in one layer; NaN where no drum is suggested.
         """
-        turns = [grade.drum_turn_m(size) for grade, size in self.products]
+        turns = [rope.grade.drum_turn_m(rope.size) for rope in self.ropes]
         return np.array(turns or [np.nan])
 
 
@@ -73,27 +72,16 @@ class Qualities:
 
 def design_cable(
     found: WorkspaceMap,
-    selection: SelectionResult | None,
-    groups: GroupChoice | None,
+    assignment: Assignment,
     family: Material,
     needs: Sequence[CaseNeed],
 ) -> DesignCable | None:
-    """Return the cables of the groups, else the chosen product, else the thinnest of the family.
+    """Return the ropes that were found, else the thinnest cable of the family.
 
     None where no cable holds everywhere. ``needs`` is what load cases need of the family.
     """
-    if groups is not None and groups.chosen is not None:
-        products = groups.by_cable
-        names = dict.fromkeys(f"{one.grade.id} {one.size.id}" for one in products)
-        return DesignCable(
-            Cables(tuple(one.cable for one in products)),
-            ", ".join(names),
-            tuple((one.grade, one.size) for one in products),
-        )
-    if selection is not None and selection.chosen is not None:
-        chosen = selection.chosen
-        name = f"{chosen.grade.id} {chosen.size.id}"
-        return DesignCable(chosen.cable, name, ((chosen.grade, chosen.size),))
+    if assignment.is_found:
+        return DesignCable(assignment.cable, assignment.name, assignment.by_cable)
     diameter_m = np.nan if found.sagging is None else found.sagging.diameter_m
     if needs:
         diameter_m = float(np.max([one.diameter_m for one in needs]))
@@ -106,8 +94,7 @@ def design_cable(
 def qualities_of(
     workspace: Workspace,
     found: WorkspaceMap,
-    selection: SelectionResult | None,
-    groups: GroupChoice | None,
+    assignment: Assignment,
     built: AsBuilt,
     material: Material,
     needs: Sequence[CaseNeed],
@@ -116,7 +103,7 @@ def qualities_of(
 
     ``needs`` is what load cases need of the configured family.
     """
-    cable = design_cable(found, selection, groups, built.material(material), needs)
+    cable = design_cable(found, assignment, built.material(material), needs)
     if cable is None:
         return None
     interference = None

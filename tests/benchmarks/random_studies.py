@@ -69,7 +69,7 @@ def study_of_seed(seed: int, folder: Path, places: int) -> tuple[str, list[str],
         analysis = analysed(text, folder)
     except InputError as error:
         return "refused", [line for line in map(str, error.faults) if "\n" in line], told
-    if analysis.chosen is None and not analysis.has_groups:
+    if not analysis.assignment.is_found:
         return "no rope", [], told
     wrong = list(disagreements(text, analysis, places, seed))
     return ("different" if wrong else "equal"), wrong, told

@@ -265,18 +265,18 @@ def test_ropes_for_groups_of_cables(yard: Session) -> None:
     analysis, ropes = analyse(question.study, question.catalogue), full_ropes(question)
     assert ropes is not None
     assert analysis.groups is not None
-    assert analysis.groups.chosen is not None
+    assert analysis.assignment.has_groups
     assert ropes.groups is not None
     assert [row.cables for row in ropes.groups.rows] == [(1, 2), (3,)]
-    products = [Rope(one.grade.id, one.size.id) for one in analysis.groups.chosen.products]
+    products = [Rope(one.grade.id, one.size.id) for one in analysis.assignment.ropes]
     assert [row.rope for row in ropes.groups.rows] == products
-    assert ropes.groups.total_mass_kg == analysis.groups.chosen.total_mass_kg
+    assert ropes.groups.total_mass_kg == analysis.assignment.total_mass_kg
     assert ropes.groups.proof == analysis.groups.proof_sentence
     yard.choose(ropes.groups.assignment)
     worst = worst_answer(question_of(yard))
     assert worst is not None
     assert worst.rope is not None
-    met = analysis.groups.chosen.verification
+    met = analysis.assignment.verification
     assert worst.rope.utilisation == pytest.approx(met.utilisation.max(), rel=1e-6)
     chart, one = map_answer(question_of(yard)), here(question_of(yard))
     assert chart.all_of("utilisation").max() <= met.utilisation.max() * (1.0 + 1e-9)

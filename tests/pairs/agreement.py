@@ -84,8 +84,8 @@ def ropes_of(analysis: Analysis) -> list[tuple[Any, Any]]:
         sheet = options.GRADES[grade]
         return sheet, next(one for one in sheet["sizes"] if one["id"] == size)
 
-    if analysis.has_groups:
-        return [named(one.grade.id, one.size.id) for one in analysis.groups.by_cable]
+    if analysis.assignment.has_groups:
+        return [named(one.grade.id, one.size.id) for one in analysis.assignment.by_cable]
     chosen = analysis.chosen
     return [named(chosen.grade.id, chosen.size.id)] * analysis.study.robot.n_cables
 
@@ -151,7 +151,7 @@ def disagreements(
 ) -> Iterator[str]:
     """Yield in a line each figure of an analysis that the reference does not confirm."""
     ropes, rng = ropes_of(analysis), np.random.default_rng(seed)
-    if analysis.has_groups:
+    if analysis.assignment.has_groups:
         yield from _groups(text, ropes, analysis, rng, others)
         return
     for found in analysis.chosen.cases:

@@ -80,7 +80,7 @@ def sweep(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator
     from pairs.table import analysed
 
     keys, keep = ("robot", "platform", "mass"), ("answer.total_mass_kg",)
-    if not analysis.has_groups:
+    if not analysis.assignment.has_groups:
         keep = (*keep, "selection.chosen.utilisation")
     mass = _heavier(text)["robot"]["platform"]["mass"]
     base = Base(read_document(_with_catalogue(text, folder)), keep, False)
@@ -127,7 +127,7 @@ def _beside(pose: Pose, text: Mapping[str, Any], rng: np.random.Generator) -> Po
 
 def diagnose(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Iterator[str]:
     """Readings of the reference are those of the declared model: a check leaves nothing."""
-    if analysis.has_groups:  # a machine is measured with one rope on all cables
+    if analysis.assignment.has_groups:  # a machine is measured with one rope on all cables
         return
     _, size = ropes_of(analysis)[0]
     effects = text.get("effects", {})

@@ -92,7 +92,7 @@ def wrong_with(options: Sequence[Option], folder: Path, others: int = 6) -> Iter
         return
     text = study_of(base, *options)
     analysis = analysed(text, folder)
-    if analysis.chosen is None and not analysis.has_groups:
+    if not analysis.assignment.is_found:
         yield "no rope holds: the study is too hard for a table"
         return
     yield from disagreements(text, analysis, others)

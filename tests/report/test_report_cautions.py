@@ -115,9 +115,9 @@ def test_a_kept_clearance_is_no_objection(solve: Solve) -> None:
 
 
 def test_ropes_of_groups_and_their_doubts_are_on_the_first_page(grouped: Analysis) -> None:
-    assert grouped.groups is not None and grouped.groups.chosen is not None
+    assert grouped.assignment.has_groups
     page = page_of(grouped)
-    products = grouped.groups.chosen.products
+    products = grouped.assignment.ropes
     assert page.groups is not None
     assert "less than the best single product" in page.groups.text
     assert page.card is not None

@@ -17,6 +17,7 @@ from designer.report.design import groups as groups_of_cables
 from designer.report.design.first_page import first_page
 from designer.report.design.source import Source
 from designer.report.figures.groups_plan import groups_plan
+from designer.selection.assignment import NOT_ASSIGNED
 
 pytestmark = pytest.mark.slow
 
@@ -69,8 +70,7 @@ def test_section_says_the_same(found: Analysis) -> None:
     rows = cells(section, "What each group gets")
     assert [row[1] for row in rows] == ["1, 2", "3"]
     assert found.groups is not None
-    assert found.groups.chosen is not None
-    for row, product in zip(rows, found.groups.chosen.products, strict=True):
+    for row, product in zip(rows, found.assignment.ropes, strict=True):
         assert row[2] == product.label
     proposals = table(section, "Assignments that were tried")
     assert len(proposals.columns) == len(proposals.groups[0].rows[0].cells)
@@ -78,11 +78,10 @@ def test_section_says_the_same(found: Analysis) -> None:
 
 
 def test_plan_names_each_group(found: Analysis) -> None:
-    assert found.groups is not None
-    assert found.groups.chosen is not None
+    assert found.assignment.has_groups
     assert found.study.workspace is not None
     region = found.study.workspace.region
-    svg = groups_plan(found.built.robot, region, found.groups, found.groups.chosen)
+    svg = groups_plan(found.built.robot, region, found.assignment)
     assert "&lt;b&gt;near&lt;/b&gt;" in svg
     assert "<b>" not in svg
 
@@ -108,11 +107,11 @@ def test_groups_are_the_answer(found: Analysis) -> None:
     """On the first page, in result.json, and where no product for all cables holds."""
     answer = result_dict(found)["answer"]
     assert [one["cables"] for one in answer["products"]] == [[1, 2], [3]]
-    assert found.groups is not None and found.groups.chosen is not None
-    assert answer["total_mass_kg"] == pytest.approx(found.groups.chosen.total_mass_kg)
+    assert found.groups is not None
+    assert answer["total_mass_kg"] == pytest.approx(found.assignment.total_mass_kg)
     assert found.selection is not None
     alone = replace(found.selection, chosen=None, reason="no single product holds")
-    groups = replace(found.groups, single=None)
+    groups = replace(found.groups, single=NOT_ASSIGNED)
     without = altered(found, selection=alone, groups=groups)
     assert without.is_positive
     page = first_page(Source(without))

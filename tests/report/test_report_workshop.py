@@ -67,10 +67,10 @@ def test_the_lengths_are_those_of_the_chosen_rope(tmp_path) -> None:
 def test_groups_have_a_rope_each(tmp_path) -> None:
     analysis = analysis_of(tmp_path, GROUPS)
     assert analysis.groups is not None
-    assert analysis.groups.chosen is not None
+    assert analysis.assignment.has_groups
     lengths, ropes = tables(analysis)
     sizes = [row.cells[1] for row in lengths.groups[0].rows]
-    near, far = (product.size.id for product in analysis.groups.chosen.products)
+    near, far = (product.size.id for product in analysis.assignment.ropes)
     assert sizes == [near, near, far]
     assert sum(int(row.cells[2]) for row in ropes.groups[0].rows) == 6
 

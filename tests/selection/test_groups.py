@@ -126,7 +126,7 @@ def lightest_by_hand(
 
 def check_against_hand(choice: GroupChoice, truth: float) -> None:
     assert choice.proof == "optimal"
-    assert choice.chosen is not None
+    assert choice.chosen.is_found
     assert choice.chosen.verification.holds
     assert choice.chosen.total_mass_kg == pytest.approx(truth, rel=1e-12)
     assert choice.gap == 0.0
@@ -141,20 +141,20 @@ def test_brute_force_finds_the_same(case, most_distinct) -> None:
     assert np.isfinite(truth)
     choice = choose_groups(robot, workspace, groups, products, most_distinct=most_distinct)
     check_against_hand(choice, truth)
-    assert choice.chosen is not None
-    assert len({one.size.id for one in choice.chosen.products}) <= most_distinct
+    assert choice.chosen.is_found
+    assert len({one.size.id for one in choice.chosen.ropes}) <= most_distinct
 
 
 def test_groups_save_mass_where_loads_differ(case) -> None:
     robot, workspace = case
     groups, products = groups_of(robot), candidates_of(rope(EIGHT[robot.n_cables]))
     one = choose_groups(robot, workspace, groups, products, most_distinct=1)
-    assert one.chosen is not None
-    single = one.chosen.products[0]
+    assert one.chosen.is_found
+    single = one.chosen.ropes[0]
     choice = choose_groups(robot, workspace, groups, products, single=single)
     assert choice.saving_kg is not None
     assert choice.saving_kg > 0.02 * one.chosen.total_mass_kg
-    assert choice.single is not None
+    assert choice.single.is_found
     assert choice.single.total_mass_kg == pytest.approx(one.chosen.total_mass_kg, rel=1e-12)
 
 
@@ -198,7 +198,7 @@ def test_robots_without_a_shortcut(fast_robot, change) -> None:
     assert not choice.by_balance
     assert not choice.by_weight
     truth = lightest_by_hand(robot, workspace, groups, products, 3)
-    assert choice.chosen is not None
+    assert choice.chosen.is_found
     assert choice.chosen.total_mass_kg == pytest.approx(truth, rel=1e-12)
     assert choice.lengths_are_bounds == (change == "pulleys")
 
@@ -209,8 +209,8 @@ def test_answer_holds_between_the_samples(fast_robot) -> None:
     groups, products = groups_of(fast_robot), candidates_of(rope(EIGHT[3], modulus_Pa=60e9), 3.0)
     choice = choose_groups(fast_robot, workspace, groups, products)
     assert choice.proof == "optimal"
-    assert choice.chosen is not None
-    cables = Cables(tuple(one.cable for one in choice.chosen.products))
+    assert choice.chosen.is_found
+    cables = Cables(tuple(one.cable for one in choice.chosen.ropes))
     inside = np.random.default_rng(1).uniform(*prism.bounds_m, (20_000, 3))
     corners = np.array(list(product(*prism.bounds_m.T)))
     at = Poses.at(np.concatenate([inside, corners]))
@@ -314,7 +314,7 @@ def test_too_thin_for_all_is_proved(case) -> None:
     robot, workspace = case
     products = candidates_of(rope([2.0, 3.0, 4.0]))
     choice = choose_groups(robot, workspace, groups_of(robot), products)
-    assert choice.chosen is None
+    assert not choice.chosen.is_found
     assert choice.proof == "infeasible"
     assert choice.gap is None
 
@@ -322,7 +322,7 @@ def test_too_thin_for_all_is_proved(case) -> None:
 def test_nothing_offered(fast_robot) -> None:
     robot, workspace = three(fast_robot)
     choice = choose_groups(robot, workspace, groups_of(robot), [])
-    assert choice.chosen is None
+    assert not choice.chosen.is_found
     assert choice.proposals == ()
 
 
@@ -373,13 +373,13 @@ def test_cost_decides_where_the_study_says_so(fast_robot) -> None:
     assert {one.grade.id for one in priced(products)} == {"dear", "cheap"}
     choice = choose_groups(robot, workspace, groups, products, objective="cost")
     assert choice.unit == "EUR"
-    assert choice.chosen is not None
-    assert {one.grade.id for one in choice.chosen.products} == {"cheap"}
+    assert choice.chosen.is_found
+    assert {one.grade.id for one in choice.chosen.ropes} == {"cheap"}
     longest = choice.chosen.verification.longest_m
-    prices = [one.size.price_per_m for one in choice.chosen.products]
-    assert choice.chosen.total == pytest.approx(float(np.dot(prices, longest)))
+    prices = [one.size.price_per_m for one in choice.chosen.ropes]
+    assert choice.total == pytest.approx(float(np.dot(prices, longest)))
     by_mass = choose_groups(robot, workspace, groups, products)
-    assert by_mass.chosen is not None
+    assert by_mass.chosen.is_found
     assert by_mass.chosen.total_mass_kg < choice.chosen.total_mass_kg
 
 
@@ -399,7 +399,7 @@ def test_study_with_effects_and_safety_factor(fast_robot) -> None:
     single = select(robot, workspace, selection, [grade], built=built).chosen
     assert single is not None
     choice = choose_groups_of(workspace, selection, [grade], built, single)
-    assert choice.single is not None
+    assert choice.single.is_found
     assert choice.single.total_mass_kg == pytest.approx(single.total_mass_kg, rel=1e-12)
     assert choice.most_distinct == 2
     heavier = [Candidate(grade, s, built.cable(grade.cable(s, 5.0))) for s in grade.sizes]

@@ -158,9 +158,9 @@ def test_groups_have_the_stiffness_at_their_largest_tension() -> None:
     choice = choose_groups_of(
         POINTS, selection, [fibre(diameters_mm=(4.0, 5.0, 6.0))], AsBuilt(ROBOT), None
     )
-    assert choice.chosen is not None
+    assert choice.chosen.is_found
     tension_N = choice.chosen.max_tension_N
     assert math.isfinite(tension_N)
-    for product in choice.chosen.products:
+    for product in choice.chosen.ropes:
         expected = product.cable.at_tension(tension_N).axial_stiffness_N
         assert product.cable.axial_stiffness_N == pytest.approx(expected, rel=1e-3)

@@ -38,11 +38,11 @@ def section(source: Source) -> Section:
         crossing = (
             "Cables are checked against each other and the platform, but may touch the ground."
         )
+    of_group = " of a group" if analysis.assignment.has_groups else ""
     items = (
         f"Static equilibrium only: a {kind} of {fmt.kilograms(robot.platform.mass_kg)} on "
         f"{robot.n_cables} cables{where}. {_motion(analysis.study)}",
-        f"All cables{' of a group' if analysis.has_groups else ''} are equal. Each is elastic, "
-        "carries no bending and no compression.",
+        f"All cables{of_group} are equal. Each is elastic, carries no bending and no compression.",
         _loads(robot),
         f"{exits} {_losses(selection)}",
         _thinnest(robot),

@@ -32,10 +32,8 @@ _NEAR_BOUNDARY = 0.9
 
 def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     """Yield what a reviewer should know before relying on the answer."""
-    chosen = analysis.chosen
-    found = analysis.groups.chosen if analysis.groups else None
-    used = found.products if found is not None else [chosen] if chosen is not None else []
-    ropes = {(one.grade.id, one.size.id): (one.grade, one.size) for one in used}.values()
+    chosen, assigned = analysis.assignment.rope, analysis.assignment.ropes
+    ropes = {(rope.grade.id, rope.size.id): (rope.grade, rope.size) for rope in assigned}.values()
     grades = {grade.id: grade for grade, _ in ropes}.values()
     yield from pose_statement(analysis)
     if analysis.study.selection is not None or analysis.study.load_cases:
@@ -54,7 +52,7 @@ def confidence(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
     yield from _hanging(analysis, findings)
     yield from _slack(analysis)
     yield from strength_statement(analysis.study.selection, ropes)
-    if analysis.has_groups:
+    if analysis.assignment.has_groups:
         for grade in grades:
             yield _trust(grade, f"Figures of {grade.id}")
         known = (
@@ -97,7 +95,7 @@ def _is_of_data(effect: Effect) -> bool:
 
 
 def _margin(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
-    rope = None if analysis.has_groups else findings.chosen_limit_ratio
+    rope = None if analysis.assignment.has_groups else findings.chosen_limit_ratio
     workspace, pose = analysis.workspace, analysis.pose
     place, whose = "worst", "the configured family"
     if rope is not None:
@@ -132,8 +130,8 @@ def _sampling(analysis: Analysis) -> Iterator[Statement]:
     if analysis.study.workspace.region.is_discrete:
         yield Statement("Positions", "Every point of the list was solved; nothing lies between.")
         return
-    chosen = analysis.chosen
-    if chosen is not None and not analysis.has_groups:
+    chosen = analysis.assignment.rope
+    if chosen is not None:
         most = chosen.governing
         text = (
             f"The worst of {fmt.plural(most.sampled.samples, 'sample')} uses the rope to "
@@ -159,7 +157,7 @@ def _hanging(analysis: Analysis, findings: Findings) -> Iterator[Statement]:
         return
     has_choice = analysis.selection is not None and analysis.selection.chosen is not None
     whose = "the chosen rope" if has_choice else "the configured family"
-    if analysis.has_groups:
+    if analysis.assignment.has_groups:
         whose = "the ropes of the groups"
     text = f"With {whose} a cable hangs below the platform in {fmt.percent(share)} of the samples. "
     if workspace.hangs_below == "include":

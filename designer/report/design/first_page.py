@@ -22,9 +22,9 @@ from designer.report.design.selection import product_name
 from designer.report.design.source import Source
 from designer.report.design.workspace_figures import cover_picture
 from designer.report.material_class import class_of
+from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed
-from designer.selection.groups.result import Assigned, GroupChoice
 from designer.selection.objectives import MEANINGS
 from designer.selection.result import SelectionResult
 from designer.study import CableGroup
@@ -110,7 +110,7 @@ def _verdict(analysis: Analysis, findings: Findings) -> Statement:
         text += f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
     if analysis.answer is Answer.YES:
         return Statement("Yes", text, "good")
-    if analysis.chosen is not None or analysis.has_groups:
+    if analysis.assignment.is_found:
         text += f" But {_unmet_words(analysis)}."
     is_no = analysis.answer is Answer.NO
     return Statement("No", text, "bad") if is_no else Statement("Open", text, "doubt")
@@ -130,13 +130,13 @@ def _unmet_words(analysis: Analysis) -> str:
 
 def _summary(analysis: Analysis) -> str:
     """Return what was chosen and what it meets, or that nothing was."""
-    if analysis.has_groups:
-        assert analysis.groups is not None
-        return groups_hold(analysis.groups)
-    if analysis.chosen is None and not analysis.is_positive:
+    assignment = analysis.assignment
+    if assignment.has_groups:
+        return groups_hold(assignment)
+    if not assignment.is_found and not analysis.is_positive:
         return _negative(analysis)
-    text = _positive(analysis, analysis.chosen)
-    return f"{text}{_of_metal(analysis.selection, analysis.chosen)}"
+    text = _positive(analysis, assignment.rope)
+    return f"{text}{_of_metal(analysis.selection, assignment.rope)}"
 
 
 def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
@@ -162,8 +162,6 @@ def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> st
 
 
 def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
-    if analysis.groups is not None:
-        return groups_hold(analysis.groups)
     if chosen is not None:
         found = chosen.verification
         if not found.holds:
@@ -236,11 +234,11 @@ def _no_family(analysis: Analysis) -> str:
 
 
 def _card(analysis: Analysis) -> Card | None:
-    chosen = analysis.chosen
-    if analysis.groups is not None and analysis.groups.chosen is not None:
-        return _groups_card(analysis, analysis.groups, analysis.groups.chosen)
-    if chosen is not None:
-        return _rope_card(analysis, chosen)
+    assignment = analysis.assignment
+    if assignment.has_groups:
+        return _groups_card(analysis, assignment)
+    if assignment.rope is not None:
+        return _rope_card(analysis, assignment.rope)
     workspace, pose = analysis.workspace, analysis.pose
     if analysis.most_needed is not None:
         return _needs_card(analysis.most_needed)
@@ -343,32 +341,33 @@ def _lengths(length_m: FloatArray) -> str:
     return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
 
 
-def _groups_card(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Card:
+def _groups_card(analysis: Analysis, assignment: Assignment) -> Card:
     assert analysis.study.selection is not None
     required = fmt.trimmed(analysis.study.selection.safety_factor)
-    sizes = [*dict.fromkeys(product.size.id for product in chosen.products)]
-    distinct = fmt.plural(len({*chosen.products}), "product")
-    groups = zip(choice.groups, chosen.products, chosen.verification.utilisation, strict=True)
+    sizes = [*dict.fromkeys(rope.size.id for rope in assignment.ropes)]
+    distinct = fmt.plural(len(assignment.products), "product")
+    used = assignment.verification.utilisation
+    groups = zip(assignment.groups, assignment.ropes, used, strict=True)
     facts = (
         *(
-            Fact(group.name, product.label, _of_group(group, chosen, float(used)))
-            for group, product, used in groups
+            Fact(group.name, rope.label, _of_group(group, assignment, float(share)))
+            for group, rope, share in groups
         ),
         Fact("Safety factor required", required, "on the breaking load"),
-        Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
+        Fact("Mass of all cables", fmt.kilograms(assignment.total_mass_kg)),
     )
     return Card(
         "Ropes for groups of cables",
         fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
-        f"{distinct} for {fmt.plural(len(choice.groups), 'group')}",
+        f"{distinct} for {fmt.plural(len(assignment.groups), 'group')}",
         Facts(facts),
     )
 
 
-def _of_group(group: CableGroup, chosen: Assigned, used: float) -> str:
+def _of_group(group: CableGroup, assignment: Assignment, used: float) -> str:
     """Return which cables a group has, how much of what is allowed it uses, and its lengths."""
     noun = "cable" if len(group.cables) == 1 else "cables"
-    longest = chosen.verification.longest_m[[cable - 1 for cable in group.cables]]
+    longest = assignment.verification.longest_m[[cable - 1 for cable in group.cables]]
     cables = fmt.listing(str(cable) for cable in group.cables)
     at_most = _lengths(longest)
     return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"

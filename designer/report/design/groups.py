@@ -19,7 +19,8 @@ from designer.report.blocks import (
 )
 from designer.report.design.source import Source
 from designer.report.pictures import chart
-from designer.selection.groups.result import Assigned, GroupChoice, Proposal
+from designer.selection.assignment import Assignment
+from designer.selection.groups.result import GroupChoice, Proposal
 
 _MOST_ROWS = 12
 
@@ -34,15 +35,15 @@ def section(source: Source) -> Section | None:
         "Products for groups of cables",
         groups_statement(choice),
         _facts(choice),
-        _chosen(choice, choice.chosen) if choice.chosen else None,
-        _plan(source.analysis, choice, choice.chosen) if source.draws and choice.chosen else None,
+        _chosen(choice.chosen) if choice.chosen.is_found else None,
+        _plan(source.analysis) if source.draws and choice.chosen.is_found else None,
         Subheading("proposals", "How they were found"),
         _how(choice),
         _proposals(choice) if choice.proposals else None,
     )
 
 
-def _plan(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Picture:
+def _plan(analysis: Analysis) -> Picture:
     from designer.report.figures.groups_plan import groups_plan
 
     workspace = analysis.study.workspace
@@ -50,17 +51,17 @@ def _plan(analysis: Analysis, choice: GroupChoice, chosen: Assigned) -> Picture:
     return chart(
         "The robot from above. Cables are drawn as thick as they are to each other.",
         "Lines from the exit points to the platform, one colour a group",
-        groups_plan(analysis.built.robot, workspace.region, choice, chosen),
+        groups_plan(analysis.built.robot, workspace.region, analysis.assignment),
     )
 
 
 def groups_statement(choice: GroupChoice) -> Statement:
     """Return what was found for the groups, and what it saves."""
-    if choice.chosen is None:
+    if not choice.chosen.is_found:
         return Statement("No products were found for the groups", choice.proof_sentence, "bad")
-    distinct = len({id(product) for product in choice.chosen.products})
+    distinct = len(choice.chosen.products)
     text = f"{fmt.plural(len(choice.groups), 'group')} with {fmt.plural(distinct, 'product')}"
-    if choice.saving_kg is None or choice.single is None:
+    if choice.saving_kg is None:
         return Statement("Products were found for the groups", f"{text}.", "good")
     share = choice.saving_kg / choice.single.total_mass_kg
     if abs(share) < 1e-9:
@@ -74,18 +75,15 @@ def groups_statement(choice: GroupChoice) -> Statement:
     return Statement("Products were found for the groups", text, "good")
 
 
-def groups_hold(choice: GroupChoice) -> str:
-    """Return which products hold together, and how much they are used; empty if none do."""
-    if choice.chosen is None:
-        return ""
-    found = choice.chosen
+def groups_hold(assignment: Assignment) -> str:
+    """Return which ropes hold together, and how much they are used."""
     each = [
-        f"{product.label} for {group.name}"
-        for group, product in zip(choice.groups, found.products, strict=True)
+        f"{rope.label} for {group.name}"
+        for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
     ]
-    if len({*found.products}) == 1:
-        each = [f"Ropes of {found.products[0].label} for all groups"]
-    most = float(found.verification.utilisation.max())
+    if len(assignment.products) == 1:
+        each = [f"Ropes of {assignment.ropes[0].label} for all groups"]
+    most = float(assignment.verification.utilisation.max())
     tight = " There is hardly any reserve beyond it." if most > 0.97 else ""
     return (
         f"{fmt.listing(each)} hold every pose of the workspace together. The most used of them "
@@ -96,11 +94,11 @@ def groups_hold(choice: GroupChoice) -> str:
 def _facts(choice: GroupChoice) -> Facts:
     limit = fmt.plural(choice.most_distinct, "product")
     facts = [Fact("Different products", f"at most {limit}")]
-    if choice.chosen is not None:
+    if choice.chosen.is_found:
         facts.append(Fact("All cables", fmt.kilograms(choice.chosen.total_mass_kg)))
-        if choice.objective == "cost":
-            facts.append(Fact("Cost", f"{fmt.number(choice.chosen.total)} {choice.unit}"))
-    if choice.single is not None:
+    if choice.objective == "cost" and choice.total is not None:
+        facts.append(Fact("Cost", f"{fmt.number(choice.total)} {choice.unit}"))
+    if choice.single.is_found:
         facts.append(Fact("One product for all", fmt.kilograms(choice.single.total_mass_kg)))
     if choice.gap is not None:
         unit = f"{fmt.number(choice.bound)} {choice.unit}"
@@ -110,9 +108,9 @@ def _facts(choice: GroupChoice) -> Facts:
     return Facts(tuple(facts))
 
 
-def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
+def _chosen(chosen: Assignment) -> Table:
     found = chosen.verification
-    decimals = fmt.decimals(one.cable.allowable_tension_N / 1e3 for one in chosen.products)
+    decimals = fmt.decimals(one.cable.allowable_tension_N / 1e3 for one in chosen.ropes)
     rows = [
         Row(
             (
@@ -127,7 +125,7 @@ def _chosen(choice: GroupChoice, chosen: Assigned) -> Table:
             ),
             note=fmt.doubtful(product.size.doubt),
         )
-        for k, (group, product) in enumerate(zip(choice.groups, chosen.products, strict=True))
+        for k, (group, product) in enumerate(zip(chosen.groups, chosen.ropes, strict=True))
     ]
     caption = (
         "What each group gets. All cables together were verified over the whole workspace, each "
@@ -188,7 +186,7 @@ def _row(number: int, one: Proposal, choice: GroupChoice) -> Row:
         fmt.count(one.excluded) if one.outcome != "holds" else fmt.MISSING,
         _outcome(one, choice),
     )
-    is_chosen = choice.chosen is not None and one.products == choice.chosen.products
+    is_chosen = one.products == choice.chosen.ropes
     return Row(cells, "good" if is_chosen else "muted" if one.outcome != "holds" else "")
 
 

@@ -140,7 +140,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Iterator[str]:
 
 def _other_grades(analysis: Analysis) -> Iterator[str]:
     selection = analysis.selection
-    if selection is None or analysis.has_products:
+    if selection is None or analysis.assignment.is_found:
         return
     fitting = [o.best for o in selection.alternatives if o.best is not None]
     fitting.sort(key=lambda candidate: candidate.total_mass_kg)

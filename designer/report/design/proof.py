@@ -75,6 +75,4 @@ def _down(share: float) -> float:
 
 def _case(analysis: Analysis) -> CaseProof | None:
     """Return the proof of the chosen rope; none where groups of cables have ropes of their own."""
-    if analysis.selection is None or analysis.has_groups:
-        return None
-    return analysis.selection.proof
+    return None if analysis.selection is None else analysis.selection.proof

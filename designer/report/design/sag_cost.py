@@ -20,7 +20,7 @@ def sag_cost(source: Source) -> tuple[Block, ...]:
     """
     analysis, choice = source.analysis, source.analysis.findings.massless_choice
     if source.analysis.ropes is not None:
-        said = (_consequence(analysis, choice),) if choice and not analysis.has_groups else ()
+        said = (_consequence(analysis, choice),) if choice else ()
         return (*_of_rope(source.analysis.ropes), *said)
     found = _at_the_worst_poses(analysis) or _at_the_configured_pose(analysis)
     if found is None:

@@ -57,21 +57,11 @@ def section(source: Source) -> Section | None:
 
 
 def _lines(analysis: Analysis) -> Iterator[_Line]:
-    if analysis.qualities is None or not analysis.qualities.cable.products:
-        return
-    n_cables = analysis.study.robot.n_cables
-    products = analysis.qualities.cable.products
-    shortest = [math.nan] * n_cables
-    if analysis.groups is not None and analysis.groups.chosen is not None:
-        longest = analysis.groups.chosen.verification.longest_m.tolist()
-    else:
-        assert analysis.selection is not None
-        assert analysis.selection.chosen is not None
-        met = analysis.selection.chosen.verification
-        longest, shortest = met.longest_m.tolist(), met.shortest_m.tolist()
-    each = products if len(products) == n_cables else products * n_cables
-    for k, (grade, size) in enumerate(each):
-        yield _Line(k + 1, grade, size, longest[k], shortest[k])
+    met = analysis.assignment.verification
+    lengths = zip(met.longest_m.tolist(), met.shortest_m.tolist(), strict=True)
+    ropes = zip(analysis.assignment.by_cable, lengths, strict=True)
+    for cable, (rope, (longest_m, shortest_m)) in enumerate(ropes, start=1):
+        yield _Line(cable, rope.grade, rope.size, longest_m, shortest_m)
 
 
 def _lengths(lines: list[_Line]) -> Table:

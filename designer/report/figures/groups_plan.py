@@ -13,33 +13,33 @@ from designer.model.robot import Poses, Robot
 from designer.report.figures import canvas, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.sections import set_limits
-from designer.selection.groups.result import Assigned, GroupChoice
+from designer.selection.assignment import Assignment
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def groups_plan(robot: Robot, region: Region, choice: GroupChoice, chosen: Assigned) -> str:
+def groups_plan(robot: Robot, region: Region, assignment: Assignment) -> str:
     """Return the plan as SVG: cables as thick as their products are to each other.
 
     The platform stands where the most used group is used most. A planar robot is seen from the
     side.
     """
-    most = int(np.argmax(chosen.verification.utilisation))
-    ends = Poses.at(chosen.verification.worst_place[most]).attachment_points_m(robot)
+    met = assignment.verification
+    ends = Poses.at(met.worst_place[met.most_used]).attachment_points_m(robot)
     exits, plane = robot.exit_points_m, [0, 1]
     if robot.is_planar:
         plane = [int(np.argmax(np.ptp(exits[:, :2], axis=0))), 2]
-    thickest = max(one.size.diameter_m for one in chosen.products)
+    thickest = max(one.size.diameter_m for one in assignment.ropes)
     # Okabe and Ito again; vermilion stays a warning.
     palette_of_groups = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#222222")
     looks = cycle(product(("-", "--", ":"), palette_of_groups))
-    used = chosen.verification.utilisation
+    used = met.utilisation
     with canvas.drawing():
         figure = canvas.sheet(104.0, keeps_aspect=True)
         axes = figure.subplots()
         canvas.region(axes, region, plane, "where the platform goes")
-        for group, rope, share in zip(choice.groups, chosen.products, used, strict=True):
+        for group, rope, share in zip(assignment.groups, assignment.ropes, used, strict=True):
             style, colour = next(looks)
             label = f"{group.name}: {rope.size.id}\n{rope.grade.id}\n{100 * share:.1f} % used"
             width = max(4.2 * rope.size.diameter_m / thickest, 1.2)

@@ -24,7 +24,7 @@ import numpy as np
 
 from designer.model.cable import Cable
 from designer.model.robot import Robot
-from designer.selection.groups.master import Assignment, Block, alone
+from designer.selection.groups.master import Block, Combination, alone
 from designer.selection.groups.trials import Trials
 from designer.study import Workspace
 
@@ -44,14 +44,14 @@ def is_monotone(robot: Robot, workspace: Workspace) -> bool:
     )
 
 
-def block_by_weight(trials: Trials, assignment: Assignment, culprit: int) -> Block:
-    """Return the block of a failing assignment, see the module; it alone, if nothing is proved."""
-    corner = [trials.products[p].cable for p in assignment]
+def block_by_weight(trials: Trials, combination: Combination, culprit: int) -> Block:
+    """Return the block of a failing combination, see the module; it alone, if nothing is proved."""
+    corner = [trials.products[p].cable for p in combination]
     others = [g for g in range(len(corner)) if g != culprit]
     proved = (g for g in (culprit, *others) if _overloads(trials, corner, g))
     culprit = next(proved, -1)
     if culprit < 0:
-        return alone(assignment)
+        return alone(combination)
     for g in range(len(corner)):
         if g != culprit:
             corner = _lowered(trials, corner, g, culprit)
@@ -68,7 +68,7 @@ def block_by_weight(trials: Trials, assignment: Assignment, culprit: int) -> Blo
     sets[culprit] = frozenset(
         p
         for p, one in enumerate(trials.products)
-        if p == assignment[culprit]
+        if p == combination[culprit]
         or _overloads(trials, _with(corner, culprit, one.cable), culprit)
     )
     return tuple(sets)
@@ -111,22 +111,22 @@ def _with(corner: Sequence[Cable], g: int, cable: Cable) -> list[Cable]:
 
 def block_by_trial(
     trials: Trials,
-    assignment: Assignment,
+    combination: Combination,
     culprit: int,
-    matters: Callable[[Assignment], bool],
+    matters: Callable[[Combination], bool],
     most_trials: int,
 ) -> Block:
-    """Return the block of a failing assignment, grown product by product while all of it fails.
+    """Return the block of a failing combination, grown product by product while all of it fails.
 
     ``culprit`` is the group that is grown last. An assignment that does not ``matter``, because it
     could not be the answer, needs no trial.
     """
-    sets: list[set[int]] = [{p} for p in assignment]
+    sets: list[set[int]] = [{p} for p in combination]
     last = trials.count + most_trials
     order = [g for g in range(len(sets)) if g != culprit] + [culprit]
     for g in order:
         others = prod(len(s) for k, s in enumerate(sets) if k != g)
-        distance = np.abs(np.arange(len(trials.products)) - assignment[g])
+        distance = np.abs(np.arange(len(trials.products)) - combination[g])
         for p in np.argsort(distance, kind="stable").tolist():
             if p in sets[g]:
                 continue

@@ -22,19 +22,19 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.robot import Robot
 from designer.progress import SILENT, Reporter
+from designer.selection.assignment import NOT_ASSIGNED, Assignment, GroupVerification
 from designer.selection.candidate import Candidate, candidates_of, is_allowed, priced, undominated
 from designer.selection.groups.balance import balance_at, is_sound
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
-from designer.selection.groups.master import Assignment, Block, Guide, Master, alone
+from designer.selection.groups.master import Block, Combination, Guide, Master, alone
 from designer.selection.groups.result import (
-    Assigned,
     GroupChoice,
     GroupObjective,
     Outcome,
     Proof,
     Proposal,
 )
-from designer.selection.groups.trials import GroupVerification, Refutation, Trials, verify_groups
+from designer.selection.groups.trials import Refutation, Trials, verify_groups
 from designer.study import CableGroup, Selection, Workspace
 
 MOST_PROPOSALS = 100
@@ -86,6 +86,7 @@ def choose_groups(
         groups=tuple(groups),
         most_distinct=distinct,
         chosen=search.best,
+        total=search.best_total if search.best.is_found else None,
         single=search.single,
         objective=objective,
         unit=(products[0].grade.currency or "") if by_price and products else "kg",
@@ -136,7 +137,7 @@ def choose_groups_of(
                 progress=lambda: advance(1),
             )
             chosen, before_N = choice.chosen, tension_N
-            if chosen is None or all(one.cable.stiffening is None for one in chosen.products):
+            if all(rope.cable.stiffening is None for rope in chosen.ropes):
                 break
             tension_N = chosen.max_tension_N
             if abs(tension_N - before_N) <= _STILL * tension_N:
@@ -172,82 +173,82 @@ class _Search:
         self.lengths_are_bounds = workspace.hangs_below == "include"
         self.master = Master(self._least_cost(self.trials.reach_m), most_distinct)
         self.progress = progress
-        self.best: Assigned | None = None
-        self.single: Assigned | None = None
+        self.groups = tuple(groups)
+        self.best, self.best_total = NOT_ASSIGNED, np.inf
+        self.single = NOT_ASSIGNED
         self.bound = np.inf
         self.proof: Proof = "infeasible"
         self.proposals: list[Proposal] = []
         self._guides: list[Guide] = []
-        self._settled: set[Assignment] = set()
+        self._settled: set[Combination] = set()
 
     def start(self, single: Candidate | None) -> None:
         """Verify one product for all cables: the given one, or else the strongest."""
         strength = [one.cable.allowable_tension_N for one in self.products]
         at = int(np.argmax(strength)) if single is None else self.products.index(single)
-        assignment = (at,) * len(self.members)
-        found = self._verified(assignment)
+        combination = (at,) * len(self.members)
+        found = self._verified(combination)
         if not self.lengths_are_bounds and found.longest_m.all():
             # Which samples count depends on the cables; those of the first answer are a fair guess.
             cost = self._least_cost(found.longest_m)
             self.master = Master(cost, self.master.most_distinct)
-        self._guide(assignment)
+        self._guide(combination)
         if found.holds:
-            self.master.cut(alone(assignment))
-            self.best = self._assigned(assignment, found)
-            self.single = self.best if single is not None else None
+            self.master.cut(alone(combination))
+            self.best = self._assigned(combination, found)
+            self.best_total = self._total(combination, found.longest_m)
+            self.single = self.best if single is not None else NOT_ASSIGNED
 
     def run(self, most_proposals: int) -> None:
         """Propose with the linearisation while it leads to something better, then without."""
         while len(self.proposals) < min(_MOST_GUIDED, most_proposals):
-            assignment = self.master.propose(self._guides)
-            if assignment is None or not self._could_be_better(assignment):
+            combination = self.master.propose(self._guides)
+            if combination is None or not self._could_be_better(combination):
                 break
-            outcome = self._examine(assignment, guided=True)
+            outcome = self._examine(combination, guided=True)
             if outcome == "not_better":
                 break
             if outcome == "fails":
-                self._guide(assignment)
+                self._guide(combination)
         while True:
-            assignment = self.master.propose()
-            if assignment is None or not self._could_be_better(assignment):
-                self.proof = "infeasible" if self.best is None else "optimal"
-                self.bound = np.inf if self.best is None else self.best.total
+            combination = self.master.propose()
+            if combination is None or not self._could_be_better(combination):
+                self.proof = "optimal" if self.best.is_found else "infeasible"
+                self.bound = self.best_total
                 return
-            self.bound = self.master.cost_of(assignment)
-            if self.best is not None:
-                self.bound = min(self.bound, self.best.total)
+            self.bound = min(self.master.cost_of(combination), self.best_total)
             if len(self.proposals) >= most_proposals:
                 self.proof = "stopped"
                 return
-            self._examine(assignment, guided=False)
+            self._examine(combination, guided=False)
 
-    def _examine(self, assignment: Assignment, *, guided: bool) -> Outcome:
+    def _examine(self, combination: Combination, *, guided: bool) -> Outcome:
         """Try a proposal, cut it off with what fails with it, and note it."""
-        held: Assigned | None = None
+        total: float | None = None
         outcome: Outcome = "fails"
-        block = alone(assignment)
-        worst = self.trials.refutation(assignment)
-        if worst is None and self._is_no_better(assignment):
+        block = alone(combination)
+        worst = self.trials.refutation(combination)
+        if worst is None and self._is_no_better(combination):
             outcome = "not_better"
         elif worst is None:
-            found = self._verified(assignment)
+            found = self._verified(combination)
             group = int(np.argmax(found.utilisation))
             worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
             if found.holds:
-                held = self._assigned(assignment, found)
-                is_better = self.best is None or held.total < self.best.total
-                self.best = held if is_better else self.best
-                outcome = "holds" if is_better else "not_better"
+                total = self._total(combination, found.longest_m)
+                outcome = "holds" if total < self.best_total else "not_better"
+                if outcome == "holds":
+                    self.best, self.best_total = self._assigned(combination, found), total
         if worst is not None and outcome == "fails":
-            block = self._block(assignment, worst.group)
+            block = self._block(combination, worst.group)
         self.master.cut(block)
         excluded = prod(len(products) for products in block)
         if not guided and excluded == 1:
-            excluded += self._cut_beside(assignment)
+            excluded += self._cut_beside(combination)
         note = Proposal(
-            products=tuple(self.products[p] for p in assignment),
-            bound=self.master.cost_of(assignment),
-            total=held.total if held else None,
+            products=tuple(self.products[p] for p in combination),
+            bound=self.master.cost_of(combination),
+            total=total,
             outcome=outcome,
             group=worst.group if worst else None,
             utilisation=worst.utilisation if worst else None,
@@ -259,22 +260,22 @@ class _Search:
         self.progress()
         return outcome
 
-    def _block(self, assignment: Assignment, culprit: int) -> Block:
-        """Return what fails with an assignment, in which a group is too weak."""
+    def _block(self, combination: Combination, culprit: int) -> Block:
+        """Return what fails with a combination, in which a group is too weak."""
         if self.by_weight:
-            block = block_by_weight(self.trials, assignment, culprit)
-            if block != alone(assignment):
+            block = block_by_weight(self.trials, combination, culprit)
+            if block != alone(combination):
                 return block
         room = min(300, _MOST_TRIALS - self.trials.count)  # for one block
-        return block_by_trial(self.trials, assignment, culprit, self._could_be_better, room)
+        return block_by_trial(self.trials, combination, culprit, self._could_be_better, room)
 
-    def _cut_beside(self, assignment: Assignment) -> int:
+    def _cut_beside(self, combination: Combination) -> int:
         """Cut off those that differ in one group and cannot be the answer; return how many."""
         before = self.master.n_cuts
-        for g in range(len(assignment)):
+        for g in range(len(combination)):
             for p in range(len(self.products)):
-                other = (*assignment[:g], p, *assignment[g + 1 :])
-                if p == assignment[g] or other in self._settled:
+                other = (*combination[:g], p, *combination[g + 1 :])
+                if p == combination[g] or other in self._settled:
                     continue
                 if not self._could_be_better(other) or self.trials.count > _MOST_TRIALS:
                     continue
@@ -283,22 +284,21 @@ class _Search:
                     self.master.cut(alone(other))
         return self.master.n_cuts - before
 
-    def _is_no_better(self, assignment: Assignment) -> bool:
+    def _is_no_better(self, combination: Combination) -> bool:
         """Tell whether the lengths at the far poses alone cost as much as what is known to hold."""
-        if self.best is None or not self.lengths_are_bounds:
+        if not (self.best.is_found and self.lengths_are_bounds):
             return False
-        least = self._total(assignment, self.trials.least_length_m(assignment))
-        return least >= self.best.total * (1.0 - _EQUAL)
+        least = self._total(combination, self.trials.least_length_m(combination))
+        return least >= self.best_total * (1.0 - _EQUAL)
 
-    def _could_be_better(self, assignment: Assignment) -> bool:
-        if not self.master.is_allowed(assignment):
+    def _could_be_better(self, combination: Combination) -> bool:
+        if not self.master.is_allowed(combination):
             return False
-        limit = np.inf if self.best is None else self.best.total * (1.0 - _EQUAL)
-        return self.master.cost_of(assignment) < limit
+        return self.master.cost_of(combination) < self.best_total * (1.0 - _EQUAL)
 
-    def _verified(self, assignment: Assignment) -> GroupVerification:
-        """Solve the whole workspace, and remember the worst places of an assignment."""
-        cables = self.trials.cables(assignment)
+    def _verified(self, combination: Combination) -> GroupVerification:
+        """Solve the whole workspace, and remember the worst places of a combination."""
+        cables = self.trials.cables(combination)
         found = verify_groups(self.robot, self.workspace, cables, self.members)
         some = found.worst_place
         self.trials.add_witnesses(some)
@@ -308,9 +308,9 @@ class _Search:
                 self.master.balances.append(balance)
         return found
 
-    def _guide(self, assignment: Assignment) -> None:
+    def _guide(self, combination: Combination) -> None:
         """Add the linearised tension of each cable, where it is used most, as a guide."""
-        load, slope = self.trials.slopes(assignment)
+        load, slope = self.trials.slopes(combination)
         weight = np.array([one.cable.weight_N_per_m for one in self.products])
         allowable = np.array([one.cable.allowable_tension_N for one in self.products])
         for g, cables in enumerate(self.members):
@@ -322,7 +322,7 @@ class _Search:
                     continue
                 row = slopes[:, None] * weight
                 row[g] -= allowable
-                here = float(slopes @ weight[list(assignment)])
+                here = float(slopes @ weight[list(combination)])
                 self._guides.append((row, here - float(load.tension_N[at, c])))
 
     def _least_cost(self, reach_m: FloatArray) -> FloatArray:
@@ -331,12 +331,9 @@ class _Search:
         reach = np.array([reach_m[cables].sum() for cables in self.members])
         return np.asarray(reach[:, None] * (self.per_metre / (1.0 + strain)))
 
-    def _assigned(self, assignment: Assignment, found: GroupVerification) -> Assigned:
-        products = tuple(self.products[p] for p in assignment)
-        density = self.trials.cables(assignment).linear_density_kg_per_m
-        mass = float(density @ found.longest_m)
-        return Assigned(products, found, mass, self._total(assignment, found.longest_m))
+    def _assigned(self, combination: Combination, met: GroupVerification) -> Assignment:
+        return Assignment(self.groups, tuple(self.products[p] for p in combination), met)
 
-    def _total(self, assignment: Assignment, length_m: FloatArray) -> float:
-        each = zip(self.members, assignment, strict=True)
+    def _total(self, combination: Combination, length_m: FloatArray) -> float:
+        each = zip(self.members, combination, strict=True)
         return float(sum(self.per_metre[p] * length_m[cables].sum() for cables, p in each))

@@ -22,8 +22,8 @@ import numpy as np
 from designer.arrays import FloatArray, IntArray
 from designer.selection.groups.balance import Balance
 
-Assignment = tuple[int, ...]
-"""Of each group the index of its product."""
+Combination = tuple[int, ...]
+"""Of each group the index of its rope among those on offer."""
 
 Block = tuple[frozenset[int], ...]
 """Of each group a set of products."""
@@ -32,9 +32,9 @@ Guide = tuple[FloatArray, float]
 """Coefficients (n_groups, n_products) of x, and what their sum may reach."""
 
 
-def alone(assignment: Assignment) -> Block:
-    """Return the block of this assignment and no other."""
-    return tuple(frozenset({p}) for p in assignment)
+def alone(combination: Combination) -> Block:
+    """Return the block of this combination and no other."""
+    return tuple(frozenset({p}) for p in combination)
 
 
 @dataclass(slots=True, eq=False)
@@ -53,13 +53,13 @@ class Master:
         """How many blocks are forbidden."""
         return len(self._cuts)
 
-    def cost_of(self, assignment: Assignment) -> float:
-        """Return the objective of an assignment."""
-        return float(sum(self.cost[g, p] for g, p in enumerate(assignment)))
+    def cost_of(self, combination: Combination) -> float:
+        """Return the objective of a combination."""
+        return float(sum(self.cost[g, p] for g, p in enumerate(combination)))
 
-    def is_allowed(self, assignment: Assignment) -> bool:
+    def is_allowed(self, combination: Combination) -> bool:
         """Tell whether an assignment has few enough products."""
-        return len(set(assignment)) <= self.most_distinct
+        return len(set(combination)) <= self.most_distinct
 
     def cut(self, block: Block) -> None:
         """Forbid every combination of a block."""
@@ -67,7 +67,7 @@ class Master:
         terms = [g * n_products + p for g, products in enumerate(block) for p in products]
         self._cuts.append(np.array(terms, dtype=np.int64))
 
-    def propose(self, guides: Sequence[Guide] = ()) -> Assignment | None:
+    def propose(self, guides: Sequence[Guide] = ()) -> Combination | None:
         """Return the cheapest assignment that neither a cut nor a guide forbids, if any.
 
         Solved to optimality by HiGHS, Huangfu and Hall, Math. Prog. Comp. 10 (2018) 119-142.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from designer.arrays import FloatArray
+from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
-from designer.selection.groups.trials import GroupVerification
 from designer.study import CableGroup
 
 Outcome = Literal["holds", "fails", "not_better"]
@@ -53,36 +53,8 @@ class Proposal:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Assigned:
-    """An assignment that holds everywhere.
-
-    Parameters
-    ----------
-    products : tuple of Candidate
-        Of each group.
-    verification : GroupVerification
-        What it meets.
-    total_mass_kg : float
-        Mass of all cables, each at the longest length that it needs [kg].
-    total : float
-        What was minimised: that mass, or the cost of these lengths.
-    """
-
-    products: tuple[Candidate, ...]
-    verification: GroupVerification
-    total_mass_kg: float
-    total: float
-
-    @property
-    def max_tension_N(self) -> float:
-        """The largest tension that any cable meets [N]."""
-        used = zip(self.verification.utilisation, self.products, strict=True)
-        return max(float(share) * one.cable.allowable_tension_N for share, one in used)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class GroupChoice:
-    """The choice for groups, and what is proved of it.
+    """How ropes for groups of cables were sought, and what is proved of the best.
 
     Parameters
     ----------
@@ -90,10 +62,12 @@ class GroupChoice:
         The groups.
     most_distinct : int
         How many different products were allowed.
-    chosen : Assigned or None
-        The lightest (or cheapest) assignment that holds; None if none was found.
-    single : Assigned or None
-        The lightest single product for all cables, where the selection found one.
+    chosen : Assignment
+        The lightest (or cheapest) that holds; without ropes if none was found.
+    total : float or None
+        What was minimised, of that: mass, or the cost of the lengths that it needs.
+    single : Assignment
+        The lightest single product for all groups; without ropes where the selection found none.
     objective : str
         ``mass`` or ``cost``.
     unit : str
@@ -118,8 +92,9 @@ class GroupChoice:
 
     groups: tuple[CableGroup, ...]
     most_distinct: int
-    chosen: Assigned | None
-    single: Assigned | None
+    chosen: Assignment
+    total: float | None
+    single: Assignment
     objective: GroupObjective
     unit: str
     bound: float
@@ -133,18 +108,9 @@ class GroupChoice:
     trials: int
 
     @property
-    def by_cable(self) -> tuple[Candidate, ...]:
-        """The chosen product of each cable, in the order of their numbers; empty without any."""
-        if self.chosen is None:
-            return ()
-        pairs = zip(self.groups, self.chosen.products, strict=True)
-        of_cable = {cable: product for group, product in pairs for cable in group.cables}
-        return tuple(of_cable[cable] for cable in sorted(of_cable))
-
-    @property
     def gap(self) -> float | None:
         """What was minimised over the bound on it, less one; None if nothing was found."""
-        return None if self.chosen is None else self.chosen.total / self.bound - 1.0
+        return None if self.total is None else self.total / self.bound - 1.0
 
     @property
     def proof_sentence(self) -> str:
@@ -155,7 +121,7 @@ class GroupChoice:
             return f"No assignment of {of} holds the whole workspace."
         if self.proof == "stopped":
             count = len(self.proposals)
-            if self.chosen is None:
+            if not self.chosen.is_found:
                 return f"Stopped after {count} proposals, none of which holds."
             return (
                 f"Stopped after {count} proposals: no assignment of {of} that holds has less than "
@@ -180,6 +146,6 @@ class GroupChoice:
     @property
     def saving_kg(self) -> float | None:
         """What the groups save against one product for all cables [kg]."""
-        if self.chosen is None or self.single is None:
+        if not (self.chosen.is_found and self.single.is_found):
             return None
         return self.single.total_mass_kg - self.chosen.total_mass_kg

@@ -16,9 +16,10 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.selection.assignment import GroupVerification
 from designer.selection.candidate import Candidate
 from designer.selection.groups.balance import Members
-from designer.selection.groups.master import Assignment
+from designer.selection.groups.master import Combination
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
 from designer.study import Workspace
@@ -27,25 +28,6 @@ from designer.workspace.pool import Pool
 from designer.workspace.refine import Demand, refine_over_branches
 
 _NUDGE = 1e-3
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class GroupVerification:
-    """What given cables meet in the workspace."""
-
-    # (n_groups, n_coordinates): Places where each group is used most [m, rad]
-    worst_place: FloatArray
-    # (n_groups,): Largest over allowable tension there; inf if a pose cannot be held at all
-    utilisation: FloatArray
-    longest_m: FloatArray  # (n_cables,): Longest unstrained length that each cable needs [m]
-    # Whether the worst poses were searched for between the samples as well. Where a sample already
-    # fails, they were not.
-    is_refined: bool
-
-    @property
-    def holds(self) -> bool:
-        """Whether every group stays within its allowable tension everywhere."""
-        return self.is_refined and bool((self.utilisation <= 1.0).all())
 
 
 def utilisation_of(statics: Statics, cables: Cables, left_out: BoolArray) -> FloatArray:
@@ -81,13 +63,13 @@ def verify_groups(
     if np.isneginf(used).any():  # every sample is left out: nothing is served
         used = np.full(len(members), np.inf)
     if used.max() > 1.0:
-        return GroupVerification(at, used, longest, False)
+        return GroupVerification(at, used, longest, np.full_like(longest, np.nan), False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
     worst = refine_over_branches(space, demand_with, starts)
     asked = np.array([one.demand for one in worst])
     at = np.array([one.place for one in worst[: len(members)]])
     groups, lengths = np.split(asked, [len(members)])
-    return GroupVerification(at, groups, lengths, True)
+    return GroupVerification(at, groups, lengths, np.full_like(lengths, np.nan), True)
 
 
 def _demand(
@@ -159,7 +141,7 @@ class Trials:
             self._farthest = np.where(is_farther, some[best], self._farthest)
             self.reach_m = np.maximum(self.reach_m, far)
         self._found = np.empty((0, workspace.space.n_coordinates))
-        self._refuted: set[Assignment] = set()
+        self._refuted: set[Combination] = set()
 
     @property
     def witnesses(self) -> FloatArray:
@@ -173,9 +155,9 @@ class Trials:
         found = np.concatenate([self._found, np.array(new).reshape(-1, self._found.shape[1])])
         self._found = found[-120:]  # the latest: each is asked in every trial
 
-    def cables(self, assignment: Assignment) -> Cables:
-        """Return the cables of an assignment, in the order of the exit points."""
-        return self.on_groups([self.products[p].cable for p in assignment])
+    def cables(self, combination: Combination) -> Cables:
+        """Return the cables of a combination, in the order of the exit points."""
+        return self.on_groups([self.products[p].cable for p in combination])
 
     def on_groups(self, each: Sequence[Cable]) -> Cables:
         """Return the cables of the robot from those of its groups."""
@@ -199,31 +181,31 @@ class Trials:
         drop = cable_geometry(self.robot, Poses.at(self.witnesses)).drop_m
         return np.asarray((drop > 0.0).all(axis=1))
 
-    def refutation(self, assignment: Assignment) -> Refutation | None:
-        """Return the worst witness against an assignment, if there is one."""
-        used = self.load(self.cables(assignment)).utilisation
+    def refutation(self, combination: Combination) -> Refutation | None:
+        """Return the worst witness against a combination, if there is one."""
+        used = self.load(self.cables(combination)).utilisation
         by_group = np.stack([used[:, cables].max(axis=1) for cables in self.members], axis=1)
         at, group = np.unravel_index(int(np.argmax(by_group)), by_group.shape)
         if by_group[at, group] <= 1.0:
             return None
-        self._refuted.add(assignment)
+        self._refuted.add(combination)
         return Refutation(int(group), float(by_group[at, group]), self.witnesses[at])
 
-    def is_refuted(self, assignment: Assignment) -> bool:
-        """Tell whether a witness speaks against an assignment."""
-        return assignment in self._refuted or self.refutation(assignment) is not None
+    def is_refuted(self, combination: Combination) -> bool:
+        """Tell whether a witness speaks against a combination."""
+        return combination in self._refuted or self.refutation(combination) is not None
 
-    def least_length_m(self, assignment: Assignment) -> FloatArray:
+    def least_length_m(self, combination: Combination) -> FloatArray:
         """Return lengths (n_cables,) that the longest ones of an assignment cannot fall below."""
-        length = self.load(self.cables(assignment)).length_m[: len(self._farthest)]
+        length = self.load(self.cables(combination)).length_m[: len(self._farthest)]
         return np.asarray(np.nan_to_num(length).max(axis=0, initial=0.0))
 
-    def slopes(self, assignment: Assignment) -> tuple[Load, FloatArray]:
+    def slopes(self, combination: Combination) -> tuple[Load, FloatArray]:
         """Return the load, and the slope of each tension in each group's weight.
 
         The latter (n_groups, n_witnesses, n_cables) by forward differences [N per N/m].
         """
-        each = [self.products[p].cable for p in assignment]
+        each = [self.products[p].cable for p in combination]
         base = self.load(self.on_groups(each))
         slopes = []
         for g, cable in enumerate(each):
