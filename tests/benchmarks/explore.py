@@ -158,7 +158,7 @@ def _shown_s(name: str, maps: Sequence[MapAnswer]) -> tuple[float, float]:
             colours.append(time.perf_counter() - before)
             scene.repaint()
             frames.append(scene.frame_s)
-        window.session = None
+        window.live.session = None
         window.close()
     return statistics.median(colours), statistics.median(frames)
 

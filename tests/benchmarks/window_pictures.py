@@ -73,14 +73,14 @@ def main() -> None:
             keep(window.grab(), "window-yard")
         window.close()
     window = opened("cogiro", "dark")
-    window.comparing.pin()
-    window.editing.enter("robot.platform.mass", "140 kg", False)
+    window.live.pin()
+    window.live.do(lambda session: session.edit("robot.platform.mass", "140 kg"))
     rest(window)
     window.docks["Compare"].raise_()
     window.compare.in_map.setChecked(True)
     rest(window)
     keep(window.grab(), "window-cogiro-compare")
-    window.session = None
+    window.live.session = None
     window.close()
     settings = Settings(Path(mkdtemp()) / "settings.ini")
     settings.theme = "light"

@@ -1,184 +1,307 @@
-"""Opening, saving and leaving a study; what is not saved is asked about, never lost."""
+"""Files of the window: studies opened, saved and left, robots imported, and what is exported.
+
+What is not saved is asked about, never lost.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from PySide6.QtWidgets import QFileDialog, QMessageBox
+from PySide6.QtCore import QObject, QTimer, QUrl, Signal
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from designer.errors import DesignerError
-from designer.explore.desktop.live import LONG, NAMES
+from designer.explore.desktop.live_session import LONG, NAMES, LiveSession
+from designer.explore.desktop.settings import Settings
+from designer.explore.export import Exported
 from designer.explore.session import Session
+from designer.plugins.find import Plugins
 from designer.report import format as fmt
 from designer.resources import example_file, example_names
 
-if TYPE_CHECKING:
-    from designer.explore.desktop.window import Window
-
 _STUDIES = "Studies (*.yaml *.yml);;All files (*)"
+_ROBOTS = "Robots of CASPR and WireX (*.xml *.wcrfx);;All files (*)"
+_STARTER = "fast"
+"""The study that has a comment to every field; `designer init` starts with it as well."""
+_NO_OPTION = QFileDialog.Option(0)
+_DISK_MS = 2000
+"""Between two looks at the file: soon enough for who comes back from another editor."""
 
 
-class Files:
-    """What the window does with files."""
+class Files(QObject):
+    """Dialogs about files, and what follows from them.
 
-    def __init__(self, window: Window) -> None:
-        self._window = window
-        self._told_disk = "same"
+    Parameters
+    ----------
+    parent : QWidget
+        What the dialogs stand before.
+    live : LiveSession
+        The open study.
+    plugins : Plugins
+        What studies are read with.
+    settings : Settings
+        Where studies that were open are remembered.
+    """
 
-    def open(self, path: Path) -> None:
-        """Open a study, shipped ones as a copy that has no file yet."""
-        if not self.may_leave():
-            return
-        try:
-            session = self._session(path)
-        except DesignerError as error:
-            self._window.tell(str(error))
-            QMessageBox.warning(self._window, "cdpr-designer", str(error))
-            self._window.start.show_recent(self._window.settings.recent)
-            return
-        if session.file is not None:
-            self._window.settings.remember(path)
-        self._window.work.show_notice("")
-        self._told_disk = "same"
-        self._window.take_session(session)
+    notice = Signal(str, tuple)
+    """A line that asks for attention, and the names of its buttons; no line for no text."""
+    not_opened = Signal()
+    """A study could not be opened, and may be gone."""
 
-    def _session(self, path: Path) -> Session:
-        plugins = self._window.plugins
-        if path.stem in example_names() and path == example_file(path.stem):
-            return Session.example(path.stem, plugins)
-        return Session.open(path, plugins)
+    def __init__(
+        self, parent: QWidget, live: LiveSession, plugins: Plugins, settings: Settings
+    ) -> None:
+        super().__init__(parent)
+        self._parent, self._live = parent, live
+        self._plugins, self._settings = plugins, settings
+        self._disk = "same"
+        self._exported: Exported | None = None
+        self.watch = QTimer(self, interval=_DISK_MS)
+        self.watch.timeout.connect(self.look_at_disk)
+        self.watch.start()
+        live.listen(self._show_exported, "export")
+
+    # Studies
+
+    def new(self) -> None:
+        """Begin a study with a comment to every field."""
+        self.open(example_file(_STARTER))
 
     def ask_and_open(self) -> None:
         """Let the user look for a study."""
-        name, _ = QFileDialog.getOpenFileName(self._window, "Open a study", "", _STUDIES)
+        name, _ = QFileDialog.getOpenFileName(self._parent, "Open a study", "", _STUDIES)
         if name:
             self.open(Path(name))
 
+    def ask_and_import(self) -> None:
+        """Let the user look for a robot of another program, and write it as a study."""
+        name, _ = QFileDialog.getOpenFileName(self._parent, "Import a robot", "", _ROBOTS)
+        if not name:
+            return
+        source = Path(name)
+        stem = source.stem.removesuffix("_bodies").removesuffix("_cables")
+        start = str(source.with_name(f"{stem}.yaml"))
+        name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
+        if name and self._succeeds(lambda: _import(source, Path(name)), "Not imported"):
+            self.open(Path(name))
+
+    def open(self, path: Path) -> None:
+        """Open a study, shipped ones as a copy that has no file yet."""
+        opened: list[Session] = []
+        if not self.may_leave():
+            return
+        if not self._succeeds(lambda: opened.append(self._session(path)), "cdpr-designer"):
+            self.not_opened.emit()
+            return
+        if opened[0].file is not None:
+            self._settings.remember(path)
+        self._disk = "same"
+        self._live.open(opened[0])
+
+    def _session(self, path: Path) -> Session:
+        if path.stem in example_names() and path == example_file(path.stem):
+            return Session.example(path.stem, self._plugins)
+        return Session.open(path, self._plugins)
+
     def close(self) -> None:
         """Go back to the start page."""
-        window = self._window
         if self.may_leave():
-            window.live.forget()
-            window.session = None
-            window.setWindowModified(False)
-            window.setWindowTitle("cdpr-designer")
-            window.show_start()
+            self._live.open(None)
 
     def save(self) -> bool:
         """Save the study; tells whether it was."""
-        session = self._window.session
+        session = self._live.session
         if session is None:
             return True
-        if session.file is None:
-            return self.save_as()
-        return self._written(session.save)
+        return self.save_as() if session.file is None else self._saved(session.save)
 
     def save_as(self) -> bool:
         """Save the study under another name; tells whether it was."""
-        session = self._window.session
+        session = self._live.session
         if session is None:
             return True
         start = str(session.file or Path(f"{session.path.stem}.yaml").resolve())
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save the study as", start, _STUDIES)
+        name, _ = QFileDialog.getSaveFileName(self._parent, "Save the study as", start, _STUDIES)
         if not name:
             return False
         path = Path(name) if Path(name).suffix else Path(f"{name}.yaml")
-        if not self._written(lambda: session.save_as(path)):
+        if not self._saved(lambda: session.save_as(path)):
             return False
-        self._window.settings.remember(path)
+        self._settings.remember(path)
         return True
 
-    def _written(self, write: Callable[[], None]) -> bool:
-        self._window.text.flush()
-        try:
-            write()
-        except DesignerError as error:
-            self._window.tell(str(error))
-            QMessageBox.warning(self._window, "Not saved", str(error))
+    def _saved(self, write: Callable[[], None]) -> bool:
+        self._live.flushing.emit()
+        if not self._succeeds(write, "Not saved"):
             return False
-        session = self._window.session
-        assert session is not None
-        self._told_disk = "same"
-        self._window.work.show_notice("")
-        self._window.editing.show()
-        self._window.changed()
-        self._window.statusBar().showMessage(f"Saved {session.file}", 8000)
+        self._follow_disk()
+        assert self._live.session is not None
+        self._live.message.emit(f"Saved {self._live.session.file}")
         return True
 
     def reload(self) -> None:
         """Take what the file holds now."""
-        session = self._window.session
-        if session is None:
-            return
+        session = self._live.session
+        if session is not None:
+            try:
+                session.reload()
+            except DesignerError as error:
+                self._live.message.emit(str(error))
+                return
+            self._follow_disk()
+
+    def _follow_disk(self) -> None:
+        """File and session are the same again."""
+        self._disk = "same"
+        self.notice.emit("", ())
+        self._live.do(lambda _: None)
+
+    def _succeeds(self, step: Callable[[], object], failure: str) -> bool:
+        """Take a step; where it fails, say why under a title."""
         try:
-            session.reload()
+            step()
         except DesignerError as error:
-            self._window.tell(str(error))
-            return
-        self._told_disk = "same"
-        self._window.work.show_notice("")
-        self._window.editing.show()
-        self._window.changed()
+            self._live.message.emit(str(error))
+            QMessageBox.warning(self._parent, failure, str(error))
+            return False
+        return True
+
+    # Leaving
 
     def may_leave(self) -> bool:
         """Ask what becomes of long work and of changes; tells whether to go on."""
+        self._live.flushing.emit()
         return self._may_end_work() and self._may_drop_changes()
 
     def _may_end_work(self) -> bool:
         """Ask whether work of minutes that goes on may end without a result."""
-        going_on = [NAMES[kind] for kind in LONG if kind in self._window.live.busy]
-        if self._window.session is None or not going_on:
+        unfinished = [NAMES[kind] for kind in LONG if kind in self._live.busy]
+        if self._live.session is None or not unfinished:
             return True
         button = QMessageBox.StandardButton
-        asked = QMessageBox(self._window)
-        asked.setObjectName("unfinished")
-        asked.setIcon(QMessageBox.Icon.Question)
-        is_or_are = "is" if len(going_on) == 1 else "are"
-        asked.setText(f"{fmt.capital(fmt.listing(going_on))} {is_or_are} not finished. End it?")
-        asked.setStandardButtons(button.Yes | button.Cancel)
-        asked.setDefaultButton(button.Cancel)
-        return bool(asked.exec() == button.Yes)
+        is_or_are = "is" if len(unfinished) == 1 else "are"
+        text = f"{fmt.capital(fmt.listing(unfinished))} {is_or_are} not finished. End it?"
+        answer = self._answer("unfinished", text, button.Yes | button.Cancel, button.Cancel)
+        return answer == button.Yes
 
     def _may_drop_changes(self) -> bool:
         """Ask what becomes of changes that are not saved."""
-        session = self._window.session
+        session = self._live.session
         if session is None or not session.is_modified:
             return True
         button = QMessageBox.StandardButton
-        asked = QMessageBox(self._window)
-        asked.setObjectName("unsaved")
-        asked.setIcon(QMessageBox.Icon.Question)
-        asked.setText(f"The changes of “{session.name}” are not saved.")
-        asked.setStandardButtons(button.Save | button.Discard | button.Cancel)
-        asked.setDefaultButton(button.Save)
-        answer = asked.exec()
-        if answer == button.Save:
-            return self.save()
-        return bool(answer == button.Discard)
+        text = f"The changes of “{session.name}” are not saved."
+        buttons = button.Save | button.Discard | button.Cancel
+        answer = self._answer("unsaved", text, buttons, button.Save)
+        return self.save() if answer == button.Save else answer == button.Discard
+
+    def _answer(
+        self,
+        name: str,
+        text: str,
+        buttons: QMessageBox.StandardButton,
+        default: QMessageBox.StandardButton,
+    ) -> QMessageBox.StandardButton:
+        box = QMessageBox(self._parent)
+        box.setObjectName(name)
+        box.setIcon(QMessageBox.Icon.Question)
+        box.setText(text)
+        box.setStandardButtons(buttons)
+        box.setDefaultButton(default)
+        return QMessageBox.StandardButton(box.exec())
 
     def look_at_disk(self) -> None:
-        """Tell where the file was changed by another program, or is gone."""
-        session = self._window.session
+        """Say where the file was changed by another program, or is gone."""
+        session = self._live.session
         if session is None or session.file is None:
             return
-        found = session.disk()
-        if found == self._told_disk:
+        disk, before = session.disk(), self._disk
+        self._disk = disk
+        if disk == before:
             return
-        self._told_disk = found
-        notice = self._window.work.show_notice
-        if found == "changed":
-            notice(f"{session.file.name} was changed by another program.", "Reload", "Keep mine")
-        elif found == "gone":
-            notice(f"{session.file.name} is gone. Saving writes it again.", "Save", "Later")
+        name = session.file.name
+        if disk == "changed":
+            self.notice.emit(f"{name} was changed by another program.", ("Reload", "Keep mine"))
+        elif disk == "gone":
+            self.notice.emit(f"{name} is gone. Saving writes it again.", ("Save", "Later"))
         else:
-            notice("")
+            self.notice.emit("", ())
 
-    def answer_notice(self, name: str) -> None:
-        """Do what the button of the notice says."""
-        self._window.work.show_notice("")
-        if name == "Reload":
+    def answer_notice(self, button: str) -> None:
+        """Do what a button of the notice says."""
+        self.notice.emit("", ())
+        if button == "Reload":
             self.reload()
-        elif name == "Save":
+        elif button == "Save":
             self.save()
+        elif button == "Open" and self._exported is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._exported.files[0])))
+
+    # Exports
+
+    def export_report(self) -> None:
+        """Write the report and all results, as the command does."""
+        self._export_folder("report", "Folder for the report")
+
+    def export_tables(self) -> None:
+        """Write cables, map and ropes as tables."""
+        ropes = self._live.answers.get("ropes")
+        self._export_folder("tables", "Folder for the tables", ropes=ropes)
+
+    def _export_folder(self, what: str, title: str, **options: object) -> None:
+        target = self._target(title, f"-{what}", "", QFileDialog.Option.ShowDirsOnly)
+        if target is not None:
+            self._live.begin_long("export", what=what, target=target, **options)
+
+    def export_map(self) -> None:
+        """Write the map for ParaView."""
+        target = self._target("The map for ParaView", "-map.vtu", "VTK grids (*.vtu)")
+        if target is not None:
+            self._live.begin_long("export", what="vtk", target=target.with_suffix(".vtu"))
+
+    def export_picture(self, scene: QWidget) -> None:
+        """Save the scene as it is seen."""
+        target = self._target("Picture of the scene", ".png", "Pictures (*.png)")
+        if target is not None:
+            path = target.with_suffix(".png")
+            is_saved = scene.grab().save(str(path))
+            self._live.message.emit(f"Saved {path}" if is_saved else f"{path}: cannot be written")
+
+    def _target(
+        self, title: str, ending: str, kinds: str, options: QFileDialog.Option = _NO_OPTION
+    ) -> Path | None:
+        """Ask for a place beside the study; None where the user gives up."""
+        session = self._live.session
+        if session is None:
+            return None
+        folder = Path.cwd() if session.file is None else session.file.resolve().parent
+        start = str(folder / f"{session.path.stem}{ending}")
+        name, _ = QFileDialog.getSaveFileName(self._parent, title, start, kinds, options=options)
+        return Path(name) if name else None
+
+    def _show_exported(self, exported: Exported | None) -> None:
+        """Say what was written, and offer to open it."""
+        self._exported = exported
+        if exported is None:
+            self.notice.emit("", ())
+            return
+        self._live.message.emit(f"Written: {', '.join(str(path) for path in exported.files)}")
+        main = exported.files[0]
+        self.notice.emit(f"{main.name} is in {main.parent}.", ("Open", "Close"))
+
+
+def _import(source: Path, target: Path) -> None:
+    """Write a robot of another program as a study; what its file does not say is to be filled in.
+
+    Raises
+    ------
+    DesignerError
+        If there is no such robot in the file, or the study cannot be written.
+    """
+    from designer.foreign.read import read_foreign
+    from designer.foreign.study import Answers, study_text
+    from designer.io.output import write_file
+
+    write_file(target, study_text(read_foreign(source), Answers()))

@@ -1,9 +1,17 @@
-"""What mouse and keys do, and what each quantity is."""
+"""What mouse and keys do, what each quantity is, and which program this is."""
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QTextBrowser, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QMessageBox,
+    QTextBrowser,
+    QVBoxLayout,
+    QWidget,
+)
 
+from designer import __version__
 from designer.explore.quantities import QUANTITIES
 
 HINT = (
@@ -45,3 +53,9 @@ class Help(QDialog):
         column = QVBoxLayout(self)
         column.addWidget(page)
         column.addWidget(buttons)
+
+
+def show_about(parent: QWidget) -> None:
+    """Say which program and version this is."""
+    text = f"cdpr-designer {__version__}\n\nCables of large cable-driven parallel robots."
+    QMessageBox.about(parent, "About cdpr-designer", text)

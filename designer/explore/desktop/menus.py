@@ -1,20 +1,53 @@
-"""The menu bar: what can be done, with its keys, and what can be done right now."""
+"""The menu bar: every action with its name, its keys and what it does, and what is possible now."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QDockWidget, QMenu
+from PySide6.QtGui import QAction, QActionGroup, QKeySequence
+from PySide6.QtWidgets import QMenu
 
 from designer.explore.desktop import theme as themes
-from designer.explore.desktop.actions import Entry, choices, fill
+from designer.explore.desktop.help import Help, show_about
 from designer.explore.quantities import QUANTITIES
+from designer.explore.session import Session
 from designer.resources import example_file, example_names
 
 if TYPE_CHECKING:
     from designer.explore.desktop.window import Window
+
+_KEY = QKeySequence.StandardKey
+_VIEWS = (
+    ("home", "&Whole scene", "Home", "Look at everything from where it is clear"),
+    ("top", "From &above", "Ctrl+Alt+T", "Look down"),
+    ("front", "From the &front", "Ctrl+Alt+F", "Look along y"),
+    ("side", "From the &side", "Ctrl+Alt+S", "Look along x, against it"),
+)
+_THEMES = {"system": "As the system", "light": "Light", "dark": "Dark"}
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """An entry of a menu; ``run`` is called when it is chosen, ``standard`` are the system's keys.
+
+    Not every system has keys for every standard: ``keys`` work on all.
+    """
+
+    name: str
+    text: str
+    keys: str
+    tip: str
+    run: Callable[[], object]
+    standard: QKeySequence.StandardKey = _KEY.UnknownKey
+
+    def shortcuts(self) -> list[QKeySequence]:
+        """Return the keys, those of the system in front."""
+        keys = QKeySequence.keyBindings(self.standard)
+        own = QKeySequence(self.keys)
+        return keys if own in keys or own.isEmpty() else [*keys, own]
 
 
 class Menus:
@@ -29,9 +62,14 @@ class Menus:
         self._platform_menu()
         self._add(
             self._menu("&Help", "help menu"),
-            Entry("keys", "&Mouse, keys and quantities", "F1", "What they do and are",
-                  window.show_help),
+            Command("keys", "&Mouse, keys and quantities", "F1", "What they do and are",
+                    lambda: Help(window).show(), _KEY.HelpContents),
+            Command("about", "&About cdpr-designer", "", "Version and licence",
+                    lambda: show_about(window)),
         )  # fmt: skip
+        for signal in (window.live.changed, window.live.moved, window.live.answered):
+            signal.connect(self.refresh)
+        window.live.quantity_changed.connect(self.refresh)
 
     def _menu(self, title: str, name: str) -> QMenu:
         menu = self._window.menuBar().addMenu(title)
@@ -43,8 +81,10 @@ class Menus:
         menu = self._menu("&File", "file menu")
         self._add(
             menu,
-            Entry("open", "&Open …", "Ctrl+O", "Open a study", files.ask_and_open),
-        )
+            Command("new", "&New", "Ctrl+N", "A study with a comment to every field",
+                    files.new, _KEY.New),
+            Command("open", "&Open …", "Ctrl+O", "Open a study", files.ask_and_open, _KEY.Open),
+        )  # fmt: skip
         self._recent = menu.addMenu("Open &recent")
         self._recent.aboutToShow.connect(self._show_recent)
         shipped = menu.addMenu("Open a &shipped study")
@@ -53,106 +93,130 @@ class Menus:
             action.triggered.connect(lambda _=False, name=name: files.open(example_file(name)))
         self._add(
             menu,
+            Command("import", "&Import …", "Ctrl+I", "A robot of CASPR or WireX as a study",
+                    files.ask_and_import),
             None,
-            Entry("save", "&Save", "Ctrl+S", "Save the study, its comments kept", files.save),
-            Entry("save as", "Save &as …", "Ctrl+Shift+S", "Save another file", files.save_as),
-            Entry("reload", "Re&load", "F5", "Take what the file holds now", files.reload),
+            Command("save", "&Save", "Ctrl+S", "Save the study, its comments kept",
+                    files.save, _KEY.Save),
+            Command("save as", "Save &as …", "Ctrl+Shift+S", "Save another file",
+                    files.save_as, _KEY.SaveAs),
+            Command("reload", "Re&load", "F5", "Take what the file holds now",
+                    files.reload, _KEY.Refresh),
             None,
-        )
+        )  # fmt: skip
         self._add(
             menu.addMenu("E&xport"),
-            Entry("export report", "&Report …", "Ctrl+R", "All that the command writes",
-                  window.keeping.report),
-            Entry("export picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen",
-                  window.keeping.picture),
-            Entry("export tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV",
-                  window.keeping.tables),
-            Entry("export map", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid",
-                  window.keeping.map_file),
+            Command("export report", "&Report …", "Ctrl+R", "All that the command writes",
+                    files.export_report),
+            Command("export picture", "&Picture …", "Ctrl+Shift+P", "The scene as it is seen",
+                    lambda: files.export_picture(window.work.scene)),
+            Command("export tables", "&Tables …", "Ctrl+Shift+T", "Cables, map and ropes as CSV",
+                    files.export_tables),
+            Command("export map", "&Map for ParaView …", "Ctrl+Shift+M", "The map as a VTK grid",
+                    files.export_map),
         )  # fmt: skip
         self._add(
             menu,
             None,
-            Entry("text", "Study as &text", "Ctrl+E", "Edit the file itself", window.show_text),
-            Entry("scene", "S&cene", "Ctrl+Return", "Back to the scene", window.show_work),
+            Command("text", "Study as &text", "Ctrl+E", "Edit the file itself", window.show_text),
+            Command("scene", "S&cene", "Ctrl+Return", "Back to the scene", window.show_work),
             None,
-            Entry("close study", "&Close the study", "Ctrl+W", "To the start page", files.close),
-            Entry("quit", "&Quit", "Ctrl+Q", "End the program", window.close),
-        )
+            Command("close study", "&Close the study", "Ctrl+W", "To the start page",
+                    files.close, _KEY.Close),
+            Command("quit", "&Quit", "Ctrl+Q", "End the program", window.close, _KEY.Quit),
+        )  # fmt: skip
 
     def _edit_menu(self) -> None:
-        window = self._window
+        live = self._window.live
         self._add(
             self._menu("&Edit", "edit menu"),
-            Entry("undo", "&Undo", "Ctrl+Z", "Take back the last step", window.editing.undo),
-            Entry("redo", "&Redo", "Ctrl+Shift+Z", "Do it again", window.editing.redo),
+            Command("undo", "&Undo", "Ctrl+Z", "Take back the last step",
+                    partial(live.do, Session.undo), _KEY.Undo),
+            Command("redo", "&Redo", "Ctrl+Shift+Z", "Do it again",
+                    partial(live.do, Session.redo), _KEY.Redo),
             None,
-            Entry(
-                "put all back",
-                "&Put everything back",
-                "",
-                "Make the whole study as the file has it",
-                window.editing.put_all_back,
-            ),
-        )
+            Command("put all back", "&Put everything back", "",
+                    "Make the whole study as the file has it", live.put_all_back),
+        )  # fmt: skip
 
     def _view_menu(self) -> None:
-        window, work = self._window, self._window.work
+        window = self._window
         menu = self._menu("&View", "view menu")
         colours = menu.addMenu("&Colour by")
         colours.setObjectName("quantity")
         names = [(q.key, q.title, f"Ctrl+{k}") for k, q in enumerate(QUANTITIES, start=1)]
-        self.quantities = choices(window, colours, names, work.choose_quantity)
+        self.quantities = self._options(colours, names, window.live.colour_by)
         for quantity in QUANTITIES:
             self.quantities[quantity.key].setToolTip(quantity.definition)
-        self._add(
-            menu,
-            None,
-            *(
-                Entry(f"look {where}", text, keys, tip, partial(work.look, where))
-                for where, text, keys, tip in (
-                    ("home", "&Whole scene", "Home", "Look at everything from where it is clear"),
-                    ("top", "From &above", "Ctrl+Alt+T", "Look down"),
-                    ("front", "From the &front", "Ctrl+Alt+F", "Look along y"),
-                    ("side", "From the &side", "Ctrl+Alt+S", "Look along x, against it"),
-                )
-            ),
-            None,
+        views = (
+            Command(f"look {view}", text, keys, tip, partial(window.work.look, view))
+            for view, text, keys, tip in _VIEWS
         )
+        self._add(menu, None, *views, None)
         look = menu.addMenu("&Theme")
         look.setObjectName("theme")
-        titles = {"system": "As the system", "light": "Light", "dark": "Dark"}
-        options = [(name, titles[name], "") for name in themes.CHOICES]
-        self.themes = choices(window, look, options, window.put_on)
+        options = [(name, _THEMES[name], "") for name in themes.CHOICES]
+        self.themes = self._options(look, options, window.put_on)
         panels = menu.addMenu("&Panels")
         for name in window.docks:
-            shown = name not in window.settings.hidden_panels
-            action = QAction(name, window, checkable=True, checked=shown)
+            is_shown = name not in window.settings.hidden_panels
+            action = QAction(name, window, checkable=True, checked=is_shown)
             action.setObjectName(f"panel {name}")
-            action.toggled.connect(window.panels_changed)
+            action.toggled.connect(window.show_panels)
             panels.addAction(action)
             self.actions[f"panel {name}"] = action
 
     def _platform_menu(self) -> None:
-        window = self._window
+        live = self._window.live
         self._add(
             self._menu("&Platform", "platform menu"),
-            Entry("to worst", "To the &worst pose", "Ctrl+G", "Where most is asked of the rope",
-                  window.moving.to_worst),
-            Entry("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
-                  window.moving.to_pose),
+            Command("to worst", "To the &worst pose", "Ctrl+G", "Where most is asked of the rope",
+                    live.to_worst),
+            Command("to pose", "To the &pose of the study", "Ctrl+Shift+G", "As configured",
+                    live.to_pose),
             None,
-            Entry("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
-                  window.comparing.pin),
-            Entry("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing",
-                  window.comparing.release),
+            Command("pin", "P&in this state as A", "Ctrl+D", "Compare with it from now on",
+                    live.pin),
+            Command("release", "&Release A", "Ctrl+Shift+D", "Compare with nothing", live.release),
             None,
-            Entry("keep pose", "&Keep as the pose of the study", "Ctrl+K",
-                  "Writes this place under `pose`", window.moving.keep),
+            Command("keep pose", "&Keep as the pose of the study", "Ctrl+K",
+                    "Writes this place under `pose`", live.keep_pose),
         )  # fmt: skip
 
-    def _add(self, menu: QMenu, *entries: Entry | None) -> None:
-        self.actions |= fill(self._window, menu, entries)
+    def _add(self, menu: QMenu, *commands: Command | None) -> None:
+        """Put commands into a menu; None is a line between them."""
+        menu.setToolTipsVisible(True)
+        for command in commands:
+            if command is None:
+                menu.addSeparator()
+                continue
+            action = QAction(command.text, self._window)
+            action.setObjectName(command.name)
+            action.setShortcuts(command.shortcuts())
+            action.setToolTip(command.tip)
+            action.setStatusTip(command.tip)
+            action.triggered.connect(lambda _=False, run=command.run: run())
+            menu.addAction(action)
+            self.actions[command.name] = action
+
+    def _options(
+        self,
+        menu: QMenu,
+        options: Iterable[tuple[str, str, str]],
+        choose: Callable[[str], object],
+    ) -> dict[str, QAction]:
+        """Put options (name, text, keys) into a menu, one of which is on."""
+        group = QActionGroup(self._window)
+        actions = {}
+        for name, text, keys in options:
+            action = QAction(text, self._window, checkable=True)
+            action.setObjectName(f"{menu.objectName()} {name}")
+            action.setShortcut(QKeySequence(keys))
+            action.triggered.connect(lambda _=False, name=name: choose(name))
+            group.addAction(action)
+            menu.addAction(action)
+            actions[name] = action
+        return actions
 
     def _show_recent(self) -> None:
         self._recent.clear()
@@ -162,42 +226,37 @@ class Menus:
         if self._recent.isEmpty():
             self._recent.addAction("none yet").setEnabled(False)
 
-    def wants_dock(self, dock: QDockWidget) -> bool:
+    def wants_panel(self, name: str) -> bool:
         """Whether a panel is to be seen where the scene is."""
-        return self.actions[f"panel {dock.windowTitle()}"].isChecked()
+        return self.actions[f"panel {name}"].isChecked()
 
     def refresh(self) -> None:
         """Allow what can be done now."""
-        window, session = self._window, self._window.session
-        has_study = session is not None and session.study is not None
-        at_work = has_study and window.pages.currentWidget() is window.work
+        window, live = self._window, self._window.live
+        session, study, page = live.session, live.study, window.pages.currentWidget()
+        at_work = study is not None and page is window.work
         allowed = {
-            "save": session is not None,
-            "save as": session is not None,
+            **dict.fromkeys(("save", "save as", "close study"), session is not None),
             "reload": session is not None and session.file is not None,
-            "text": session is not None and window.pages.currentWidget() is not window.text,
-            "scene": has_study and not at_work,
-            "close study": session is not None,
+            "text": session is not None and page is not window.text,
+            "scene": study is not None and not at_work,
             "undo": session is not None and session.can_undo,
             "redo": session is not None and session.can_redo,
             "put all back": session is not None and session.is_modified,
-            "to worst": at_work and getattr(window.answers.get("worst"), "place", None) is not None,
-            "to pose": at_work and session is not None and session.study is not None
-            and session.study.pose is not None,
+            "to worst": at_work and getattr(live.answers.get("worst"), "place", None) is not None,
+            "to pose": at_work and study is not None and study.pose is not None,
             "keep pose": at_work,
             "pin": at_work,
-            "release": session is not None and session.state.pin is not None,
+            "release": live.pinned is not None,
             **{f"export {what}": at_work for what in ("report", "picture", "tables", "map")},
-            **{f"look {where}": at_work for where in ("home", "top", "front", "side")},
-        }  # fmt: skip
-        for name, is_so in allowed.items():
-            self.actions[name].setEnabled(bool(is_so))
+            **{f"look {view}": at_work for view, *_ in _VIEWS},
+        }
+        for name, is_allowed in allowed.items():
+            self.actions[name].setEnabled(is_allowed)
         if session is not None:
             self.actions["undo"].setText(f"&Undo {session.undo_label.lower()}".rstrip())
             self.actions["redo"].setText(f"&Redo {session.redo_label.lower()}".rstrip())
-        for action in self.quantities.values():
-            action.setEnabled(at_work)
-        has_rope = session is not None and session.state.rope is not None
-        self.quantities["utilisation"].setEnabled(bool(at_work and has_rope))
-        self.quantities[str(window.work.quantity.currentData())].setChecked(True)
+        for key, action in self.quantities.items():
+            action.setEnabled(at_work and (key != "utilisation" or live.rope is not None))
+        self.quantities[live.quantity].setChecked(True)
         self.themes[window.settings.theme].setChecked(True)

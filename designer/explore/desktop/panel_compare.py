@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
@@ -16,7 +15,9 @@ from PySide6.QtWidgets import (
 )
 
 from designer.explore.compare import Differences
+from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.tables import Column, RowsModel, table_view
+from designer.explore.desktop.widgets import grey_when_old
 from designer.report import format as fmt
 
 
@@ -41,26 +42,22 @@ _COLUMNS = (
 class PanelCompare(QWidget):
     """What has become otherwise since A was pinned."""
 
-    asks_to_pin = Signal()
-    asks_to_release = Signal()
-    difference_wanted = Signal(bool)
-    """The map shall show the difference to A."""
-
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("compare")
         self._pin = QPushButton("Pin this state as A")
         self._pin.setObjectName("pin")
-        self._pin.clicked.connect(self.asks_to_pin)
+        self._pin.clicked.connect(live.pin)
         self._release = QPushButton("Release A")
         self._release.setObjectName("release")
-        self._release.clicked.connect(self.asks_to_release)
+        self._release.clicked.connect(live.release)
         self.in_map = QCheckBox("The map shows the difference to A")
         self.in_map.setObjectName("difference in the map")
-        self.in_map.toggled.connect(self.difference_wanted)
-        self._told = QLabel()
-        self._told.setWordWrap(True)
-        self._told.setObjectName("ropes gained and lost")
+        self.in_map.toggled.connect(live.compare_in_map)
+        self._summary = QLabel()
+        self._summary.setWordWrap(True)
+        self._summary.setObjectName("ropes gained and lost")
         self.model = RowsModel(_COLUMNS)
         self.model.hint = lambda row: f"{row.title}: {row.before} → {row.after}"
         self.table = table_view("differences")
@@ -76,42 +73,40 @@ class PanelCompare(QWidget):
         rows.setContentsMargins(8, 4, 8, 4)
         rows.setSpacing(4)
         rows.addLayout(above)
-        rows.addWidget(self._told)
+        rows.addWidget(self._summary)
         rows.addWidget(self.table, 1)
-        self.show_differences(None)
+        live.answered.connect(self._show_differences)
+        live.changed.connect(self._show_differences)
+        grey_when_old(live, {"here", "worst", "ropes"}, self._summary, self.table)
+        self._show_differences()
 
-    @property
-    def results(self) -> tuple[QWidget, ...]:
-        """What is grey where it is of an older state of the study."""
-        return self._told, self.table
-
-    def show_differences(self, found: Differences | None) -> None:
-        """Show what is otherwise; None where nothing is pinned."""
-        is_pinned = found is not None
+    def _show_differences(self) -> None:
+        differences = self._live.differences()
+        is_pinned = differences is not None
         self._release.setEnabled(is_pinned)
         self.in_map.setEnabled(is_pinned)
-        if found is None:
+        if differences is None:
             self.in_map.setChecked(False)
-            self._told.setText("Nothing is pinned: pin a state, go on, and see what changes.")
+            self._summary.setText("Nothing is pinned: pin a state, go on, and see what changes.")
             self.model.show(())
             return
-        self._told.setText(_told(found))
-        rows = [_Row(c.title, c.before or "–", c.after or "–", "") for c in found.changes]
-        for line in found.lines:
+        self._summary.setText(_summary(differences))
+        rows = [_Row(c.title, c.before or "–", c.after or "–", "") for c in differences.changes]
+        for line in differences.lines:
             before, after = (_text(v, line.scale, line.unit) for v in (line.before, line.after))
             change = _signed(line.difference, line.scale, line.unit)
             rows.append(_Row(line.title, before, after, change))
         self.model.show(rows)
 
 
-def _told(found: Differences) -> str:
+def _summary(differences: Differences) -> str:
     parts = []
-    for word, ropes in (("gained", found.gained), ("lost", found.lost)):
+    for word, ropes in (("gained", differences.gained), ("lost", differences.lost)):
         if ropes:
-            some = "; ".join(rope.label for rope in ropes[:3])
+            first = "; ".join(rope.label for rope in ropes[:3])
             more = f" and {len(ropes) - 3} more" if len(ropes) > 3 else ""
-            parts.append(f"{fmt.plural(len(ropes), 'rope')} {word}: {some}{more}.")
-    if not found.is_like_with_like:
+            parts.append(f"{fmt.plural(len(ropes), 'rope')} {word}: {first}{more}.")
+    if not differences.is_like_with_like:
         parts.append("The candidates of one state are at the samples, those of the other in full.")
     return " ".join(parts) or "The same ropes hold as in A."
 

@@ -6,7 +6,7 @@ import math
 from operator import attrgetter
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QFormLayout,
     QGridLayout,
@@ -17,10 +17,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.arrays import FloatArray
-from designer.explore.desktop.entry import Entry
-from designer.explore.desktop.tables import Column, RowsModel, ShareBar, restyle, table_view
+from designer.explore.desktop.live_session import LiveSession
+from designer.explore.desktop.tables import Column, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
+from designer.explore.desktop.widgets import LineEntry, grey_when_old, restyle
 from designer.explore.here import Here
 from designer.explore.question import cables_words
 from designer.report import format as fmt
@@ -94,17 +94,13 @@ _COORDINATES = (
 class PanelHere(QWidget):
     """Where the platform is and what it asks of the cables."""
 
-    asks_for_place = Signal(object)
-    """Another place (6,) [m, rad] was entered."""
-    asks_to_keep = Signal()
-    """This place shall be the pose of the study."""
-
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("here")
         self.setMinimumWidth(384)
         self._place = np.zeros(6)
-        self._entries: list[Entry] = []
+        self._entries: list[LineEntry] = []
         self._turn_labels: list[QLabel] = []
         rows = QVBoxLayout(self)
         rows.setContentsMargins(8, 6, 8, 6)
@@ -133,14 +129,18 @@ class PanelHere(QWidget):
         keep = QPushButton("Keep as the study's pose")
         keep.setObjectName("keep pose")
         keep.setToolTip("<p>Writes this place under <b>pose:</b> of the study.</p>")
-        keep.clicked.connect(self.asks_to_keep)
+        keep.clicked.connect(live.keep_pose)
         rows.addWidget(keep)
+        live.moved.connect(self._show_place)
+        live.listen(self._show_here, "here")
+        results = self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
+        grey_when_old(live, {"here"}, *results)
 
     def _coordinates(self) -> QGridLayout:
         grid = QGridLayout()
         grid.setHorizontalSpacing(4)
         for number, (name, unit, definition) in enumerate(_COORDINATES):
-            entry = Entry()
+            entry = LineEntry()
             entry.setObjectName(f"place {name}")
             entry.meaning = f"<p>{definition} [{unit}]. Return takes the platform there.</p>"
             entry.mark("")
@@ -170,24 +170,23 @@ class PanelHere(QWidget):
         ):  # fmt: skip
             value, label = _text(f"here {name}"), QLabel(title)
             label.setProperty("role", "muted")
-            for one in (value, label):
-                one.setToolTip(f"<p>{definition}</p>")
+            for part in (value, label):
+                part.setToolTip(f"<p>{definition}</p>")
             form.addRow(label, value)
             self.facts[name] = value
         return form
-
-    @property
-    def results(self) -> tuple[QWidget, ...]:
-        """What is grey where it is of an older state of the study, or of another place."""
-        return self.verdict, self.cautions, self.stability, self.table, *self.facts.values()
 
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._bar.theme = theme
         self.table.viewport().update()
 
-    def show_place(self, place: FloatArray, *, can_turn: bool) -> None:
+    def _show_place(self) -> None:
         """Show where the platform is; an entry that is being written in is left alone."""
+        study, session = self._live.study, self._live.session
+        if study is None or session is None:
+            return
+        place, can_turn = session.state.place, not study.robot.is_point_mass
         is_elsewhere = not np.array_equal(place, self._place)
         self._place = np.array(place, dtype=np.float64)
         shown = [*place[:3], *np.degrees(place[3:])]
@@ -200,7 +199,7 @@ class PanelHere(QWidget):
         for label in self._turn_labels:
             label.setVisible(can_turn)
 
-    def show_here(self, here: Here | None) -> None:
+    def _show_here(self, here: Here | None) -> None:
         """Show what was answered for this place."""
         if here is None:
             self.model.show(())
@@ -208,9 +207,9 @@ class PanelHere(QWidget):
         self.verdict.setText(here.sentence)
         good = here.is_solved and not here.is_too_weak
         restyle(self.verdict, "good" if good else "fault")
-        told = " ".join(filter(None, [here.outside, here.caution]))
-        self.cautions.setText(told)
-        self.cautions.setVisible(bool(told))
+        cautions = " ".join(filter(None, [here.outside, here.caution]))
+        self.cautions.setText(cautions)
+        self.cautions.setVisible(bool(cautions))
         unit, newtons = fmt.force_unit(here.max_tension_N)
         self.model.rename(_columns(unit, 1.0 / newtons))
         self.model.show(here.cables)
@@ -235,7 +234,7 @@ class PanelHere(QWidget):
                 place[number] = value if number < 3 else math.radians(value)
         for entry in self._entries:
             entry.setModified(False)
-        self.asks_for_place.emit(place)
+        self._live.move(place)
 
 
 def _stiffness(value: float) -> str:

@@ -19,8 +19,9 @@ from PySide6.QtWidgets import (
 )
 
 from designer.arrays import FloatArray
-from designer.explore.desktop.choice import Choice
+from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.theme import LIGHT, Theme
+from designer.explore.desktop.widgets import DropDown, grey_when_old
 from designer.report import format as fmt
 from designer.report.figures.overlay import ticks_between
 
@@ -34,18 +35,18 @@ _ALL = "all, in units of noise"
 class PanelMeasured(QWidget):
     """Residuals over any covariate; the diagnosis, and taking over what it found."""
 
-    asks_to_diagnose = Signal()
-    asks_to_take_over = Signal(str)
-    """The study's text with the effects that were found."""
+    taken_over = Signal()
+    """The effects that were found are in the study."""
     rows_wanted = Signal(bool)
     """The measured rows shall be seen in the scene."""
 
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("measured")
         self._residuals: Residuals | None = None
-        self._found: DiagnosisAnswer | None = None
-        self.channel, self.over = Choice("channel", 14), Choice("covariate", 10)
+        self._diagnosis: DiagnosisAnswer | None = None
+        self.channel, self.over = DropDown("channel", 14), DropDown("covariate", 10)
         self.without = QCheckBox("also without effects")
         self.without.setObjectName("without effects")
         self.without.setToolTip(
@@ -63,7 +64,7 @@ class PanelMeasured(QWidget):
         self._diagnose.setToolTip(
             "<p>Searches for the physical effects that the model lacks; some minutes.</p>"
         )
-        self._diagnose.clicked.connect(self.asks_to_diagnose)
+        self._diagnose.clicked.connect(lambda: live.begin_long("diagnose"))
         self._take = QPushButton("Take over what was found")
         self._take.setObjectName("take over")
         self._take.setToolTip(
@@ -71,13 +72,17 @@ class PanelMeasured(QWidget):
             "comparison shows map and answer with and without them.</p>"
         )
         self._take.clicked.connect(self._take_over)
-        self.told = QLabel()
-        self.told.setObjectName("diagnosis")
-        self.told.setWordWrap(True)
-        self.told.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.told.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.summary = QLabel()
+        self.summary.setObjectName("diagnosis")
+        self.summary.setWordWrap(True)
+        self.summary.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.summary.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self._lay_out()
-        self.show_diagnosis(None)
+        live.listen(self._show_residuals, "residuals")
+        live.listen(self._show_diagnosis, "diagnose")
+        grey_when_old(live, {"residuals"}, self.plot)
+        grey_when_old(live, {"diagnose"}, self.summary)
+        self._show_diagnosis(None)
 
     def _lay_out(self) -> None:
         above = QHBoxLayout()
@@ -88,12 +93,12 @@ class PanelMeasured(QWidget):
         for widget in (self.without, self.in_scene):
             above.addWidget(widget)
         above.addStretch(1)
-        told = QScrollArea()  # beside the plot: a long answer shall not squeeze it
-        told.setWidget(self.told)
-        told.setWidgetResizable(True)
-        told.setFrameShape(QFrame.Shape.NoFrame)
+        area = QScrollArea()  # beside the plot: a long answer shall not squeeze it
+        area.setWidget(self.summary)
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
         answer = QVBoxLayout()
-        answer.addWidget(told, 1)
+        answer.addWidget(area, 1)
         for button in (self._diagnose, self._take):
             answer.addWidget(button)
         beside = QHBoxLayout()
@@ -110,7 +115,7 @@ class PanelMeasured(QWidget):
         self.plot.theme = theme
         self.plot.update()
 
-    def show_residuals(self, residuals: Residuals | None) -> None:
+    def _show_residuals(self, residuals: Residuals | None) -> None:
         """Show what is left of the readings."""
         self._residuals = residuals
         if residuals is None:
@@ -125,39 +130,42 @@ class PanelMeasured(QWidget):
         self.over.refill(list(residuals.covariates))
         self._draw()
 
-    def show_diagnosis(self, found: DiagnosisAnswer | None) -> None:
+    def _show_diagnosis(self, diagnosis: DiagnosisAnswer | None) -> None:
         """Show what the search came to."""
-        self._found = found
-        self._take.setEnabled(found is not None and bool(found.effects))
-        if found is None:
-            self.told.setText("No search has been made.")
+        self._diagnosis = diagnosis
+        self._take.setEnabled(diagnosis is not None and bool(diagnosis.effects))
+        if diagnosis is None:
+            self.summary.setText("No search has been made.")
             return
-        lines = [f"<b>{found.title}</b> {found.text}"]
-        lines += [f"{one.key}: {one.values}" for one in found.effects]
-        for one in found.errors:
-            texts = (f"{fmt.number(v, 3)} {one.unit}" for v in (one.before, one.after, one.noise))
+        lines = [f"<b>{diagnosis.title}</b> {diagnosis.text}"]
+        lines += [f"{effect.key}: {effect.values}" for effect in diagnosis.effects]
+        for error in diagnosis.errors:
+            texts = (
+                f"{fmt.number(v, 3)} {error.unit}" for v in (error.before, error.after, error.noise)
+            )
             before, after, noise = texts
-            lines.append(f"error of {one.reading}: {before} before, {after} after, noise {noise}")
-        self.told.setText("<br>".join(lines))
+            lines.append(f"error of {error.reading}: {before} before, {after} after, noise {noise}")
+        self.summary.setText("<br>".join(lines))
 
     def _take_over(self) -> None:
-        if self._found is not None:
-            self.asks_to_take_over.emit(self._found.diagnosed_text)
+        if self._diagnosis is not None:
+            self._live.take_over(self._diagnosis.diagnosed_text)
+            self.taken_over.emit()
 
     def _draw(self) -> None:
-        found = self._residuals
-        if found is None or self.over.currentText() not in found.covariates:
+        residuals = self._residuals
+        if residuals is None or self.over.currentText() not in residuals.covariates:
             return
-        over = found.covariates[self.over.currentText()]
+        over = residuals.covariates[self.over.currentText()]
         name = self.channel.currentText()
         if name == _ALL:
-            values, before, label = found.size(), np.full(len(over), np.nan), "residual / noise"
+            values, before, label = residuals.size(), np.full(len(over), np.nan), "residual / noise"
             noise = 1.0
         else:
-            column = found.channels.index(name)
-            values, before = found.residual[:, column], found.without[:, column]
-            label = f"{name} [{found.units[column]}]"
-            noise = float(found.noise[column])
+            column = residuals.channels.index(name)
+            values, before = residuals.residual[:, column], residuals.without[:, column]
+            label = f"{name} [{residuals.units[column]}]"
+            noise = float(residuals.noise[column])
         shown = before if self.without.isChecked() else np.full(len(over), np.nan)
         now, pale = (np.column_stack([over, column]) for column in (values, shown))
         self.plot.show_points(self.over.currentText(), label, now, pale, noise)

@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
+from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
+from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.tables import (
     SORT,
     Column,
     RowsModel,
     ShareBar,
-    restyle,
     table_view,
 )
 from designer.explore.desktop.theme import Theme
+from designer.explore.desktop.widgets import grey_when_old, restyle
 from designer.model.requirement import Answer, Requirement, State
 from designer.report import format as fmt
 from designer.report.design.checks import STATES, value_words
@@ -75,13 +76,9 @@ COLUMNS = (
 class PanelRequirements(QWidget):
     """The answer, and the table of what it follows from."""
 
-    asks_for_place = Signal(object)
-    """The platform shall go where a requirement comes nearest to failing."""
-    asks_for_selection = Signal()
-    """All shall be evaluated, as in the report."""
-
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("requirements")
         self.model = RowsModel(COLUMNS)
         self.model.bold = lambda requirement: not requirement.holds
@@ -107,7 +104,7 @@ class PanelRequirements(QWidget):
         self.evaluate = QPushButton("Full selection")
         self.evaluate.setObjectName("evaluate all")
         self.evaluate.setToolTip("<p>Evaluates all that the study asks for, as in the report.</p>")
-        self.evaluate.clicked.connect(self.asks_for_selection)
+        self.evaluate.clicked.connect(lambda: live.begin_long("select"))
         above = QHBoxLayout()
         above.addWidget(self.answer, 1)
         above.addWidget(self.evaluate)
@@ -116,18 +113,15 @@ class PanelRequirements(QWidget):
         rows.setSpacing(4)
         rows.addLayout(above)
         rows.addWidget(self.table, 1)
-
-    @property
-    def results(self) -> tuple[QWidget, ...]:
-        """What is grey where it is of an older state of the study."""
-        return self.answer, self.table
+        live.listen(self._show_requirements, "select")
+        grey_when_old(live, {"select"}, self.answer, self.table)
 
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._bar.theme = theme
         self.model.put_on(theme)
 
-    def show_requirements(self, ropes: Ropes | None) -> None:
+    def _show_requirements(self, ropes: Ropes | None) -> None:
         """Show what a full selection has evaluated; that nothing is known for None."""
         self.model.show(() if ropes is None else ropes.requirements)
         answer = None if ropes is None else ropes.answer
@@ -137,7 +131,7 @@ class PanelRequirements(QWidget):
     def _go(self, index: QModelIndex) -> None:
         place = self.model.rows[self._sorted.mapToSource(index).row()].place
         if place is not None:
-            self.asks_for_place.emit(place)
+            self._live.move(place)
 
 
 def answer_words(ropes: Ropes) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
+from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt
 from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
@@ -17,10 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.explore.desktop.choice import Choice
+from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.panel_requirements import answer_words
 from designer.explore.desktop.tables import SORT, Column, Index, RowsModel, ShareBar, table_view
 from designer.explore.desktop.theme import Theme
+from designer.explore.desktop.widgets import DropDown, grey_when_old
 from designer.report import format as fmt
 from designer.report.design.proof import proof_statement
 
@@ -102,13 +103,9 @@ COLUMNS = (
 class PanelRopes(QWidget):
     """The table of candidates with its filters."""
 
-    chosen = Signal(object)
-    """A `Rope` that the map is to be coloured by; None for the thinnest of the family."""
-    asks_for_selection = Signal()
-    """The whole selection shall be made, as in the report."""
-
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("ropes")
         self._ropes: Ropes | None = None
         self._rope: Rope | Assignment | None = None
@@ -134,10 +131,13 @@ class PanelRopes(QWidget):
         rows.addWidget(self.answer)
         rows.addLayout(self._groups_row())
         rows.addWidget(self.table, 1)
+        live.listen(self._show_ropes, "ropes", "select")
+        live.changed.connect(self._follow_rope)
+        grey_when_old(live, {"ropes"}, self.answer, self.groups, self.table)
 
     def _above(self) -> QHBoxLayout:
-        self.material = Choice("material", 9, _ALL_MATERIALS)
-        self.maker = Choice("maker", 9, _ALL_MAKERS)
+        self.material = DropDown("material", 9, _ALL_MATERIALS)
+        self.maker = DropDown("maker", 9, _ALL_MAKERS)
         self.material.currentTextChanged.connect(self._filter)
         self.maker.currentTextChanged.connect(self._filter)
         self.only_holding = QCheckBox("only what holds")
@@ -153,7 +153,7 @@ class PanelRopes(QWidget):
         family.setToolTip(
             "<p>Colours the map for the thinnest cable of the configured family at each pose.</p>"
         )
-        family.clicked.connect(lambda: self.chosen.emit(None))
+        family.clicked.connect(lambda: self._live.choose(None))
         self.select = QPushButton("Full selection")
         self.select.setObjectName("full selection")
         self.select.setToolTip(
@@ -161,7 +161,7 @@ class PanelRopes(QWidget):
             "where the study has some; then proves that the best holds in all poses, as far as "
             "the study gives it time. Until then the table holds at the samples.</p>"
         )
-        self.select.clicked.connect(self.asks_for_selection)
+        self.select.clicked.connect(lambda: self._live.begin_long("select"))
         above = QHBoxLayout()
         for widget in (self.material, self.maker, self.only_holding):
             above.addWidget(widget)
@@ -185,21 +185,22 @@ class PanelRopes(QWidget):
 
     def _choose_groups(self) -> None:
         if self._ropes is not None and self._ropes.groups is not None:
-            self.chosen.emit(self._ropes.groups.assignment)
-
-    @property
-    def results(self) -> tuple[QWidget, ...]:
-        """What is grey where it is of an older state of the study."""
-        return self.answer, self.groups, self.table
+            self._live.choose(self._ropes.groups.assignment)
 
     def put_on(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._bar.theme = theme
         self.model.put_on(theme)
 
-    def show_ropes(self, ropes: Ropes | None, rope: Rope | Assignment | None) -> None:
+    def _follow_rope(self) -> None:
+        """Mark the rope that colours the map."""
+        if self._live.rope != self._rope:
+            self._rope = self._live.rope
+            self._mark_current()
+
+    def _show_ropes(self, ropes: Ropes | None) -> None:
         """Show the candidates, and which of them colours the map."""
-        self._ropes, self._rope = ropes, rope
+        self._ropes, self._rope = ropes, self._live.rope
         self.model.show(() if ropes is None else ropes.rows)
         if ropes is not None:
             self.material.refill([_ALL_MATERIALS, *ropes.materials])
@@ -230,7 +231,7 @@ class PanelRopes(QWidget):
             rope = self.model.rows[self.shown.mapToSource(current).row()].rope
             if rope != self._rope:
                 self._rope = rope
-                self.chosen.emit(rope)
+                self._live.choose(rope)
 
     def _filter(self) -> None:
         self.shown.narrow(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -22,8 +22,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.explore.desktop.entry import Entry
-from designer.explore.desktop.layouts import emptied
+from designer.explore.desktop.live_session import LiveSession
+from designer.explore.desktop.widgets import LineEntry, emptied
+from designer.explore.session import Session
 from designer.report import format as fmt
 
 if TYPE_CHECKING:
@@ -42,22 +43,14 @@ _FOLDED = frozenset(_OF_MANY.values())
 class PanelStudy(QWidget):
     """The fields of the study by their sections."""
 
-    edited = Signal(str, str, bool)
-    """Path, text, and whether it is still on its way."""
-    settled = Signal()
-    """A slider was let go."""
-    asks_to_put_back = Signal(str)
-    """A field shall be as in the file."""
-    gave_up = Signal(str)
-    """What was refused at this path shall be forgotten."""
-
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("study")
         self.setMinimumWidth(240)
         self.rows: dict[str, FieldRow] = {}
         self._headings: dict[str, _Heading] = {}
-        self._find = Entry()
+        self._find = LineEntry()
         self._find.setObjectName("find field")
         self._find.setPlaceholderText("Find a number …")
         self._find.setClearButtonEnabled(True)
@@ -83,18 +76,18 @@ class PanelStudy(QWidget):
         above.setContentsMargins(8, 0, 8, 0)
         rows.addLayout(above)
         rows.addWidget(area, 1)
+        live.changed.connect(self._show_fields)
 
-    def show_fields(
-        self,
-        fields: Sequence[Field],
-        rejected: Mapping[str, Rejected],
-        differing: frozenset[str],
-    ) -> None:
+    def _show_fields(self) -> None:
         """Show the fields as they stand; rows are made anew only where other fields are there."""
+        session = self._live.session
+        if session is None:
+            return
+        fields, differing = session.fields(), session.differing
         if {field.path for field in fields} != self.rows.keys():
             self._rebuild(fields)
         for field in fields:
-            row, refused = self.rows[field.path], rejected.get(field.path)
+            row, refused = self.rows[field.path], session.rejected.get(field.path)
             row.show_field(field, field.path in differing)
             row.show_refused(refused)
         self._filter()
@@ -105,32 +98,28 @@ class PanelStudy(QWidget):
         groups: dict[str, list[Field]] = {}
         for field in fields:
             groups.setdefault(_group(field), []).append(field)
-        for group, members in sorted(groups.items(), key=lambda one: one[0] in _FOLDED):
+        for group, members in sorted(groups.items(), key=lambda item: item[0] in _FOLDED):
             heading = _Heading(group, is_open=group not in _FOLDED)
             heading.toggled.connect(self._filter)
             self._headings[group] = heading
             self._list.addWidget(heading)
             for field in members:
-                row = FieldRow(field)
-                row.edited.connect(self.edited)
-                row.settled.connect(self.settled)
-                row.asks_to_put_back.connect(self.asks_to_put_back)
-                row.gave_up.connect(self.gave_up)
+                row = FieldRow(field, self._live)
                 self.rows[field.path] = row
                 self._list.addWidget(row)
 
     def _filter(self) -> None:
         sought = self._find.text().strip().lower()
         is_sought = bool(sought) or self._changed_only.isChecked()
-        some: set[str] = set()
+        groups: set[str] = set()
         for row in self.rows.values():
             field, group = row.field, _group(row.field)
-            found = sought in f"{group} {field.label} {field.path}".lower()
-            wanted = found and (row.is_changed or not self._changed_only.isChecked())
-            some |= {group} if wanted else set()
-            row.setVisible(wanted and (is_sought or self._headings[group].isChecked()))
+            is_match = sought in f"{group} {field.label} {field.path}".lower()
+            is_shown = is_match and (row.is_changed or not self._changed_only.isChecked())
+            groups |= {group} if is_shown else set()
+            row.setVisible(is_shown and (is_sought or self._headings[group].isChecked()))
         for group, heading in self._headings.items():
-            heading.setVisible(group in some)
+            heading.setVisible(group in groups)
 
 
 class _Heading(QToolButton):
@@ -154,14 +143,9 @@ class _Heading(QToolButton):
 class FieldRow(QWidget):
     """One field: its name, its entry or its choices, a slider, and what is wrong with it."""
 
-    edited = Signal(str, str, bool)
-    settled = Signal()
-    asks_to_put_back = Signal(str)
-    gave_up = Signal(str)
-
-    def __init__(self, field: Field) -> None:
+    def __init__(self, field: Field, live: LiveSession) -> None:
         super().__init__()
-        self.field = field
+        self.field, self._live = field, live
         self.is_changed = False
         self._label = QLabel(field.label)
         self._label.setToolTip(f"<p>{field.definition}</p><p><code>{field.path}</code></p>")
@@ -172,19 +156,19 @@ class FieldRow(QWidget):
         self._back.setObjectName(f"put back {field.path}")
         self._back.setToolTip("<p>Put this field alone back to what the file says.</p>")
         self._back.setAccessibleName(f"Put back {field.label}")
-        self._back.clicked.connect(lambda: self.asks_to_put_back.emit(self.field.path))
-        kept = self._back.sizePolicy()
-        kept.setRetainSizeWhenHidden(True)
-        self._back.setSizePolicy(kept)
+        self._back.clicked.connect(self._put_back)
+        policy = self._back.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self._back.setSizePolicy(policy)
         self._fault = QLabel()
         self._fault.setObjectName(f"fault {field.path}")
         self._fault.setProperty("role", "fault")
         self._fault.setWordWrap(True)
-        self.entry = Entry()
+        self.entry = LineEntry()
         self.choices = QComboBox()
         self.slider = _Slider()
         self._rest = QTimer(self, singleShot=True, interval=400)  # several steps of keys: one edit
-        self._rest.timeout.connect(self.settled)
+        self._rest.timeout.connect(self._settle)
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(4)
@@ -216,16 +200,14 @@ class FieldRow(QWidget):
         self.choices.setFixedWidth(124)
         self.choices.addItems(list(self.field.choices))
         self.choices.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.choices.textActivated.connect(
-            lambda text: self.edited.emit(self.field.path, text, False)
-        )
+        self.choices.textActivated.connect(self._edit)
         return self.choices
 
     def _slider(self) -> _Slider:
         self.slider.setObjectName(f"slider {self.field.path}")
         self.slider.setAccessibleName(self.field.label)
         self.slider.valueChanged.connect(self._slid)
-        self.slider.sliderReleased.connect(self.settled)
+        self.slider.sliderReleased.connect(self._settle)
         return self.slider
 
     def show_field(self, field: Field, is_changed: bool) -> None:
@@ -247,10 +229,10 @@ class FieldRow(QWidget):
 
     def show_refused(self, refused: Rejected | None) -> None:
         """Show what was refused, to be mended, and what is wrong with it; None for nothing."""
-        told = "" if refused is None else " ".join(map(_words, refused.faults))
-        self._fault.setText(told)
-        self._fault.setVisible(bool(told))
-        self.entry.mark(told)
+        fault = "" if refused is None else " ".join(map(_words, refused.faults))
+        self._fault.setText(fault)
+        self._fault.setVisible(bool(fault))
+        self.entry.mark(fault)
         if refused is not None and not (self.entry.hasFocus() and self.entry.isModified()):
             self.entry.setText(refused.text)
             self.choices.setCurrentText(refused.text)
@@ -260,18 +242,29 @@ class FieldRow(QWidget):
         if event.type() == QEvent.Type.KeyPress and event.key() == Qt.Key.Key_Escape:  # type: ignore[attr-defined]
             self.entry.setModified(False)
             self.entry.setText(self.field.text)
-            self.gave_up.emit(self.field.path)
+            self._live.drop_rejected(self.field.path)
             return True
         return super().eventFilter(watched, event)
+
+    def _edit(self, text: str, *, moving: bool = False) -> None:
+        path = self.field.path
+        self._live.do(lambda session: session.edit(path, text, continuous=moving), moving=moving)
+
+    def _settle(self) -> None:
+        """The slider was let go."""
+        self._live.do(Session.settle)
+
+    def _put_back(self) -> None:
+        self._live.do(lambda session: session.put_back(self.field.path))
 
     def _entered(self) -> None:
         if self.entry.isModified():
             self.entry.setModified(False)
-            self.edited.emit(self.field.path, self.entry.text().strip(), False)
+            self._edit(self.entry.text().strip())
 
     def _slid(self) -> None:
         if not self.slider.is_put:
-            self.edited.emit(self.field.path, self.field.text_of(self._value()), True)
+            self._edit(self.field.text_of(self._value()), moving=True)
             if not self.slider.isSliderDown():
                 self._rest.start()
 

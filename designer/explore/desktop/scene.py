@@ -38,6 +38,8 @@ _STEPS = {
     Qt.Key.Key_PageDown: (0, 0, -1),
 }
 """To the right and away from the viewer, along the nearest axis of the frame, and upward."""
+_TURN_RAD = float(np.radians(1.0))
+"""How far a key turns the platform."""
 
 
 class Scene(QtInteractor):
@@ -45,10 +47,10 @@ class Scene(QtInteractor):
 
     asks_for_position = Signal(object, bool)
     """A position (3,) [m] that the platform is to take, and whether it is still on its way."""
-    asks_for_step = Signal(object, float)
-    """A direction (3,) along the axes of the frame, and how many steps."""
-    asks_for_turn = Signal(object, float)
-    """The same for the axes that the platform is to be turned about."""
+    asks_for_shift = Signal(object)
+    """How far (3,) the platform is to be moved along the axes of the frame [m]."""
+    asks_for_turn = Signal(object)
+    """The rotation vector (3,) that the platform is to be turned by [rad]."""
     resized = Signal()
     pointed_at = Signal(object)
     """What the mouse is over: a `Hit`, or None."""
@@ -205,10 +207,17 @@ class Scene(QtInteractor):
             return
         times = 10.0 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
         if not event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.asks_for_step.emit(self._along_axes(np.array(step)), times)
+            self.asks_for_shift.emit(times * self.step_m * self._along_axes(np.array(step)))
         elif self.can_turn:
             right, away, up = step
-            self.asks_for_turn.emit(np.array([-away, up, -right], dtype=np.float64), times)
+            self.asks_for_turn.emit(times * _TURN_RAD * np.array([-away, up, -right]))
+
+    @property
+    def step_m(self) -> float:
+        """How far a key moves the platform: a round length, about a hundredth of what is shown."""
+        size = float(np.ptp(self.stage.bounds_m, axis=0).max())
+        power = 10.0 ** np.floor(np.log10(size / 100.0))
+        return float(power * max(k for k in (1.0, 2.0, 5.0) if k * power <= size / 100.0))
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Nothing; the base class has keys of its own."""
@@ -218,13 +227,13 @@ class Scene(QtInteractor):
         """A step to the right, away and up, along the nearest axes of the frame."""
         right, away, up = step
         view = self.camera_.view
-        wanted = right * view.right[:2] - away * view.toward_camera[:2] / max(
+        level_step = right * view.right[:2] - away * view.toward_camera[:2] / max(
             float(np.linalg.norm(view.toward_camera[:2])), 1e-9
         )
         level = np.zeros(3)
         if right or away:
-            main = int(np.argmax(np.abs(wanted)))
-            level[main] = np.sign(wanted[main])
+            main = int(np.argmax(np.abs(level_step)))
+            level[main] = np.sign(level_step[main])
         level[2] = up
         return level
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QPixmap
+from PySide6.QtGui import QPixmap, QShowEvent
 from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
@@ -18,7 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.explore.desktop.layouts import emptied
+from designer.explore.desktop.settings import Settings
+from designer.explore.desktop.widgets import emptied
 from designer.resources import example_file, example_names, example_summary
 
 _PICTURE_PX = (200, 125)
@@ -38,8 +38,9 @@ class StartPage(QScrollArea):
     asks_for_file = Signal()
     """The user wants to look for a file."""
 
-    def __init__(self) -> None:
+    def __init__(self, settings: Settings) -> None:
         super().__init__()
+        self._settings = settings
         self.setObjectName("start page")
         self.setWidgetResizable(True)
         inside = QWidget()
@@ -51,7 +52,12 @@ class StartPage(QScrollArea):
         columns.addLayout(self._shipped(), 4)
         self.setWidget(inside)
 
-    def show_recent(self, studies: Iterable[Path]) -> None:
+    def showEvent(self, event: QShowEvent) -> None:
+        """Show what is recent now."""
+        self.show_recent()
+        super().showEvent(event)
+
+    def show_recent(self) -> None:
         """Show the studies that were open before."""
         emptied(self._recent)
         self._recent.addWidget(_label("cdpr-designer", "title"))
@@ -64,15 +70,14 @@ class StartPage(QScrollArea):
         self._recent.addWidget(button)
         self._recent.addSpacing(12)
         self._recent.addWidget(_label("Recent", "heading"))
-        some = False
+        studies = self._settings.recent
         for path in studies:
-            some = True
-            entry = _Choice(path.stem, str(path.parent))
+            entry = _StudyButton(path.stem, str(path.parent))
             entry.setObjectName(f"recent {path.stem}")
             entry.setToolTip(str(path))
             entry.clicked.connect(lambda _=False, path=path: self.chosen.emit(path))
             self._recent.addWidget(entry)
-        if not some:
+        if not studies:
             self._recent.addWidget(_label("Studies that you open stand here.", "muted"))
         self._recent.addStretch(1)
 
@@ -82,7 +87,7 @@ class StartPage(QScrollArea):
         grid = QGridLayout()
         grid.setSpacing(12)
         for number, name in enumerate(example_names()):
-            entry = _Choice(name, example_summary(name), picture_file(name))
+            entry = _StudyButton(name, example_summary(name), picture_file(name))
             entry.setObjectName(f"example {name}")
             entry.clicked.connect(lambda _=False, name=name: self.chosen.emit(example_file(name)))
             grid.addWidget(entry, number // _COLUMNS, number % _COLUMNS)
@@ -91,7 +96,7 @@ class StartPage(QScrollArea):
         return column
 
 
-class _Choice(QPushButton):
+class _StudyButton(QPushButton):
     """A study to choose: its picture, if any, its name, and what it is."""
 
     def __init__(self, name: str, summary: str, picture: Path | None = None) -> None:
@@ -113,12 +118,12 @@ class _Choice(QPushButton):
 
 
 def _picture(file: Path) -> QLabel:
-    shown = QLabel()
-    shown.setFixedHeight(_PICTURE_PX[1])
-    shown.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    label = QLabel()
+    label.setFixedHeight(_PICTURE_PX[1])
+    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
     whole = QPixmap(str(file))
     if not whole.isNull():
-        ratio = shown.devicePixelRatioF()
+        ratio = label.devicePixelRatioF()
         fitted = whole.scaled(
             round(_PICTURE_PX[0] * ratio),
             round(_PICTURE_PX[1] * ratio),
@@ -126,8 +131,8 @@ def _picture(file: Path) -> QLabel:
             Qt.TransformationMode.SmoothTransformation,
         )
         fitted.setDevicePixelRatio(ratio)
-        shown.setPixmap(fitted)
-    return shown
+        label.setPixmap(fitted)
+    return label
 
 
 def _label(text: str, role: str) -> QLabel:

@@ -10,7 +10,6 @@ from typing import Any
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QPainter
 from PySide6.QtWidgets import (
-    QLabel,
     QStyledItemDelegate,
     QStyleOptionViewItem,
     QTableView,
@@ -161,19 +160,3 @@ def table_view(name: str) -> QTableView:
     view.horizontalHeader().setHighlightSections(False)
     view.setTabKeyNavigation(False)
     return view
-
-
-def restyle(label: QLabel, role: str) -> None:
-    """Give a label the colour of a role, see `designer.explore.desktop.theme`."""
-    if label.property("role") != role:
-        label.setProperty("role", role)
-        label.style().polish(label)
-
-
-def grey(is_old: bool, *widgets: QWidget) -> None:
-    """Show what is in widgets in grey where it is of an older state of the study."""
-    for widget in widgets:
-        if bool(widget.property("old")) != is_old:
-            widget.setProperty("old", is_old)
-            widget.style().polish(widget)
-            widget.update()

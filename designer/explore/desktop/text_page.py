@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
 from PySide6.QtCore import QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QFontDatabase, QPainter, QPaintEvent, QResizeEvent, QTextCursor
 from PySide6.QtWidgets import (
@@ -19,22 +16,21 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-if TYPE_CHECKING:
-    from designer.errors import Fault
+from designer.explore.desktop.live_session import LiveSession
 
 _PAUSE_MS = 400
+"""Nothing was typed for so long: the text is read."""
 
 
 class TextPage(QWidget):
     """An editor with line numbers, and the list of faults."""
 
-    edited = Signal(str)
-    """The text was changed, and nothing has been typed for a moment."""
     asks_to_reload = Signal()
     asks_to_leave = Signal()
 
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.setObjectName("text page")
         self.editor = _Editor()
         self.editor.setObjectName("editor")
@@ -44,11 +40,11 @@ class TextPage(QWidget):
         self.faults.itemActivated.connect(self._go_to)
         self.faults.itemClicked.connect(self._go_to)
         self._pause = QTimer(self, singleShot=True, interval=_PAUSE_MS)
-        self._pause.timeout.connect(lambda: self.edited.emit(self.editor.toPlainText()))
+        self._pause.timeout.connect(self._write)
         self.editor.textChanged.connect(self._pause.start)
-        self._told = QLabel()
-        self._told.setProperty("role", "heading")
-        self._told.setObjectName("number of faults")
+        self._heading = QLabel()
+        self._heading.setProperty("role", "heading")
+        self._heading.setObjectName("number of faults")
         self.leave = QPushButton("Show the scene")
         self.leave.setObjectName("leave text")
         self.leave.clicked.connect(self.asks_to_leave)
@@ -56,7 +52,7 @@ class TextPage(QWidget):
         reload.setObjectName("reload text")
         reload.clicked.connect(self.asks_to_reload)
         above = QHBoxLayout()
-        above.addWidget(self._told, 1)
+        above.addWidget(self._heading, 1)
         above.addWidget(reload)
         above.addWidget(self.leave)
         split = QSplitter(Qt.Orientation.Vertical)
@@ -67,9 +63,15 @@ class TextPage(QWidget):
         rows = QVBoxLayout(self)
         rows.addLayout(above)
         rows.addWidget(split, 1)
+        live.changed.connect(self._show_text)
+        live.flushing.connect(self._flush)
 
-    def show_text(self, text: str, faults: Sequence[Fault], *, has_study: bool) -> None:
+    def _show_text(self) -> None:
         """Show the text, unless it is the one that is being written, and its faults."""
+        session = self._live.session
+        if session is None:
+            return
+        text, faults = session.text, session.faults
         if text != self.editor.toPlainText():
             self.editor.blockSignals(True)
             self.editor.setPlainText(text)
@@ -87,16 +89,20 @@ class TextPage(QWidget):
         self.editor.faulty = {fault.line for fault in faults if fault.line}
         self.editor.numbers.update()
         number = len(faults)
-        self._told.setText(
+        self._heading.setText(
             f"{number} fault{'s' if number > 1 else ''} in this study" if faults else "No faults"
         )
-        self.leave.setEnabled(has_study)
+        self.leave.setEnabled(session.study is not None)
 
-    def flush(self) -> None:
-        """Hand on at once what was typed last."""
+    def _write(self) -> None:
+        """Hand on what was typed."""
+        self._live.write(self.editor.toPlainText())
+
+    def _flush(self) -> None:
+        """Do so at once."""
         if self._pause.isActive():
             self._pause.stop()
-            self.edited.emit(self.editor.toPlainText())
+            self._write()
 
     def _go_to(self, item: QListWidgetItem) -> None:
         line = item.data(Qt.ItemDataRole.UserRole)

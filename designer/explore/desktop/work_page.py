@@ -21,12 +21,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.arrays import FloatArray
 from designer.explore.desktop.hit import Hit
-from designer.explore.desktop.layouts import emptied
+from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import Scene
 from designer.explore.desktop.theme import LIGHT, Theme
+from designer.explore.desktop.widgets import emptied
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -37,23 +37,25 @@ from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad
 if TYPE_CHECKING:
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer, WorstAnswer
+    from designer.explore.residuals import Residuals
     from designer.study import Study
 
 FACTORS = (1, 2, 5, 10, 20, 50)
 _ELEVATION_RAD = float(np.radians(28.0))
+"""Floor, walls and top of a region are all seen from there."""
+_BRIGHTEST = 5.0
+"""Residual of the brightest rows, in units of noise: by chance none is as large."""
 
 
 class WorkPage(QWidget):
     """Scene, the bar above it, the slider of the slice, and a notice when there is one."""
 
-    slice_moved = Signal(float, bool)
-    """Share of the height, and whether it is still on its way."""
-    quantity_changed = Signal(str)
     notice_answered = Signal(str)
     """The name of the button of the notice that was pressed."""
 
-    def __init__(self) -> None:
+    def __init__(self, live: LiveSession) -> None:
         super().__init__()
+        self._live = live
         self.scene = Scene(self)
         self.map: MapAnswer | None = None
         self.painting: Painting | None = None
@@ -63,9 +65,9 @@ class WorkPage(QWidget):
         self._place = np.zeros(6)
         self._held: Steps | None = None
         self._hit: Hit | None = None
-        self._rows_note = ""
-        self._is_old = False
-        self._where = "home"
+        self._residuals: Residuals | None = None
+        self._shows_rows = self._is_old = False
+        self._view = "home"
         self._notice = _Notice()
         self._notice.answered.connect(self.notice_answered)
         rows = QVBoxLayout(self)
@@ -78,8 +80,23 @@ class WorkPage(QWidget):
         middle.addWidget(self.scene, 1)
         middle.addWidget(self._slice_slider())
         rows.addLayout(middle, 1)
-        self.scene.pointed_at.connect(self._point)
-        self.scene.resized.connect(self._look_again)
+        self._connect()
+
+    def _connect(self) -> None:
+        scene, live = self.scene, self._live
+        scene.pointed_at.connect(self._point)
+        scene.resized.connect(self._look_again)
+        scene.asks_for_position.connect(live.move)
+        scene.asks_for_shift.connect(live.shift)
+        scene.asks_for_turn.connect(live.turn)
+        live.changed.connect(self._follow_study)
+        live.moved.connect(self._follow_place)
+        live.busy_changed.connect(self._show_age)
+        live.quantity_changed.connect(self._colour_by)
+        live.listen(self._show_here, "here")
+        live.listen(self.show_map, "coarse", "fine")
+        live.listen(self._show_worst, "worst")
+        live.listen(self._take_residuals, "residuals")
 
     def _bar(self) -> QWidget:
         bar = QWidget()
@@ -88,9 +105,9 @@ class WorkPage(QWidget):
         self.quantity = QComboBox()
         self.quantity.setObjectName("quantity")
         self.quantity.setAccessibleName("What the map is coloured by")
-        for number, one in enumerate(QUANTITIES):
-            self.quantity.addItem(one.title, one.key)
-            self.quantity.setItemData(number, one.definition, Qt.ItemDataRole.ToolTipRole)
+        for number, quantity in enumerate(QUANTITIES):
+            self.quantity.addItem(quantity.title, quantity.key)
+            self.quantity.setItemData(number, quantity.definition, Qt.ItemDataRole.ToolTipRole)
         self.quantity.currentIndexChanged.connect(self._quantity_chosen)
         self.surface = QCheckBox("Surface")
         self.surface.setObjectName("show surface")
@@ -130,7 +147,7 @@ class WorkPage(QWidget):
         self.height_slider.setValue(50)
         self.height_slider.valueChanged.connect(self._slice_slid)
         self.height_slider.sliderReleased.connect(
-            lambda: self.slice_moved.emit(self.height_slider.value() / 100.0, False)
+            lambda: self._live.move_slice(self.height_slider.value() / 100.0, False)
         )
         return self.height_slider
 
@@ -142,15 +159,18 @@ class WorkPage(QWidget):
 
     # What is shown
 
-    def show_study(self, study: Study, *, afresh: bool) -> None:
+    def _follow_study(self) -> None:
+        """Show the study, and whether its map can be of a rope."""
+        study, is_first = self._live.study, self._live.question is None
+        if study is not None and (study is not self._study or is_first):
+            self._show_study(study, afresh=is_first)
+        model = self.quantity.model()
+        assert isinstance(model, QStandardItemModel)
+        has_rope = self._live.rope is not None
+        model.item(self.quantity.findData("utilisation")).setEnabled(has_rope)
+
+    def _show_study(self, study: Study, *, afresh: bool) -> None:
         """Show base and region; look at all of it where the study was opened ``afresh``."""
-        if afresh:
-            self.map, self.painting, self._here, self._held = None, None, None, None
-            self.held.setChecked(False)
-            self.scene.stage.put_map(None, None)
-            self.show_rows(np.empty((0, 3)), np.empty(0))
-            self.scene.colour_legend.show_meaning("", None, (), self._theme)
-            self.scene.overlay.worst = None
         self._study = study
         stage = self.scene.stage
         stage.put_study(study)
@@ -161,14 +181,16 @@ class WorkPage(QWidget):
             self.look("home")
         self.scene.redraw()
 
-    def show_place(self, place: FloatArray) -> None:
-        """Show the platform somewhere; its cables are straight until they are answered."""
-        if not np.array_equal(place, self._place):
-            self._here = None
-        self._place = np.array(place)
-        self._show_place()
+    def _follow_place(self) -> None:
+        """Show the platform where it is; its cables are straight until they are answered."""
+        if self._live.session is not None:
+            place = self._live.session.state.place
+            if not np.array_equal(place, self._place):
+                self._here = None
+            self._place = np.array(place)
+            self._show_place()
 
-    def show_here(self, here: Here) -> None:
+    def _show_here(self, here: Here | None) -> None:
         """Show the cables in their true shape."""
         self._here = here
         self._show_place()
@@ -182,21 +204,27 @@ class WorkPage(QWidget):
         self._write_note()
         self.scene.redraw()
 
-    def show_map(self, answer: MapAnswer) -> None:
-        """Show the map."""
+    def show_map(self, answer: MapAnswer | None) -> None:
+        """Show the map; nothing where nothing is known of it any more."""
         self.map = answer
+        if answer is None:
+            self.painting = None
+            self.held.setChecked(False)
+            self.scene.stage.put_map(None, None)
+            self.scene.colour_legend.show_meaning("", None, (), self._theme)
         self._show_map()
 
-    def show_age(self, *, is_map_old: bool, is_worst_old: bool) -> None:
+    def _show_age(self) -> None:
         """Show in grey what is of an older state of the study."""
-        if is_map_old != self._is_old:
-            self._is_old = is_map_old
+        outdated, overlay = self._live.outdated, self.scene.overlay
+        if ("map" in outdated) != self._is_old:
+            self._is_old = "map" in outdated
             self._show_map()
-        if is_worst_old != self.scene.overlay.is_worst_old:
-            self.scene.overlay.is_worst_old = is_worst_old
-            self.scene.overlay.update()
+        if ("worst" in outdated) != overlay.is_worst_old:
+            overlay.is_worst_old = "worst" in outdated
+            overlay.update()
 
-    def show_worst(self, worst: WorstAnswer | None) -> None:
+    def _show_worst(self, worst: WorstAnswer | None) -> None:
         """Mark the worst pose."""
         marked = None
         if worst is not None and worst.place is not None:
@@ -205,19 +233,31 @@ class WorkPage(QWidget):
         self.scene.overlay.setToolTip(worst.sentence if worst else "")
         self.scene.overlay.update()
 
-    def show_rows(self, position_m: FloatArray, sizes: FloatArray) -> None:
-        """Show where was measured (n, 3), by the size of the residuals in units of noise (n,)."""
-        most = 5.0
-        self.scene.stage.put_rows(position_m, sizes, most)
-        text = f"measured rows: residual from 0 (dark) to {most:g} times the noise (bright)"
-        self._rows_note = text if len(position_m) else ""
+    def want_rows(self, is_wanted: bool) -> None:
+        """Show where was measured, by the size of the residuals, or not."""
+        self._shows_rows = is_wanted
+        self._show_rows()
+
+    def _take_residuals(self, residuals: Residuals | None) -> None:
+        self._residuals = residuals
+        self._show_rows()
+
+    def _show_rows(self) -> None:
+        if self._shows_rows and self._residuals is not None:
+            rows = self._residuals
+            self.scene.stage.put_rows(rows.position_m, rows.size(), _BRIGHTEST)
+        else:
+            self.scene.stage.put_rows(np.empty((0, 3)), np.empty(0), _BRIGHTEST)
         self._write_note()
         self.scene.redraw()
 
     def _write_note(self) -> None:
         factor = self.exaggeration.currentData()
         sag = f"sag drawn {factor} times" if factor != 1 else ""
-        self.scene.overlay.note = "\n".join(filter(None, [sag, self._rows_note]))
+        has_rows = self._shows_rows and self._residuals is not None
+        scale = f"residual from 0 (dark) to {_BRIGHTEST:g} times the noise (bright)"
+        rows = f"measured rows: {scale}" if has_rows else ""
+        self.scene.overlay.note = "\n".join(filter(None, [sag, rows]))
         self.scene.overlay.update()
 
     def _show_map(self) -> None:
@@ -260,47 +300,37 @@ class WorkPage(QWidget):
         self.held.setChecked(False)
         self.quantity.setToolTip(f"<p>{BY_KEY[self.quantity.currentData()].definition}</p>")
         self._show_map()
-        self.quantity_changed.emit(str(self.quantity.currentData()))
+        self._live.colour_by(str(self.quantity.currentData()))
 
-    def allow_utilisation(self, has_rope: bool) -> None:
-        """Offer the utilisation where there is a rope; else what the family needs stands there."""
-        index = self.quantity.findData("utilisation")
-        model = self.quantity.model()
-        assert isinstance(model, QStandardItemModel)
-        model.item(index).setEnabled(has_rope)
-        if not has_rope and self.quantity.currentIndex() == index:
-            self.choose_quantity("diameter")
-
-    def choose_quantity(self, key: str) -> None:
-        """Colour the map by another quantity."""
+    def _colour_by(self, key: str) -> None:
         self.quantity.setCurrentIndex(self.quantity.findData(key))
 
-    def _hold(self, wanted: bool) -> None:
-        self._held = self.painting.steps if wanted and self.painting is not None else None
+    def _hold(self, is_held: bool) -> None:
+        self._held = self.painting.steps if is_held and self.painting is not None else None
         self._show_map()
 
     def _slice_slid(self, value: int) -> None:
-        self.slice_moved.emit(value / 100.0, self.height_slider.isSliderDown())
+        self._live.move_slice(value / 100.0, self.height_slider.isSliderDown())
 
     # Where one looks from
 
-    def look(self, where: str) -> None:
+    def look(self, view: str) -> None:
         """Look from ``home``, ``top``, ``front`` or ``side`` at all that there is."""
         stage, study = self.scene.stage, self._study
-        self._where, self.scene.is_turned = where, False
+        self._view, self.scene.is_turned = view, False
         if study is None:
             return
         sides = {"top": (-90.0, 89.0), "front": (-90.0, 0.0), "side": (0.0, 0.0)}
         azimuth, elevation = self._home(study)
-        if where in sides:
-            azimuth, elevation = (float(angle) for angle in np.radians(sides[where]))
+        if view in sides:
+            azimuth, elevation = (float(angle) for angle in np.radians(sides[view]))
         legend_px = self.scene.colour_legend.sizeHint().width()
         self.scene.camera_.fit(stage.everything_m(), azimuth, elevation, legend_px)
         self.scene.redraw()
 
     def _look_again(self) -> None:
         if not self.scene.is_turned:
-            self.look(self._where)
+            self.look(self._view)
 
     def _home(self, study: Study) -> tuple[float, float]:
         robot = study.robot
@@ -346,7 +376,7 @@ class WorkPage(QWidget):
             lines.append("no rope serves")
         return "\n".join(lines)
 
-    def show_notice(self, text: str, *buttons: str) -> None:
+    def show_notice(self, text: str, buttons: tuple[str, ...] = ()) -> None:
         """Show a notice above the scene, with buttons; nothing for no text."""
         self._notice.show_text(text, buttons)
 

@@ -28,7 +28,7 @@ def test_differences_follow_the_study(yard: Driver) -> None:
     yard.rest()
     found = differences(yard)
     assert found["Platform with payload"] == ["180 kg", "230 kg", ""]
-    here = yard.window.answers["here"]
+    here = yard.window.live.answers["here"]
     assert found["Diameter needed here"][1] == f"{1e3 * here.diameter_m:.3f} mm"
     assert found["Diameter needed here"][2].startswith("+")
     yard.window.docks["Compare"].raise_()
@@ -86,7 +86,7 @@ def test_the_report_is_written_as_by_the_command(
     folder = tmp_path / "out"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(folder), ""))
     yard.keys("Ctrl+R")
-    assert yard.window.long.isVisible()
+    assert yard.window.status.long.isVisible()
     yard.rest()
     names = {one.name for one in folder.iterdir()}
     assert {"report.html", "report.pdf", "result.json", "workspace.nc"} <= names
@@ -143,13 +143,13 @@ def test_a_diagnosis_is_made_and_taken_over(empty: Driver, tmp_path: Path) -> No
     empty.window.docks["Measured data"].raise_()
     empty.bot.wait(50)
     empty.press("diagnose")
-    assert empty.window.long.isVisible()
+    assert empty.window.status.long.isVisible()
     empty.rest()
     assert "length_offset" in empty.find(QLabel, "diagnosis").text()
     empty.press("take over")
     empty.rest()
     assert "length_offset" in empty.session.text
-    assert np.nanmax(np.abs(empty.window.answers["residuals"].residual[:, 0])) < 0.005
+    assert np.nanmax(np.abs(empty.window.live.answers["residuals"].residual[:, 0])) < 0.005
     empty.keys("Ctrl+Z")
     assert "length_offset" not in empty.session.text
     empty.rest()

@@ -58,5 +58,7 @@ def test_small_robots_are_told_in_newtons(empty: Driver) -> None:
     model = empty.find(QTableView, "cables").model()
     assert model.headerData(2, Qt.Orientation.Horizontal).endswith("\nN")
     tension = float(model.index(0, 2).data().replace("\u202f", ""))
-    assert tension == pytest.approx(empty.window.answers["here"].cables[0].exit_tension_N, rel=1e-3)
+    assert tension == pytest.approx(
+        empty.window.live.answers["here"].cables[0].exit_tension_N, rel=1e-3
+    )
     assert math.isfinite(tension)

@@ -38,7 +38,7 @@ def test_a_plugin_that_fails_is_told_and_the_rest_works(qtbot: Any, tmp_path: Pa
     driver.rest()
     assert "plugin broken (broken 1.0)" in driver.window.messages.toPlainText()
     assert "no licence" in driver.window.messages.toPlainText()
-    assert driver.window.answers["ropes"].best is not None
+    assert driver.window.live.answers["ropes"].best is not None
     driver.close()
 
 
@@ -109,10 +109,10 @@ def test_a_study_without_a_workspace_is_explored_pose_by_pose(yard: Driver, tmp_
     bare = tmp_path / "bare.yaml"
     bare.write_text(text[: text.index("workspace:")], encoding="utf-8")
     yard.open(bare)
-    assert yard.window.answers["here"].cables
-    assert yard.window.answers["ropes"] is None
+    assert yard.window.live.answers["here"].cables
+    assert yard.window.live.answers["ropes"] is None
     assert "over the workspace" in yard.window.ropes.answer.text()
-    yard.window.begin_long("select")
+    yard.window.live.begin_long("select")
     yard.rest()
     yard.type_into("entry robot.platform.mass", "240 kg")
     yard.rest()

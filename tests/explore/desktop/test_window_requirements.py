@@ -35,7 +35,7 @@ def click(view: QTableView, row: int) -> None:
 
 def titled(driver: Driver, title: str) -> Requirement:
     """The requirement of this title."""
-    requirements = driver.window.answers["ropes"].requirements
+    requirements = driver.window.live.answers["ropes"].requirements
     return next(each for each in requirements if each.title == title)
 
 
@@ -51,7 +51,7 @@ def test_every_requirement_is_shown_and_a_click_goes_to_its_pose(yard: Driver) -
     assert answer.text().startswith("Not known yet")
     yard.press("evaluate all")
     yard.rest()
-    ropes, question = yard.window.answers["ropes"], yard.window.live.question
+    ropes, question = yard.window.live.answers["ropes"], yard.window.live.question
     analysis = Analysis.begin(question.study, question.catalogue)
     assert ropes.answer is analysis.answer is Answer.NO
     assert [each.words for each in ropes.requirements] == [

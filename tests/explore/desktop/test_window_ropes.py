@@ -18,7 +18,7 @@ def shown(driver: Driver, column: int = 0) -> list[str]:
 
 
 def test_the_best_stands_first_bold_and_colours_the_map(yard: Driver) -> None:
-    ropes = yard.window.answers["ropes"]
+    ropes = yard.window.live.answers["ropes"]
     model = yard.find(QTableView, "candidates").model()
     first = model.index(0, 0)
     assert first.data() == ropes.best.size_id
@@ -67,7 +67,7 @@ def test_the_best_follows_the_study_and_the_choice_stays(yard: Driver) -> None:
     chosen = yard.session.state.rope
     yard.type_into("entry robot.platform.mass", "260 kg")
     yard.rest()
-    ropes = yard.window.answers["ropes"]
+    ropes = yard.window.live.answers["ropes"]
     assert ropes.best != chosen
     assert yard.session.state.rope == chosen
     assert shown(yard)[0] == ropes.best.size_id
@@ -81,15 +81,15 @@ def test_the_whole_selection_is_made_with_progress(yard: Driver) -> None:
     answer = yard.window.ropes.answer
     assert answer.text().endswith("(at the samples, not proved)")
     yard.press("full selection")
-    assert yard.window.long.isVisible()
+    assert yard.window.status.long.isVisible()
     yard.rest()
-    assert not yard.window.long.isVisible()
-    proof = proof_statement(yard.window.answers["ropes"].proof)
+    assert not yard.window.status.long.isVisible()
+    proof = proof_statement(yard.window.live.answers["ropes"].proof)
     assert proof.title.startswith("Proved for all poses: at most")
     assert answer.text().endswith(f"as well)\n{proof.title}. {proof.text}")
     assert "select" in told
-    assert yard.window.answers["ropes"].is_final
-    assert isinstance(yard.window.answers["ropes"].best, Rope)
+    assert yard.window.live.answers["ropes"].is_final
+    assert isinstance(yard.window.live.answers["ropes"].best, Rope)
 
 
 def test_the_whole_selection_can_be_cancelled(yard: Driver) -> None:
@@ -97,8 +97,8 @@ def test_the_whole_selection_can_be_cancelled(yard: Driver) -> None:
     yard.press("full selection")
     yard.press("cancel")
     yard.bot.waitUntil(lambda: "select" not in yard.window.live.busy, timeout=10_000)
-    assert not yard.window.long.isVisible()
-    assert not yard.window.answers["ropes"].is_final
+    assert not yard.window.status.long.isVisible()
+    assert not yard.window.live.answers["ropes"].is_final
     yard.keys("Ctrl+Z")
     yard.rest()
 
@@ -108,8 +108,8 @@ def test_the_whole_selection_is_given_up_when_the_study_changes(yard: Driver) ->
     yard.press("full selection")
     yard.type_into("entry workspace.samples", "100")
     assert "select" not in yard.window.live.busy
-    assert not yard.window.long.isVisible()
+    assert not yard.window.status.long.isVisible()
     assert "given up, since the study has changed" in yard.window.messages.toPlainText()
     yard.rest()
-    assert not yard.window.answers["ropes"].is_final
+    assert not yard.window.live.answers["ropes"].is_final
     assert "not proved" in yard.window.ropes.answer.text()

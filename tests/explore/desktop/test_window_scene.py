@@ -74,7 +74,7 @@ def test_dragging_the_arrow_lifts(yard: Driver) -> None:
 
 
 def test_keys_move_by_steps_along_the_axes(yard: Driver) -> None:
-    step, start = yard.window.moving.step_m, yard.place.copy()
+    step, start = yard.window.work.scene.step_m, yard.place.copy()
     yard.scene.setFocus()
     yard.keys("Right")
     right = yard.place - start
@@ -99,7 +99,7 @@ def test_keys_turn_a_platform(empty: Driver) -> None:
     empty.keys("Ctrl+Shift+Up")
     assert np.degrees(np.linalg.norm(empty.place[3:])) == pytest.approx(10.05, abs=0.1)
     empty.rest()
-    assert empty.window.answers["here"].cables
+    assert empty.window.live.answers["here"].cables
 
 
 def test_the_mouse_reads_the_map(yard: Driver) -> None:
@@ -171,13 +171,13 @@ def test_sag_is_exaggerated_for_the_eye_alone(yard: Driver) -> None:
         straight = curves[:, :1] + share * (curves[:, -1:] - curves[:, :1])
         return float(np.abs(curves - straight).max())
 
-    true, sag_m = deviation(), yard.window.answers["here"].cables[0].sag_m
+    true, sag_m = deviation(), yard.window.live.answers["here"].cables[0].sag_m
     box = yard.find(QComboBox, "sag exaggeration")
     box.setFocus()
     yard.keys("Down")
     yard.keys("Down")
     assert deviation() == pytest.approx(5.0 * true, rel=1e-6)
-    assert yard.window.answers["here"].cables[0].sag_m == sag_m
+    assert yard.window.live.answers["here"].cables[0].sag_m == sag_m
     assert "sag drawn 5 times" in yard.scene.overlay.texts()
 
 
@@ -190,7 +190,7 @@ def test_what_no_rope_serves_is_hatched(yard: Driver) -> None:
 
 
 def test_the_worst_pose_is_marked_and_can_be_visited(yard: Driver) -> None:
-    worst = yard.window.answers["worst"].place
+    worst = yard.window.live.answers["worst"].place
     assert yard.scene.overlay.worst[0] == pytest.approx(worst[:3])
     assert "worst pose" in yard.scene.overlay.texts()
     yard.keys("Ctrl+G")

@@ -60,7 +60,7 @@ class Driver:
     def reset(self) -> None:
         """Show what is shown at first."""
         work = self.window.work
-        self.window.session = None
+        self.window.live.session = None
         for box in (work.surface, work.slice):
             box.setChecked(True)
         work.held.setChecked(False)
@@ -81,8 +81,8 @@ class Driver:
     @property
     def session(self) -> Session:
         """The session of the window."""
-        assert self.window.session is not None
-        return self.window.session
+        assert self.window.live.session is not None
+        return self.window.live.session
 
     @property
     def place(self) -> FloatArray:
@@ -183,8 +183,8 @@ class Driver:
 
     def close(self) -> None:
         """Close the window without a question."""
-        if self.window.session is not None:
-            self.window.session = None
+        if self.window.live.session is not None:
+            self.window.live.session = None
         self.window.close()
         self.window.deleteLater()
         QApplication.processEvents()

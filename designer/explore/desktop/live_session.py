@@ -1,0 +1,438 @@
+"""The open study as the window lives with it: steps go to the session, questions to the worker.
+
+Whoever shows something listens to its signals, and nobody needs the window for that. It computes
+nothing. While something moves, the pose and a coarse map are asked for; when it rests, the whole
+map and the candidates.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, get_args
+
+import numpy as np
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
+
+from designer.arrays import FloatArray
+from designer.errors import Fault
+from designer.explore.compare import Differences, Pin, compare
+from designer.explore.question import Assignment, Question, Rope
+from designer.explore.requests import Delivery, Done, Failed, Kind, Long, Progress
+from designer.explore.session import Session
+from designer.explore.worker import Worker
+from designer.study import Study
+
+_REST_MS = 250
+"""A pause of the hand that is longer than those of a drag."""
+_OLD_MS = 200
+"""A shorter time of an older state is no matter: answers come many times a second."""
+_SHOWN_AS: dict[Kind, tuple[str, ...]] = {
+    "coarse": ("map",),
+    "fine": ("map",),
+    "select": ("select", "ropes"),
+}
+"""What an answer is shown as, where that is not its kind."""
+LONG: tuple[Long, ...] = get_args(Long)
+"""What takes long: with progress, and cancelled by hand."""
+NAMES: dict[str, str] = {
+    "here": "the pose",
+    "coarse": "the map",
+    "fine": "the map",
+    "worst": "the worst pose",
+    "ropes": "the candidates",
+    "select": "the full selection",
+    "residuals": "the residuals",
+    "diagnose": "the diagnosis",
+    "export": "the export",
+}
+"""As a user reads of them."""
+
+
+class LiveSession(QObject):
+    """A session and what is known of its present state, for all parts of the window."""
+
+    opened = Signal()
+    """Another study is open, or none; all that was known of the last one is forgotten."""
+    changed = Signal()
+    """Text, refused entries, rope or pinned state may be different."""
+    moved = Signal()
+    """The platform may be elsewhere, or the study another."""
+    answered = Signal(str, object)
+    """The kind of a question, and its answer."""
+    begun = Signal(str)
+    """Long work of a kind was begun."""
+    progressed = Signal(str, str, int, int)
+    """Of long work: kind, task, steps done, and all steps (0 if not known)."""
+    busy_changed = Signal()
+    """Something was begun or has ended, or has become old."""
+    quantity_changed = Signal(str)
+    """The map is coloured by another quantity."""
+    flushing = Signal()
+    """The text is about to be saved or left: what was typed last is to be handed on."""
+    message = Signal(str)
+    """Something that a user shall read, and find again."""
+    _forgotten = Signal()
+    _delivered = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._delivered.connect(self._take, Qt.ConnectionType.QueuedConnection)
+        self._worker = Worker(self._delivered.emit)
+        self.session: Session | None = None
+        self.question: Question | None = None
+        self.answers: dict[str, Any] = {}
+        self.slice_share = 0.5
+        self.quantity = "utilisation"
+        self._against: Question | None = None
+        self._compares_map = self._had_ropes = False
+        self._pending: dict[Kind, int] = {}
+        self._newest: dict[Kind, int] = {}
+        self._states: dict[str, object] = {}
+        self._old_since_s: dict[str, float] = {}
+        self._last = self._since = 0
+        self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
+        self._rest.timeout.connect(self._ask_whole)
+        self._aging = QTimer(self, singleShot=True, interval=_OLD_MS)
+        self._aging.timeout.connect(self.busy_changed)
+
+    # What there is
+
+    @property
+    def study(self) -> Study | None:
+        """The study; the last sound one where the text is faulty, None where there never was."""
+        return None if self.session is None else self.session.study
+
+    @property
+    def rope(self) -> Rope | Assignment | None:
+        """The rope, or ropes, that are looked at; None for the family."""
+        return None if self.session is None else self.session.state.rope
+
+    @property
+    def pinned(self) -> Pin | None:
+        """The state that the present one is compared with; None for nothing."""
+        pin = None if self.session is None else self.session.state.pin
+        return pin if isinstance(pin, Pin) else None
+
+    @property
+    def busy(self) -> frozenset[Kind]:
+        """Kinds of questions that have no answer yet."""
+        return frozenset(self._pending)
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether everything that was asked has been answered, and nothing will be asked."""
+        timers = self._rest, self._aging
+        return not self._pending and not any(timer.isActive() for timer in timers)
+
+    @property
+    def outdated(self) -> frozenset[str]:
+        """What is shown of an older state of the study, and has been for a while."""
+        now_s = time.monotonic() + 0.01  # timers are no more exact
+        since = self._old_since_s.items()
+        return frozenset(shown for shown, since_s in since if now_s - since_s >= _OLD_MS * 1e-3)
+
+    def listen(self, show: Callable[[Any], object], *kinds: Kind) -> None:
+        """Have the answers to some kinds of questions shown; None where all is forgotten."""
+        self._forgotten.connect(lambda: show(None))
+        self.answered.connect(lambda kind, answer: show(answer) if kind in kinds else None)
+
+    def differences(self) -> Differences | None:
+        """Return what is different from the pinned state; None where nothing is pinned."""
+        pin, present = self.pinned, self._present()
+        return None if pin is None or present is None else compare(pin, present)
+
+    def _present(self) -> Pin | None:
+        """The present state with what is known of it."""
+        question = None if self.session is None else self.session.question()
+        if self.session is None or question is None:
+            return None
+        answers = (self.answers.get(kind) for kind in ("here", "worst", "ropes"))
+        return Pin(question, self.session.fields(), *answers)
+
+    # Which study
+
+    def open(self, session: Session | None) -> None:
+        """Go on with another study, or with none."""
+        self.forget()
+        self.session, self.answers = session, {}
+        self._against, self._compares_map, self._had_ropes = None, False, False
+        self._forgotten.emit()
+        self._follow()
+        self.opened.emit()
+
+    def forget(self) -> None:
+        """Give up all that was asked."""
+        self.question = None
+        self._rest.stop()
+        self._aging.stop()
+        for kind in tuple(self._pending):
+            self._worker.cancel(kind)
+        self._pending.clear()
+        self._states.clear()
+        self._old_since_s.clear()
+        self._since = self._last
+        self.busy_changed.emit()
+
+    def close(self) -> None:
+        """End all work; returns at once."""
+        self._rest.stop()
+        self._aging.stop()
+        self._delivered.disconnect(self._take)
+        self._since = sys.maxsize
+        self._worker.close()
+
+    # Steps of the session
+
+    def do(self, step: Callable[[Session], object], *, moving: bool = False) -> None:
+        """Have the session take a step, which may be on its way, and follow it."""
+        if self.session is not None:
+            step(self.session)
+            self._follow(moving=moving)
+
+    def put_all_back(self) -> None:
+        """Make the whole study as the file has it."""
+        if self.session is not None and self.session.is_modified:
+            self.session.settle()
+            self.do(lambda session: session.set_text(session.saved_text))
+
+    def write(self, text: str) -> None:
+        """Take the study as it was written."""
+        if self.session is not None and text != self.session.text:
+            self.do(lambda session: session.set_text(text, continuous=True))
+
+    def drop_rejected(self, path: str) -> None:
+        """Forget an entry that was refused."""
+        if self.session is not None:
+            self.session.drop_rejected(path)
+            self.changed.emit()
+
+    def choose(self, rope: Rope | Assignment | None) -> None:
+        """Look at a rope, or ropes; at the family for None."""
+        self.do(lambda session: session.choose(rope))
+        if rope is not None:
+            self.colour_by("utilisation")
+
+    # The platform
+
+    def move(self, place: FloatArray, moving: bool = False) -> None:
+        """Take the platform to a position (3,) or a place (6,) [m, rad], or on the way there."""
+        if self.session is not None and self.study is not None:
+            self.session.move(place, continuous=moving)
+            if not moving:
+                self.session.settle()
+            self._follow_place(moving=moving)
+
+    def shift(self, offset_m: FloatArray) -> None:
+        """Move the platform by (3,) [m]; several shifts are one step to undo."""
+        if self.session is not None:
+            offset = np.concatenate([offset_m, np.zeros(3)])
+            self.session.move(self.session.state.place + offset, continuous=True)
+            self._follow_place(moving=True)
+
+    def turn(self, rotation_rad: FloatArray) -> None:
+        """Turn the platform about an axis (3,) [rad] of the frame; in a plane about its normal."""
+        from scipy.spatial.transform import Rotation
+
+        if self.session is None or self.study is None:
+            return
+        robot, place = self.study.robot, self.session.state.place.copy()
+        if robot.is_planar:
+            rotation_rad = np.asarray(robot.upright[1]) * float(rotation_rad.sum())
+        turned = Rotation.from_rotvec(rotation_rad) * Rotation.from_rotvec(place[3:])
+        place[3:] = turned.as_rotvec()
+        self.session.move(place, continuous=True)
+        self._follow_place(moving=True)
+
+    def to_worst(self) -> None:
+        """Take the platform to the worst pose."""
+        place = getattr(self.answers.get("worst"), "place", None)
+        if place is not None:
+            self.move(place)
+
+    def to_pose(self) -> None:
+        """Take the platform to the pose of the study."""
+        if self.study is not None and self.study.pose is not None:
+            self.move(self.study.pose.place)
+
+    def keep_pose(self) -> None:
+        """Write the place of the platform into the study."""
+        faults: list[Fault] = []
+        self.do(lambda session: faults.extend(session.keep_pose()))
+        for fault in faults:
+            self.message.emit(str(fault))
+
+    # Comparing
+
+    def pin(self) -> None:
+        """Compare with the present state from now on."""
+        self.do(lambda session: session.set_pin(self._present()))
+
+    def release(self) -> None:
+        """Compare with nothing any more."""
+        self.do(lambda session: session.set_pin(None))
+
+    def take_over(self, text: str) -> None:
+        """Go on with another text of the study, the present state pinned."""
+        self.pin()
+        self.write(text)
+
+    def compare_in_map(self, is_compared: bool) -> None:
+        """Have the map show the difference to the pinned state, or not."""
+        self._compares_map = is_compared
+        self._see_pinned()
+
+    def _see_pinned(self) -> None:
+        pin = self.pinned if self._compares_map else None
+        against = None if pin is None else pin.question
+        if against is not self._against:
+            self._against = against
+            self._ask_map("fine")
+
+    # Questions
+
+    def colour_by(self, quantity: str) -> None:
+        """Have the map coloured by a quantity."""
+        if quantity == self.quantity:
+            return
+        self.quantity = quantity
+        self.quantity_changed.emit(quantity)
+        chart = self.answers.get("map")
+        if chart is not None and any(quantity not in values for values in chart.values.values()):
+            self._ask_map("fine")
+
+    def move_slice(self, share: float, moving: bool) -> None:
+        """Ask for the map with its slice at another share of the height."""
+        self.slice_share = share
+        self._ask_map("coarse" if moving else "fine")
+
+    def begin_long(self, kind: Long, **options: Any) -> None:
+        """Begin long work on the present question."""
+        if self.question is not None:
+            self.begun.emit(kind)
+            self._ask(kind, self.question, **options)
+
+    def cancel(self, kind: Kind) -> None:
+        """End long work."""
+        self._worker.cancel(kind)
+
+    def _follow(self, *, moving: bool = False) -> None:
+        """Have the session shown as it is now, and ask for what follows from it."""
+        if self.rope is None and self.quantity == "utilisation" and self.study is not None:
+            self.colour_by("diameter")  # of the thinnest cable the utilisation is 100 % everywhere
+        self.changed.emit()
+        self._follow_place(moving=moving)
+        self._see_pinned()
+
+    def _follow_place(self, *, moving: bool) -> None:
+        """The same where only the platform may be elsewhere."""
+        self.moved.emit()
+        if self.session is not None:
+            self._ask_about(self.session.question(), moving=moving)
+
+    def _ask_about(self, question: Question | None, *, moving: bool) -> None:
+        """Ask for all that may be different now."""
+        before, self.question = self.question, question
+        if question is None:
+            return
+        for shown in self._states:
+            self._see_age(shown)
+        if before is not None and before.text != question.text and "select" in self._pending:
+            self._worker.cancel("select")
+            self._newest["select"] = self._pending.pop("select")
+            self._tell_failed("select", "given up, since the study has changed")
+        self._ask("here", question)
+        # A map is the same wherever the platform is.
+        if before is None or (before.text, before.rope) != (question.text, question.rope):
+            if moving:
+                self._ask("coarse", question)
+            self._rest.start(_REST_MS if moving else 0)
+        elif not moving:
+            self._ask("here", question, settled=True)
+
+    def _ask_map(self, kind: Kind) -> None:
+        if self.question is not None:
+            self._ask(kind, self.question)
+
+    def _ask_whole(self) -> None:
+        if self.question is not None:
+            whole: tuple[Kind, ...] = ("fine", "ropes", "worst")
+            for kind in whole:
+                self._ask(kind, self.question)
+            self._ask("here", self.question, settled=True)
+            if self.question.study.measurements is not None:
+                self._ask("residuals", self.question)
+
+    def _ask(self, kind: Kind, question: Question, **options: Any) -> None:
+        if kind in ("coarse", "fine"):
+            whole = {"unserved", "sag", "diameter"} if kind == "fine" else set()
+            options["quantities"] = frozenset({self.quantity, *whole})
+            options["slice_share"] = self.slice_share
+            options["against"] = self._against
+        self._last = self._pending[kind] = self._worker.ask(kind, question, **options)
+        self.busy_changed.emit()
+
+    # Answers
+
+    def _take(self, delivery: Delivery) -> None:
+        """In the window's thread: hand on what is newer than what was handed on of its kind.
+
+        While something moves, answers come to questions that are not the last ones any more.
+        """
+        kind, number = delivery.kind, delivery.number
+        if number <= max(self._since, self._newest.get(kind, 0)):
+            return
+        if isinstance(delivery, Progress):
+            self.progressed.emit(kind, delivery.task, delivery.done, delivery.total)
+            return
+        if self._pending.get(kind) == number:
+            del self._pending[kind]
+        if isinstance(delivery, Done):
+            self._newest[kind] = number
+            self._keep(kind, delivery.question, delivery.answer)
+            self.answered.emit(kind, delivery.answer)
+        elif isinstance(delivery, Failed):
+            self._tell_failed(kind, delivery.text)
+        self.busy_changed.emit()
+
+    def _keep(self, kind: Kind, question: Question, answer: Any) -> None:
+        self.answers[kind] = answer
+        for shown in _SHOWN_AS.get(kind, (kind,)):
+            self.answers[shown] = answer
+            self._states[shown] = _state_of(shown, question)
+            self._old_since_s.pop(shown, None)
+            if self.question is not None:
+                self._see_age(shown)
+            if shown == "ropes":
+                self._begin_with_best()
+
+    def _begin_with_best(self) -> None:
+        """Look at the best of the first candidates, where nobody has chosen another rope."""
+        ropes, is_first, self._had_ropes = self.answers["ropes"], not self._had_ropes, True
+        best = None if ropes is None else ropes.best
+        if is_first and self.rope is None and best is not None:
+            self.do(lambda session: session.begin_with(best))
+            if self.quantity == "diameter":  # nobody chose it
+                self.colour_by("utilisation")
+
+    def _see_age(self, shown: str) -> None:
+        """Note since when what is shown is of an older state than the present one."""
+        assert self.question is not None
+        if self._states[shown] == _state_of(shown, self.question):
+            self._old_since_s.pop(shown, None)
+        elif shown not in self._old_since_s:
+            self._old_since_s[shown] = time.monotonic()
+            self._aging.start()
+
+    def _tell_failed(self, kind: Kind, text: str) -> None:
+        self.message.emit(f"{NAMES[kind]}: {text}")
+
+
+def _state_of(shown: str, question: Question) -> object:
+    """Return what an answer depends on of the state of the window."""
+    if shown == "here":
+        return question.text, question.rope, question.place.tobytes()
+    if shown in ("map", "worst"):
+        return question.text, question.rope
+    return question.text
