@@ -20,7 +20,9 @@ _HOMES = {
     "designer.errors": "DesignerError EffectError InputError OutputError",
     "designer.model.cable": "Cable Material",
     "designer.model.measurements": "Measurements",
-    "designer.model.region": "PointList Prism Rectangle",
+    "designer.model.point_list": "PointList",
+    "designer.model.prism": "Prism",
+    "designer.model.rectangle": "Rectangle",
     "designer.model.robot": "Platform Poses Robot",
     "designer.model.space": "Orientations",
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
@@ -43,7 +45,9 @@ if TYPE_CHECKING:
     from designer.grades.registry import Catalogue
     from designer.model.cable import Cable, Material
     from designer.model.measurements import Measurements
-    from designer.model.region import PointList, Prism, Rectangle
+    from designer.model.point_list import PointList
+    from designer.model.prism import Prism
+    from designer.model.rectangle import Rectangle
     from designer.model.robot import Platform, Poses, Robot
     from designer.model.space import Orientations
     from designer.model.uncertainty import Normal, Uncertainty, Uniform

@@ -13,7 +13,9 @@ from designer.kernel.batch import solve_batch
 from designer.kernel.calling import situation_of
 from designer.model.cable import Cable, Cables, Material
 from designer.model.measurements import Measurements
-from designer.model.region import PointList, Prism, Rectangle
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.statics.inverse import solve_sagging

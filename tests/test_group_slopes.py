@@ -10,7 +10,7 @@ import pytest
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.report.design import carries
 from designer.selection.assignment import Assignment, GroupVerification

@@ -7,7 +7,9 @@ import pytest
 from scipy.stats import qmc
 
 from designer.arrays import frozen_array
-from designer.model.region import PointList, Prism, Rectangle
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
 from designer.model.sobol import sobol
 from designer.model.space import Orientations, Space
 

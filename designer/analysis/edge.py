@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.analysis import grids
 from designer.analysis.field import Field, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.model.region import Prism
+from designer.model import polygon
+from designer.model.prism import Prism
 from designer.model.verdict import OPEN, Verdict
 from designer.study import Study
 
@@ -84,14 +84,11 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     if region.is_upright or study.robot.is_planar or is_tilted:
         return None
     hull = Prism.over(study.robot.exit_points_m, 0.0, (0.0, 0.0)).polygon_m
-    if isinstance(region, Prism):
-        centre = grids.centroid_m(region.polygon_m)
-    else:
-        centre = np.concatenate([*region.samples_m(1000, "grid", 0)])[:, :2].mean(axis=0)
+    centre = region.centre_m
     if not Prism(hull, (-1.0, 1.0)).contains(np.array([*centre, 0.0])):
         return None
     azimuth = _azimuth_rad(hull, centre, focus_m)
-    reach = grids.reach_m(hull, centre, azimuth)
+    reach = polygon.reach_m(hull, centre, azimuth)
     ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
     def at(distance_m: FloatArray) -> Field:
@@ -100,14 +97,12 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
 
     distance = reach * np.linspace(1.0, 0.0, 400) ** 2  # denser toward the edge
     field = at(distance)
-    inside = None
-    if isinstance(region, Prism):
-        inside = reach - grids.reach_m(region.polygon_m, centre, azimuth)
+    inside = region.reach_m(centre, azimuth)
     return EdgeProfile(
         distance_m=distance,
         field=field,
         focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
-        region_distance_m=inside,
+        region_distance_m=None if inside is None else reach - inside,
         limit_distance_m=first_failure_m(at, distance, field, lambda some: some.is_solved),
         straight_distance_m=first_failure_m(
             at, distance, field, lambda some: some.is_held_straight
@@ -121,7 +116,7 @@ def _azimuth_rad(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> f
     if np.hypot(*offset) > 1e-6 * np.ptp(hull, axis=0).max():
         return float(np.arctan2(offset[1], offset[0]))
     around = np.linspace(-np.pi, np.pi, 361)
-    return float(around[np.argmin([grids.reach_m(hull, centre, a) for a in around])])
+    return float(around[np.argmin([polygon.reach_m(hull, centre, a) for a in around])])
 
 
 def first_failure_m(

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.analysis.adrift import Adrift, adrift_in
-from designer.arrays import FloatArray
 from designer.grades.grade import Size
-from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.selection.candidate import Candidate
@@ -226,7 +224,7 @@ def _unserved(analysis: Analysis) -> Unserved | None:
     if workspace is None or found is None or analysis.sweep_file is None:
         return None
     region = workspace.region
-    if found.is_feasible or not isinstance(region, Prism):
+    if found.is_feasible:
         return None
     fine = [Verdict.SOLVED]
     if workspace.hangs_below == "exclude":
@@ -237,17 +235,11 @@ def _unserved(analysis: Analysis) -> Unserved | None:
         for start in range(0, sweep.sizes["sample"], _CHUNK):
             part = sweep.isel(sample=slice(start, start + _CHUNK))
             position = part["position"].values
-            distance = distance_to_sides_m(region, position)
+            distance = region.depth_m(position)
+            if distance is None:
+                return None
             unserved = ~np.isin(part["verdict"].values, fine)
             depth_m = max(depth_m, float(distance[unserved].max(initial=0.0)))
             inradius_m = max(inradius_m, float(distance.max(initial=0.0)))
             lowest_m = min(lowest_m, float(position[unserved, 2].min(initial=np.inf)))
     return Unserved(depth_m, inradius_m, lowest_m) if np.isfinite(lowest_m) else None
-
-
-def distance_to_sides_m(region: Prism, positions_m: FloatArray) -> FloatArray:
-    """Return the horizontal distance of positions (n, 3) inside a prism to its nearest side [m]."""
-    edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
-    to_point = positions_m[:, None, :2] - region.polygon_m
-    area = edge[:, 0] * to_point[..., 1] - edge[:, 1] * to_point[..., 0]
-    return np.asarray((area / np.linalg.norm(edge, axis=1)).min(axis=1))

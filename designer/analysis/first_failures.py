@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.model.load_case import Loaded
-from designer.model.region import PointList, Region
+from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.selection.cases import CaseFound
@@ -56,7 +56,7 @@ def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:
     points, and where lengths are kept.
     """
     region, one = found.workspace.region, found.loaded
-    if isinstance(region, PointList) or one.keeps_lengths:
+    if region.is_discrete or one.keeps_lengths:
         return ()
     turn = found.verification.worst_place[3:]
     return tuple(_along(region, one, turn, name, way) for name, way in _directions(region, one))

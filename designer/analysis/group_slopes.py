@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.analysis.sensitivities import Sensitivity, outward
+from designer.analysis.sensitivities import Sensitivity
 from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cables
 from designer.model.robot import Poses, Robot
@@ -87,7 +87,7 @@ def _slopes(robot: Robot, workspace: Workspace, assignment: Assignment, g: int) 
     twice = replace(body, mass_kg=2.0 * body.mass_kg, wrench_N=2.0 * body.wrench_N)
     heavier = load_wrench_N(replace(robot, platform=twice), statics.poses)[0]
     payload = float(one.load @ (heavier - load_wrench_N(robot, statics.poses)[0]))
-    region = float(one.position_per_m @ outward(workspace.region, place[:3]))
+    region = float(one.position_per_m @ workspace.region.outward(place[:3]))
     mass = one.cable_load_m_per_N @ -robot.upright[2] * cables.weight_N_per_m
     of_ropes = (_sums(one.stiffness, members), _sums(mass, members))
     own = _named(assignment, g, (payload, region), of_ropes, float(used[most]))

@@ -8,7 +8,6 @@ import numpy as np
 
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.selection.usable import Usable, UsableSize
 from designer.statics.inverse import solve_sagging
@@ -46,13 +45,14 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
     """
     shown = chosen_sizes(usable)
     workspace = maps.study.workspace
-    if not isinstance(maps.region, Prism) or not shown or workspace is None:
+    if "top" not in maps.shell or not shown or workspace is None:
         return None
     plan = maps.shell["top"].position_m
     solved = plan[..., 0].size * _HEIGHTS * len(shown) * len(workspace.orientations.turns_rad)
     share = min(1.0, np.sqrt(2e6 / solved))  # a coarser grid where there would be more to solve
     rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
-    heights = np.linspace(*maps.region.z_m, max(2, round(share * _HEIGHTS)))
+    low, high = maps.region.bounds_m[:, 2]
+    heights = np.linspace(low, high, max(2, round(share * _HEIGHTS)))
     position = np.repeat(plan[rings, :, None], len(heights), axis=2)
     position[..., 2] = heights
     used = [_utilisation(maps.study.robot, workspace, one, position) for one in shown]

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from designer.analysis import grids
 from designer.analysis.analyse import Analysis
 from designer.analysis.edge import EdgeProfile, edge_profile
 from designer.analysis.field import Field, field_at, field_of
 from designer.arrays import FloatArray
-from designer.model.region import Prism, Rectangle, Region
+from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
@@ -88,11 +87,11 @@ class WorkspaceMaps:
     focus : Focus
         The worst pose, or what stands for it.
     section : Field
-        The region at its greatest height (rings, spokes + 1), see `grids.disc_m`; a rectangle
+        The region at its greatest height (rings, spokes + 1), see `Region.section_m`; a rectangle
         itself; for a list of points the points themselves (n_points,), thinned out where there are
         very many.
     shell : mapping of str to Field
-        Outside of the region and two cuts, see `grids.cutaway_m`; of a rectangle the section;
+        Outside of the region and two cuts, see `Region.cutaway_m`; of a rectangle the section;
         empty for a list of points.
     edge : EdgeProfile or None
         Along the line from the centre through the focus to the hull of the exit points; None
@@ -172,13 +171,14 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     region, part = _workspace(study).region, analysis.servable
     focus = _focus(study, found)
     shell: Mapping[str, Field]
-    if isinstance(region, Prism):
-        section = field_at(study, grids.disc_m(region, region.z_m[1]))
-        pieces = grids.cutaway_m(region, focus.position_m)
-        shell = {name: field_at(study, positions) for name, positions in pieces.items()}
-    elif isinstance(region, Rectangle):
-        section = field_at(study, grids.upright_disc_m(region))
-        shell = {"section": section}
+    positions = region.section_m()
+    if positions is not None:
+        section = field_at(study, positions)
+        pieces = region.cutaway_m(focus.position_m)
+        shell = {
+            name: section if region.is_upright else field_at(study, grid)
+            for name, grid in pieces.items()
+        }
     else:
         points = np.concatenate([*region.samples_m(_MOST_POINTS, "grid", 0)])
         section, shell = field_at(study, points[:: -(-len(points) // _MOST_POINTS)]), {}

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.analysis.sensitivities import outward, with_payload
+from designer.analysis.sensitivities import with_payload
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.model.region import Prism, Rectangle, Region
+from designer.model.region import Region
 from designer.selection.cases import CaseFound
 from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import rope_demand, settled_demand
@@ -91,21 +91,14 @@ def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None
     Heights stay. Load cases with a region of their own do not count; only some regions have sides.
     """
     moving = [case for case in cases if case.case.region is None]
-    if not isinstance(region, Prism | Rectangle) or not moving:
+    if not region.has_sides or not moving:
         return None
 
     def wider(case: CaseFound, margin_m: float) -> tuple[Loaded, Workspace]:
-        return case.loaded, replace(case.workspace, region=widened(region, margin_m))
+        return case.loaded, replace(case.workspace, region=region.grown(margin_m))
 
     size = float(np.ptp(moving[0].loaded.robot.exit_points_m, axis=0).max())
     return _end(moving, wider, (0.0, _MOST_MARGIN * size, 0.02 * size), is_moving=True)
-
-
-def widened(region: Prism | Rectangle, margin_m: float) -> Prism | Rectangle:
-    """Return the region with its sides moved outward, its heights kept."""
-    if isinstance(region, Rectangle):
-        return Rectangle.over(region.ends_m, -margin_m, region.z_m)
-    return Prism.over(region.polygon_m, -margin_m, region.z_m)
 
 
 def _end(
@@ -120,7 +113,7 @@ def _end(
     def carried(case: CaseFound, place: FloatArray, at: float) -> _Carried:
         way = np.zeros_like(place)
         if is_moving:
-            way[:3] = outward(change(case, at)[1].region, place[:3])
+            way[:3] = change(case, at)[1].region.outward(place[:3])
         return _Carried(case, place, at, way)
 
     def used(one: _Carried, value: float) -> float:

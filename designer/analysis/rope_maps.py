@@ -6,15 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.analysis import grids
 from designer.analysis.field import Field
 from designer.analysis.governing_ropes import GoverningRopes
 from designer.analysis.maps import Focus, WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.region import Prism, Rectangle
+from designer.model.rings import every_second
 from designer.model.robot import Poses
 from designer.statics.inverse import solve_massless
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out
+
+_RINGS, _SPOKES = 45, 120
+"""Half as fine as the maps of the family: a pose of a rope costs more than a size."""
 
 
 def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
@@ -23,13 +25,14 @@ def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
     statics = rope.worst
     focus = Focus(place[:3], "worst pose", statics if statics.is_solved else None, _at(rope, place))
     shell: dict[str, Field] = {}
-    if isinstance(region, Prism):
-        section = _over(rope, grids.disc_m(region, region.z_m[1], 45, 120))
-        pieces = grids.cutaway_m(region, place[:3])
-        shell = {name: _over(rope, grid[grids.every_second(grid)]) for name, grid in pieces.items()}
-    elif isinstance(region, Rectangle):
-        section = _over(rope, grids.upright_disc_m(region))
-        shell = {"section": section}
+    positions = region.section_m(1.0, _RINGS, _SPOKES)
+    if positions is not None:
+        section = _over(rope, positions)
+        pieces = region.cutaway_m(place[:3])
+        shell = {
+            name: section if region.is_upright else _over(rope, grid[every_second(grid)])
+            for name, grid in pieces.items()
+        }
     else:
         section = _over(rope, family.section.position_m)
     study = replace(family.study, workspace=rope.workspace)

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.analysis import grids
 from designer.analysis.analyse import Analysis
 from designer.arrays import BoolArray, FloatArray
-from designer.model.region import Prism
 from designer.model.robot import Poses
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
@@ -19,7 +17,7 @@ from designer.workspace.demand import is_left_out
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
-    """A value over rings about the centre of the region, see `grids.disc_m`.
+    """A value over rings about the centre of the region, see `Region.section_m`.
 
     Parameters
     ----------
@@ -63,11 +61,13 @@ def clearance_section(analysis: Analysis) -> Section | None:
 def _statics(analysis: Analysis, rings: int, spokes: int) -> Statics | None:
     """Solve the section at the middle height, with the cable of the design."""
     workspace, qualities = analysis.study.workspace, analysis.qualities
-    if workspace is None or qualities is None or not isinstance(workspace.region, Prism):
+    if workspace is None or qualities is None or workspace.region.is_upright:
         return None
     if analysis.built.robot.is_planar:  # it has no area in plan
         return None
-    positions = grids.disc_m(workspace.region, 0.5 * sum(workspace.region.z_m), rings, spokes)
+    positions = workspace.region.section_m(0.5, rings, spokes)
+    if positions is None:
+        return None
     poses = Poses.at(positions, workspace.orientations.turns_rad[0])
     return solve_sagging(analysis.built.robot, poses, qualities.cable.cable)
 

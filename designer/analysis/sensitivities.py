@@ -17,13 +17,11 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.model.region import Prism, Rectangle, Region
 from designer.selection.cases import CaseFound
 from designer.statics.geometry import load_wrench_N
 from designer.statics.slopes import Slopes, utilisation_slopes
 
 _STEP = 1e-4
-_ON_A_SIDE = 1e-6
 _ALIKE = 1e-6
 
 
@@ -115,7 +113,7 @@ def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
     heavier = load_wrench_N(with_payload(one, 2.0).robot, found.pose)[0]
     more = heavier - load_wrench_N(one.robot, found.pose)[0]
     load = _cable_load(with_density(one, 2.0)) - _cable_load(one)
-    side = outward(found.workspace.region, found.pose.position_m[0])
+    side = found.workspace.region.outward(found.pose.position_m[0])
     return {
         "payload": float(slopes.load @ more),
         "modulus": float(slopes.stiffness.sum()),
@@ -127,7 +125,7 @@ def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
 def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
     one, place = found.loaded, found.verification.worst_place
     side = np.zeros_like(place)
-    side[:3] = outward(found.workspace.region, place[:3])
+    side[:3] = found.workspace.region.outward(place[:3])
 
     def slope(changed: Callable[[float], Loaded]) -> float:
         ends = [found.tension_N(changed(sign * _STEP)) for sign in (1.0, -1.0)]
@@ -221,25 +219,3 @@ def with_exit_moved(one: Loaded, cable: int, axis: int, by_m: float) -> Loaded:
     exits[cable, axis] += by_m
     moved = replace(robot, exit_points_m=exits)
     return one.on(moved, line)
-
-
-def outward(region: Region, position_m: FloatArray) -> FloatArray:
-    """Return how a position moves as the sides of its region move outward by a metre (3,).
-
-    Zero within the region, and where it has no sides; in a corner, along with both sides.
-    """
-    if isinstance(region, Rectangle):
-        share = float(region.shares(position_m)[0])
-        way = np.append((region.ends_m[1] - region.ends_m[0]) / region.size_m[0], 0.0)
-        near = [abs(share - end) <= _ON_A_SIDE for end in (0.0, 1.0)]
-        return np.asarray((near[1] * 1.0 - near[0] * 1.0) * way)
-    if not isinstance(region, Prism):
-        return np.zeros(3)
-    edge = np.roll(region.polygon_m, -1, axis=0) - region.polygon_m
-    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
-    gap = np.einsum("ek,ek->e", normal, region.polygon_m - position_m[:2])
-    sides = normal[gap <= _ON_A_SIDE * float(np.ptp(region.polygon_m, axis=0).max())]
-    if len(sides) == 0:
-        return np.zeros(3)
-    way, *_ = np.linalg.lstsq(sides, np.ones(len(sides)), rcond=None)
-    return np.append(way, 0.0)

@@ -84,3 +84,29 @@ def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
     beyond = a + b > 1.0
     a, b = np.where(beyond, 1.0 - a, a), np.where(beyond, 1.0 - b, b)
     return np.asarray(first + a[:, None] * u[which] + b[:, None] * v[which])
+
+
+def centroid_m(polygon_m: FloatArray) -> FloatArray:
+    """Return the centre of area of a polygon (n_corners, 2), (2,) [m]."""
+    origin = polygon_m[0]  # far from the frame's origin the products would cancel
+    a, b = polygon_m - origin, np.roll(polygon_m, -1, axis=0) - origin
+    twice_area = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
+    weighted = ((a + b) * twice_area[:, None]).sum(axis=0)
+    return np.asarray(origin + weighted / (3.0 * twice_area.sum()))
+
+
+def reach_m(polygon_m: FloatArray, centre_m: FloatArray, azimuth_rad: float) -> float:
+    """Return how far it is from a point (2,) inside a convex polygon to its edge [m].
+
+    Parameters
+    ----------
+    polygon_m : array (n_corners, 2)
+        Corners, counter-clockwise [m].
+    centre_m, azimuth_rad : array (2,), float
+        The point [m], and the direction from the x axis [rad].
+    """
+    edges = edges_m(polygon_m)
+    outward = np.stack([edges[:, 1], -edges[:, 0]], axis=1)
+    room = np.einsum("ek,ek->e", outward, polygon_m - centre_m)
+    speed = outward @ np.array([np.cos(azimuth_rad), np.sin(azimuth_rad)])
+    return float(np.min(room[speed > 0.0] / speed[speed > 0.0]))

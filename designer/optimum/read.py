@@ -19,7 +19,8 @@ from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNum
 from designer.documents.node import Key
 from designer.documents.section import Section
 from designer.errors import Fault, InputError
-from designer.model.region import Prism, Rectangle
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
 from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
 from designer.optimum.plan import Budget, Limit, Plan
 from designer.optimum.variables import variables_of
@@ -122,9 +123,11 @@ def _with_fixed_regions(text: str, document: Document, study: Study) -> str:
         for shape in ("prism", "rectangle"):
             written = edits.value_text(text, (*place, shape))
             if written is not None and written.strip("'\"") == "anchors":
-                over = Prism.over if shape == "prism" else Rectangle.over
-                found = over(anchors, 0.0, (0.0, 1.0))
-                corners = found.polygon_m if isinstance(found, Prism) else found.ends_m
+                flat = (0.0, 1.0)
+                if shape == "prism":
+                    corners = Prism.over(anchors, 0.0, flat).polygon_m
+                else:
+                    corners = Rectangle.over(anchors, 0.0, flat).ends_m
                 rounded = np.round(corners, 9) + 0.0
                 points = ", ".join(f"[{x:.10g}, {y:.10g}]" for x, y in rounded)
                 text = edits.with_value(text, (*place, shape), f"[{points}]")

@@ -7,11 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.model.region import PointList, Prism, Rectangle
 from designer.model.space import Space
-
-_BEYOND = 1e-12
-"""Relative: by so much a region is made larger before boxes are cut at its border."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,37 +95,16 @@ def halves(low: FloatArray, high: FloatArray, cut: IntArray) -> tuple[FloatArray
 
 def covers_of(space: Space) -> list[Cover]:
     """Return what covers a space: one for each orientation of a list, one for a range."""
-    ends = space.orientations.range_rad
+    frame, ends = space.region.frame(), space.orientations.range_rad
+    assert frame is not None  # asked before, by `designer.proof.encloser.why_not`
     made = []
     for turn in space.orientations.turns_rad[: 1 if ends is not None else None]:
-        origin, axes, low, high, sides = _positions(space.region)
+        low, high = frame.low, frame.high
         if ends is not None:
             low = np.hstack([low, np.broadcast_to(ends[0], low.shape)])
             high = np.hstack([high, np.broadcast_to(ends[1], high.shape)])
-        made.append(Cover(origin, axes, low, high, sides, turn))
+        made.append(Cover(frame.origin_m, frame.axes, low, high, frame.sides, turn))
     return made
-
-
-def _positions(
-    region: Prism | Rectangle | PointList,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    none = np.zeros((0, 3))
-    if isinstance(region, PointList):
-        return np.zeros(3), np.eye(3), region.points_m, region.points_m, none
-    if isinstance(region, Rectangle):
-        edge = region.ends_m[1] - region.ends_m[0]
-        axes = np.array([[edge[0], 0.0, 0.0], [edge[1], 0.0, 0.0], [0.0, 0.0, 1.0]])
-        low, high = np.array([[0.0, 0.0, region.z_m[0]]]), np.array([[1.0, 0.0, region.z_m[1]]])
-        return np.array([*region.ends_m[0], 0.0]), axes, low, high, none
-    low, high = region.bounds_m
-    corners = region.polygon_m
-    edge = np.roll(corners, -1, axis=0) - corners
-    length = np.hypot(*edge.T)
-    edge, corners = edge[length > 0.0], corners[length > 0.0]
-    outward = np.column_stack([edge[:, 1], -edge[:, 0]]) / length[length > 0.0, None]
-    beyond = _BEYOND * np.abs(region.bounds_m).max()
-    sides = np.column_stack([outward, -np.einsum("ij,ij->i", outward, corners) - beyond])
-    return np.zeros(3), np.eye(3), low[None], high[None], sides
 
 
 def _cut_at(plan: FloatArray, side: FloatArray) -> FloatArray:

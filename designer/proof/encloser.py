@@ -14,7 +14,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.kernel.calling import plain, share_out
 from designer.model.cable import Cable
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.region import Region
 from designer.model.robot import Poses, Robot
 from designer.proof.cover import Cover
 from designer.statics.geometry import upright_exit_points_m, upright_poses
@@ -33,7 +33,7 @@ def why_not(robot: Robot, region: Region) -> str:
     """Return why nothing can be proved of a robot in a region; empty where something can."""
     if robot.pulley_radius_m != 0.0:
         return "cables that run over pulleys are not enclosed"
-    if not isinstance(region, Prism | Rectangle | PointList):
+    if region.frame() is None:
         return "a region of this kind is not covered by boxes"
     return ""
 

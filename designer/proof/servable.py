@@ -24,7 +24,6 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
-from designer.model.region import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.proof.border import Boxes, border_m
@@ -85,7 +84,7 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
         boxes += part.step(int(min(_BATCH, budget.boxes - boxes)))
     whole = sum(part.whole for part in covers)
     impossible, possible = sum(part.no for part in covers), sum(part.yes for part in covers)
-    has_border = isinstance(space.region, Prism) and len(covers) == 1
+    has_border = space.region.volume_m3 is not None and len(covers) == 1
     border = covers[0].border_m() if has_border else np.empty((0, 3, 3))
     return Servable(impossible / whole, possible / whole, boxes, frozen_array(border))
 

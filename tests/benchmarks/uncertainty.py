@@ -32,7 +32,7 @@ from designer.analysis.uncertainty.draws import draws_at
 from designer.analysis.uncertainty.uncertainty import uncertainty_of
 from designer.effects.design import AsBuilt
 from designer.model.cable import Material
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Robot
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
 from designer.progress import SILENT

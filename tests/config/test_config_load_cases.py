@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from designer.errors import Fault
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.study import Study
 
 StudyOf = Callable[[str], Study]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import FloatArray
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.space import Orientations, Space
 from designer.proof.border import border_m
 from designer.proof.cover import Cover, covers_of

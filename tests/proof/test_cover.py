@@ -7,7 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from designer.arrays import FloatArray
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
+from designer.model.region import Region
 from designer.model.space import Orientations, Space
 from designer.proof.cover import Cover, covers_of
 from designer.proof.encloser import _turning_axes

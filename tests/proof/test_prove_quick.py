@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.cable import Cable, Material
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.prove import Budget, prove

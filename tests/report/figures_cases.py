@@ -14,7 +14,9 @@ from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.model.cable import Material
-from designer.model.region import PointList, Prism, Region
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.study import HangsBelow, Source, Study, Workspace
 

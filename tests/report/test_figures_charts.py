@@ -14,7 +14,7 @@ from figures_cases import CASES, THREE, maps_of, pose_at, solved
 from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.grades.registry import load_catalogue
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.report import format as fmt
 from designer.report.figures import canvas
 from designer.report.figures.charts_edge import edge_chart

@@ -14,7 +14,7 @@ from designer.analysis.maps import WorkspaceMaps, workspace_maps
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.io.config import read_study
-from designer.model.region import PointList
+from designer.model.point_list import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.report.design.scope import describe_orientations

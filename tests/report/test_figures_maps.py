@@ -10,13 +10,14 @@ import pytest
 from altered import altered
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
-from designer.analysis import grids
 from designer.analysis.edge import edge_profile, first_failure_m
 from designer.analysis.field import Field, cable_curves_m, chords_m, field_at, largest_sag
 from designer.analysis.maps import as_built, workspace_maps
 from designer.analysis.pose import analyse_pose
 from designer.io.config import read_study
-from designer.model.region import Prism
+from designer.model import polygon
+from designer.model.prism import Prism
+from designer.model.rings import outline_m
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.report.design.workspace_figures import edge_caption
@@ -43,20 +44,20 @@ def area_m2(grid_m: np.ndarray) -> float:
 class TestGrids:
     def test_centroid_of_a_triangle_is_the_mean_of_its_corners(self) -> None:
         corners = np.array([[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]]) + 1e6
-        assert grids.centroid_m(corners) == pytest.approx(corners.mean(axis=0), abs=1e-9)
+        assert polygon.centroid_m(corners) == pytest.approx(corners.mean(axis=0), abs=1e-9)
 
     def test_centroid_does_not_care_for_extra_corners_on_an_edge(self) -> None:
         more = np.insert(SQUARE, 1, [1.0, 0.0], axis=0)
-        assert grids.centroid_m(more) == pytest.approx([2.0, 2.0])
+        assert polygon.centroid_m(more) == pytest.approx([2.0, 2.0])
 
     @pytest.mark.parametrize(
         ("azimuth", "reach"), [(0.0, 3.0), (np.pi / 2, 2.0), (np.pi, 1.0), (np.pi / 4, 8**0.5)]
     )
     def test_reach_within_a_square(self, azimuth: float, reach: float) -> None:
-        assert grids.reach_m(SQUARE, np.array([1.0, 2.0]), azimuth) == pytest.approx(reach)
+        assert polygon.reach_m(SQUARE, np.array([1.0, 2.0]), azimuth) == pytest.approx(reach)
 
     def test_outline_is_closed_and_has_every_corner(self) -> None:
-        outline = grids.outline_m(SQUARE, 30)
+        outline = outline_m(SQUARE, 30)
         assert (outline[0] == outline[-1]).all()
         for corner in SQUARE:
             assert np.linalg.norm(outline - corner, axis=1).min() == 0.0
@@ -64,7 +65,7 @@ class TestGrids:
 
     def test_disc_fills_the_region_to_its_boundary(self) -> None:
         region = inset(10.35)
-        disc = grids.disc_m(region, -40.0, rings=40, spokes=60)
+        disc = region.section_m(0.5, rings=40, spokes=60)
         assert region.contains(disc).all()
         assert area_m2(disc) == pytest.approx(region.area_m2, rel=1e-9)
         assert np.ptp(disc[0], axis=0).max() == 0.0
@@ -72,7 +73,7 @@ class TestGrids:
 
     def test_one_cut_runs_through_the_pose_it_is_given(self) -> None:
         region, toward = inset(10.35), np.array([256.5, 10.35, -40.0])
-        cut = grids.cutaway_m(region, toward)["cut"]
+        cut = region.cutaway_m(toward)["cut"]
         assert np.linalg.norm(cut - toward, axis=-1).min() == pytest.approx(0.0, abs=1e-9)
 
     @pytest.mark.parametrize("azimuth", np.radians([-170.0, -90.0, 0.0, 59.9, 60.0, 123.0]))
@@ -80,19 +81,19 @@ class TestGrids:
         region = Prism.box((0.0, 4.0), (0.0, 4.0), (0.0, 1.0))
         centre = np.array([2.0, 2.0])
         toward = centre + 0.5 * np.array([np.cos(azimuth), np.sin(azimuth)])
-        top = grids.cutaway_m(region, toward)["top"]
+        top = region.cutaway_m(toward)["top"]
         ends = azimuth, azimuth + np.radians(100.0)
         corners = [a for a in np.radians([45, 135, -135, -45, 225, 315]) if ends[0] < a < ends[1]]
         rays = [
-            grids.reach_m(region.polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
+            polygon.reach_m(region.polygon_m, centre, a) * np.array([np.cos(a), np.sin(a)])
             for a in sorted({*ends, *corners})
         ]
         missing = sum(abs(a[0] * b[1] - a[1] * b[0]) / 2 for a, b in pairwise(rays))
         assert area_m2(top) == pytest.approx(16.0 - missing, rel=1e-9)
-        wall = grids.cutaway_m(region, toward)["wall"]
+        wall = region.cutaway_m(toward)["wall"]
         assert wall[0, 0, :2] - centre == pytest.approx(rays[0])
         assert wall[0, -1, :2] - centre == pytest.approx(rays[-1])
-        middle = grids.opening_azimuth_rad(region, toward)
+        middle = region.opening_azimuth_rad(toward)
         off = np.arctan2(*(wall[0, :, :2] - centre)[:, ::-1].T) - middle
         assert np.cos(off).max() == pytest.approx(np.cos(np.radians(50.0)), abs=1e-9)
 

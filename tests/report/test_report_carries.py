@@ -12,7 +12,6 @@ from report_parts import cells, said
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries import Carries
-from designer.analysis.reserve import widened
 from designer.analysis.result_json import result_dict
 from designer.analysis.sensitivities import sensitivities, with_payload
 from designer.documents.plain import json_text
@@ -74,7 +73,7 @@ def test_region_reserve_put_back_in_uses_all(found: Analysis) -> None:
     one, study = of(found), found.study
     assert one.region is not None
     assert study.workspace is not None
-    region = widened(study.workspace.region, one.region.value)
+    region = study.workspace.region.grown(one.region.value)
     loaded = one.governing.loaded
     met = verify(loaded.robot, replace(study.workspace, region=region), loaded.cable)
     assert met.utilisation == pytest.approx(1.0, abs=1e-4)

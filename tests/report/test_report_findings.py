@@ -7,8 +7,7 @@ import pytest
 from report_parts import said
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import distance_to_sides_m
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
@@ -98,7 +97,7 @@ def test_unserved_samples_lie_along_the_sides(analyses: dict[str, Analysis]) -> 
 def test_distance_to_sides() -> None:
     box = Prism.box((0.0, 10.0), (0.0, 4.0), (0.0, 1.0))
     positions = np.array([[5.0, 1.0, 0.5], [9.5, 2.0, 0.0], [0.0, 3.0, 1.0]])
-    assert distance_to_sides_m(box, positions) == pytest.approx([1.0, 0.5, 0.0])
+    assert box.depth_m(positions) == pytest.approx([1.0, 0.5, 0.0])
 
 
 def test_nothing_is_found_for_a_pose_alone(pose_only: Analysis) -> None:

@@ -11,13 +11,13 @@ import pytest
 import designer
 from designer.arrays import FloatArray
 from designer.model.border import Border
-from designer.model.region import Shape
+from designer.model.region import Region
 from designer.report.design.report import design_report
 from designer.report.render import render_html
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Segment(Shape):
+class Segment(Region):
     """A straight line, as `CONTRIBUTING.md` tells to write a region."""
 
     ends_m: FloatArray

@@ -12,7 +12,6 @@ import pytest
 from altered import altered
 from report_parts import facts, pictures, said, statements, tables
 
-from designer.analysis import grids
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.analysis.section import Section
@@ -168,10 +167,10 @@ workspace: {region: {points: [[15, 9, 4]]}, clearance: 0.1 m}
 
 @pytest.mark.parametrize("case", ["all", "some bad", "nothing", "limit"])
 def test_height_maps(case: str) -> None:
-    from designer.model.region import Prism
+    from designer.model.prism import Prism
 
     region = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
-    position = grids.disc_m(region, 1.5, 6, 24)
+    position = region.section_m(0.5, 6, 24)
     values = 1.0 + position[..., 0]
     bad = np.zeros(values.shape, dtype=bool)
     if case != "all":

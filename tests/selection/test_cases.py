@@ -16,7 +16,8 @@ from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.cable import Cable
 from designer.model.load_case import Ice, LoadCase, Wind
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.resources import example_file
 from designer.selection.cases import CaseFound, Cases, governing, searched_all, together

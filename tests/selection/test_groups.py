@@ -14,7 +14,8 @@ from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
 from designer.selection.candidate import Candidate, priced, undominated
 from designer.selection.groups.balance import balance_at

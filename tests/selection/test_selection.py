@@ -9,7 +9,7 @@ import pytest
 from ropes import rope
 
 from designer.grades.grade import Grade
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.selection.result import GradeOutcome
 from designer.selection.select import select

@@ -7,7 +7,7 @@ import math
 import pytest
 from ropes import rope
 
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import select
 from designer.study import Selection, Workspace

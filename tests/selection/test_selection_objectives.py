@@ -13,7 +13,8 @@ from ropes import rope
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.selection.candidate import common_currency
 from designer.selection.compare import dominator_of, is_undominated
 from designer.selection.objectives import MEANINGS, Figures

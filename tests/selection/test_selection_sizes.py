@@ -10,7 +10,8 @@ from ropes import rope
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.selection.verify import refined, verify, verify_sizes
 from designer.statics import sizes

@@ -15,7 +15,8 @@ from designer.grades.grade import Grade
 from designer.grades.stiffness import RelativeStiffness
 from designer.model.cable import Cable, Stiffening
 from designer.model.load_case import LoadCase, Wind
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.result import SelectionResult

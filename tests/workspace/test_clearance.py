@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from designer.arrays import frozen_array
 from designer.model.cable import Cable
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.physics import catenary
 from designer.statics.fixed_length import cables_of_length

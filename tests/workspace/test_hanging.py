@@ -9,7 +9,7 @@ import pytest
 
 from designer.arrays import frozen_array
 from designer.model.cable import Material
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging

@@ -11,7 +11,7 @@ from designer.analysis.analyse import analyse
 from designer.arrays import frozen_array
 from designer.cli.tables import summary_rows
 from designer.io.config import read_study
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
 from designer.report.design.source import Source

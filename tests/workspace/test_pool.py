@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from designer.model.region import Prism
+from designer.model.prism import Prism
 from designer.model.space import Orientations, Space
 from designer.workspace.pool import CELLS_A_SIDE, Pool
 

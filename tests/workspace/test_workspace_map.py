@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.model.region import CHUNK, PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.region import CHUNK
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
 from designer.sizing.newton import size_poses

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
-from designer.model.region import PointList, Prism
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N

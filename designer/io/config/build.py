@@ -31,7 +31,10 @@ from designer.model.cable import Material
 from designer.model.limits import Limits
 from designer.model.machine import Surroundings
 from designer.model.measurements import LogColumn, Measurements
-from designer.model.region import PointList, Prism, Rectangle, Region
+from designer.model.point_list import PointList
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
+from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
 from designer.plugins.find import Plugins, find_plugins

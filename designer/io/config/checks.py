@@ -22,7 +22,8 @@ from designer.io.config.parts import Parts, valid
 from designer.io.config.robot_checks import AT_MOST, LARGEST, ROBOT_CHECKS, rank
 from designer.measured.names import COVARIATE, IGNORE, cable_of, is_rotation
 from designer.model.measurements import POSES
-from designer.model.region import Prism, Rectangle
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
 from designer.spelling import did_you_mean
 from designer.units import describe
 

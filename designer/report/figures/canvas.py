@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import FloatArray
-from designer.model.region import PointList, Prism, Region
+from designer.model.region import Region
 from designer.report import format as fmt
 from designer.report.figures import palette
 
@@ -161,15 +161,11 @@ def legend(figure: Figure, looks: Sequence[tuple[str, Style]], loc: str, **layou
 
 def region(axes: Axes, shape: Region, plane: list[int], label: str = "") -> None:
     """Draw where the platform goes, seen along the axis that is not in the plane (2,)."""
-    if isinstance(shape, PointList):
-        points = shape.points_m[:, plane]
+    if shape.is_discrete:
+        points = np.concatenate([*shape.samples_m(1, "grid", 0)])[:, plane]
         axes.plot(*points.T, ".", color=palette.FAINT, markersize=2.5, label=label)
-        return
-    (left, low), (right, high) = shape.bounds_m[:, plane]
-    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
-    if isinstance(shape, Prism) and plane == [0, 1]:
-        corners = shape.polygon_m
-    axes.fill(*corners.T, **REGION, label=label)
+    else:
+        axes.fill(*shape.outline_m(plane).T, **REGION, label=label)
 
 
 def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray]]:

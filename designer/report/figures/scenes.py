@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from designer.analysis import grids
 from designer.analysis.field import body_lines_m, cable_curves_m, chords_m, largest_sag
 from designer.analysis.layers import Layers, layers_of
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
-from designer.model.region import Prism, Rectangle
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -275,10 +273,10 @@ def view_of(maps: WorkspaceMaps, frame: Frame = _PAGE.frame) -> View:
     exits = maps.study.robot.exit_points_m
     shown = exits[np.all((exits >= low) & (exits <= high), axis=1)]
     azimuth = float(np.radians(-60.0))
-    if isinstance(maps.region, Rectangle):
+    into = maps.region.opening_azimuth_rad(maps.focus.position_m)
+    if maps.region.is_upright:
         azimuth = facing_azimuth_rad(maps.region.along)
-    elif isinstance(maps.region, Prism):
-        into = grids.opening_azimuth_rad(maps.region, maps.focus.position_m)
+    elif into is not None:
         off_axis = (into + 0.25 * np.pi) % (0.5 * np.pi) - 0.25 * np.pi
         wanted = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
         azimuth = float(into + wanted - off_axis)
@@ -332,15 +330,14 @@ def add_workspace(
 
 def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
     """Return the edges of the opened region, each (n, 3) [m]."""
-    if isinstance(maps.region, Rectangle):
+    if "wall" not in maps.shell:
         return [maps.section.position_m[-1]]
-    assert isinstance(maps.region, Prism)
     wall = maps.shell["wall"].position_m
     cuts = [maps.shell[name].position_m for name in ("cut", "other_cut")]
     lines = [wall[0], wall[-1], cuts[0][:, 0]]
     for cut in cuts:
         lines += [cut[0], cut[-1], cut[:, -1]]
-    for corner in maps.region.polygon_m:
+    for corner in maps.region.outline_m([0, 1]):
         at = np.flatnonzero(np.linalg.norm(wall[0, :, :2] - corner, axis=1) < 1e-9)
         lines += [wall[:, index] for index in at[:1]]
     return lines

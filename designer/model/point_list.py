@@ -1,0 +1,73 @@
+"""A finite set of positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from designer.arrays import BoolArray, FloatArray, finite_array
+from designer.model.border import Border
+from designer.model.region import (
+    BoxFrame,
+    Plural,
+    Position,
+    Region,
+    Sampling,
+    Sizes,
+    in_chunks,
+)
+
+_MOST_VERTICES = 256
+"""Of a long list only the first points are tried as corners: all of it is tried anyway."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointList(Region):
+    """A finite set of positions, each of which is visited.
+
+    Parameters
+    ----------
+    points_m : array (n_points, 3)
+        Positions of the platform, world frame [m].
+    """
+
+    is_discrete: ClassVar[bool] = True
+
+    points_m: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points_m", finite_array("points_m", self.points_m, None, 3))
+
+    @property
+    def bounds_m(self) -> FloatArray:
+        return np.array([self.points_m.min(axis=0), self.points_m.max(axis=0)])
+
+    @property
+    def sizes(self) -> Sizes:
+        return ()
+
+    def words(self, position: Position, plural: Plural) -> str:
+        return f"a list of {plural(len(self.points_m), 'point')}"
+
+    def contains(self, points_m: FloatArray) -> BoolArray:
+        return np.asarray((self.nearest(points_m) == points_m).all(axis=-1))
+
+    def nearest(self, points_m: FloatArray) -> FloatArray:
+        return np.asarray(self.points_m[cKDTree(self.points_m).query(points_m)[1]])
+
+    def samples_m(self, count: int, sampling: Sampling, seed: int) -> Iterator[FloatArray]:
+        return in_chunks(self.points_m)
+
+    def inside_m(self, rng: np.random.Generator, count: int) -> FloatArray:
+        return self.points_m[rng.integers(len(self.points_m), size=count)]
+
+    def border(self) -> Border:
+        return Border(self.points_m[:_MOST_VERTICES], np.empty((0, 2, 3)), [])
+
+    def frame(self) -> BoxFrame:
+        """Return each point as a box without size."""
+        return BoxFrame(np.zeros(3), np.eye(3), self.points_m, self.points_m, np.zeros((0, 3)))
