@@ -16,7 +16,7 @@ from designer.model.load_case import STATIC
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.progress import SILENT, Reporter
-from designer.selection.candidate import Candidate, candidates_of, is_allowed, undominated
+from designer.selection.candidate import undominated
 from designer.selection.cases import Cases, governing, searched_all, together
 from designer.selection.groups.trials import verify_groups
 from designer.selection.verify import Verification
@@ -220,24 +220,22 @@ def unserved(question: Question, workspace: Workspace, positions_m: FloatArray) 
     """
     left = np.ones(len(positions_m), dtype=np.bool_)
     count = workspace.orientations.count
-    for product in _strongest_first(question):
+    strongest_first = sorted(
+        undominated(question.candidates),
+        key=lambda candidate: -candidate.cable.allowable_tension_N,
+    )
+    for candidate in strongest_first:
         at = np.flatnonzero(left)
         if not len(at):
             break
         for start in range(0, len(at), max(_PIECE // count, 1)):
             some = at[start : start + max(_PIECE // count, 1)]
             poses = Poses.at(workspace.space.places(positions_m[some]))
-            statics = solve_sagging(question.robot, poses, product.cable)
-            allowable = product.cable.allowable_tension_N
+            statics = solve_sagging(question.robot, poses, candidate.cable)
+            allowable = candidate.cable.allowable_tension_N
             used = demand_of(statics.largest_tension_N, statics, workspace.hangs_below)
             left[some] = (used.reshape(-1, count) > allowable).any(axis=1)
     return left
-
-
-def _strongest_first(question: Question) -> list[Candidate]:
-    grades = [g for g in question.catalogue.grades if is_allowed(g, question.selection.grades)]
-    products = undominated(candidates_of(question.selection, grades, question.built))
-    return sorted(products, key=lambda one: -one.cable.allowable_tension_N)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,14 +12,17 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
+from designer.grades.grade import Grade
 from designer.grades.kept import kept_catalogue
 from designer.grades.registry import Catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
 from designer.plugins.find import Plugins
-from designer.selection.cases import FEW_AT_FIRST, Cases, as_stiff_as, governing
+from designer.selection.candidate import Candidate, candidates_of, is_allowed
+from designer.selection.cases import FEW_AT_FIRST
 from designer.selection.efficiency import Allowance
+from designer.selection.select import at_samples
 from designer.selection.stiffening import as_it_meets
 from designer.statics.inverse import solve_sagging
 from designer.study import Selection, Study, Workspace, as_built_by, require_enough_cables
@@ -177,11 +181,30 @@ class Question:
                 cable,
                 lambda one: float(solve_sagging(self.robot, self.pose, one).largest_tension_N),
             )
-        each = self.study.load_cases or (STATIC,)
-        cases = Cases(self.robot, self.workspace, each, few=FEW_AT_FIRST)
-        cables = [[self._cable_of(rope, case)] for case in each]
-        (found,) = cases.sampled(cables, lambda _: None)
-        return as_stiff_as(cable, governing(found))
+        grade = self.catalogue.grade(rope.grade_id)
+        size = next(size for size in grade.sizes if size.id == rope.size_id)
+        (candidate,) = self._at_samples(self.workspace, [replace(grade, sizes=(size,))])
+        return candidate.cable
+
+    def _at_samples(self, workspace: Workspace, grades: Sequence[Grade]) -> list[Candidate]:
+        """Return all sizes of these grades with what they meet at few samples."""
+        few = replace(workspace, samples=min(FEW_AT_FIRST, workspace.samples))
+        selection = replace(self.selection, grades=tuple(grade.id for grade in grades))
+        return at_samples(few, selection, grades, self.built, self.study.load_cases)
+
+    @cached_property
+    def candidates(self) -> list[Candidate]:
+        """All ropes that the study allows, each as stiff as at the largest tension that it meets.
+
+        At few samples, as in `cable`.
+        """
+        grades = [g for g in self.catalogue.grades if is_allowed(g, self.selection.grades)]
+        candidates = candidates_of(self.selection, grades, self.built)
+        varying = {c.grade.id: c.grade for c in candidates if c.cable.stiffening is not None}
+        if self.workspace is None or not varying:
+            return candidates
+        sampled = self._at_samples(self.workspace, list(varying.values()))
+        return [c for c in candidates if c.grade.id not in varying] + sampled
 
 
 def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:

@@ -120,6 +120,13 @@ class Quick:
         return climbed(self.evenly.space, closer, places[at], float(demand[at]))
 
     @cached_property
+    def _candidates(self) -> list[Candidate]:
+        """Return all ropes with what they meet, each as stiff as at the largest tension of it."""
+        return at_samples(
+            self.workspace, self.selection, self._grades, self._built, self._study.load_cases
+        )
+
+    @cached_property
     def rope(self) -> Candidate:
         """Return the rope that would be chosen.
 
@@ -128,12 +135,9 @@ class Quick:
         NotHeldError
             If none holds.
         """
-        found = at_samples(
-            self.workspace, self.selection, self._grades, self._built, self._study.load_cases
-        )
-        holding = [one for one in found if one.verification.holds]
+        holding = [c for c in self._candidates if c.verification.holds]
         if not holding:
-            raise NotHeldError(*_why_no_rope(found))
+            raise NotHeldError(*_why_no_rope(self._candidates))
         decides: Objective = next(
             (o for o in self.selection.objectives if o != "stiffness"), "mass"
         )
@@ -206,8 +210,7 @@ class Quick:
     @property
     def usable_volume_m3(self) -> float:
         """What the rope serves that serves most [m³]."""
-        products = candidates_of(self.selection, self._grades, self._built)
-        cables = [one.cable for one in products]
+        cables = [candidate.cable for candidate in self._candidates]
         met = verify_sizes(self._built.robot, self.evenly, cables, gives_up=False)
         volume = self.evenly.region.volume_m3 or 0.0
         return volume * max(one.served for one in met)
@@ -359,17 +362,19 @@ def for_study(measure: Measure, study: Study) -> Measure:
 def promising(study: Study, grades: tuple[Grade, ...]) -> tuple[Grade, ...]:
     """Return the grades with those sizes that no other beats in mass, strength and stiffness.
 
-    Of a whole catalogue those are few; the verified result tries them all.
+    Of a whole catalogue those are few; the verified result tries them all. Of what tension sets the
+    stiffness is not known before a design is solved, so any tension counts.
     """
     if study.selection is None:
         return ()
     allowed = [grade for grade in grades if is_allowed(grade, study.selection.grades)]
-    products = candidates_of(study.selection, allowed, as_built_by(study))
+    candidates = candidates_of(study.selection, allowed, as_built_by(study))
     by_price = "cost" in study.selection.objectives
-    kept = {id(one.size) for one in undominated(products, by_price=by_price)}
+    unbeaten = undominated(candidates, by_price=by_price, at_any_tension=True)
+    sizes = {id(candidate.size) for candidate in unbeaten}
     trimmed = [
-        replace(grade, sizes=tuple(size for size in grade.sizes if id(size) in kept))
+        replace(grade, sizes=tuple(size for size in grade.sizes if id(size) in sizes))
         for grade in allowed
-        if any(id(size) in kept for size in grade.sizes)
+        if any(id(size) in sizes for size in grade.sizes)
     ]
     return tuple(trimmed)

@@ -157,30 +157,41 @@ def priced(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
 
 
 def undominated(
-    candidates: Sequence[Candidate], *, by_price: bool = False
+    candidates: Sequence[Candidate], *, by_price: bool = False, at_any_tension: bool = False
 ) -> tuple[Candidate, ...]:
     """Return the candidates that no other one beats, the lightest first.
 
     One beats another if it is not heavier, not stiffer, not weaker, and, where the price decides,
     not dearer. Weight and stiffness are what a cable loads the others with; so what holds with the
     beaten rope holds with the better one, as a rule. Of equal ropes the first one stays.
+
+    Stiffness is that of the cable as it is, see `designer.selection.stiffening`; with
+    ``at_any_tension`` a rope beats another only where it is not stiffer whatever either meets.
     """
-    figures = np.array(
-        [
-            (
-                candidate.cable.linear_density_kg_per_m,
-                -candidate.cable.allowable_tension_N,
-                candidate.cable.axial_stiffness_N,
-                (candidate.size.price_per_m or 0.0) if by_price else 0.0,
-            )
-            for candidate in candidates
-        ]
-    ).reshape(-1, 4)
+    figures = np.array([_burdens(c.cable, c.size, by_price) for c in candidates]).reshape(-1, 4)
+    softest, stiffest = figures.copy(), figures.copy()
+    if at_any_tension:
+        ranges = [_stiffness_range_N(candidate.cable) for candidate in candidates]
+        softest[:, 2], stiffest[:, 2] = np.array(ranges).reshape(-1, 2).T
 
     def is_beaten(k: int) -> bool:
-        beats = (figures <= figures[k]).all(axis=1)
-        is_better = (figures < figures[k]).any(axis=1)
+        beats = (stiffest <= softest[k]).all(axis=1)
+        is_better = (stiffest < softest[k]).any(axis=1)
         return bool((beats & (is_better | (np.arange(len(figures)) < k))).any())
 
     unbeaten = [k for k in range(len(figures)) if not is_beaten(k)]
     return tuple(candidates[k] for k in sorted(unbeaten, key=lambda k: tuple(figures[k])))
+
+
+def _burdens(cable: Cable, size: Size, by_price: bool) -> tuple[float, float, float, float]:
+    """Return what a rope is to have little of."""
+    price = (size.price_per_m or 0.0) if by_price else 0.0
+    weight, strength = cable.linear_density_kg_per_m, cable.allowable_tension_N
+    return weight, -strength, cable.axial_stiffness_N, price
+
+
+def _stiffness_range_N(cable: Cable) -> tuple[float, float]:
+    """Return the least and the largest EA that a rope can have [N]."""
+    law = cable.stiffening
+    stiffnesses = (cable.axial_stiffness_N,) if law is None else law.axial_stiffness_N
+    return min(stiffnesses), max(stiffnesses)

@@ -23,7 +23,6 @@ from designer.model.robot import Poses
 from designer.model.verdict import Verdict
 from designer.plugins.find import Plugins
 from designer.proof.prove import WITHIN
-from designer.selection.candidate import candidates_of, is_allowed
 from designer.statics.inverse import solve_sagging
 
 WIRE = "unirope-7x19-galvanised"
@@ -288,9 +287,8 @@ def test_what_no_rope_serves(yard: Session) -> None:
     question = question_of(yard)
     assert question.workspace is not None
     some = question.workspace.thinned(60)
-    grades = [g for g in question.catalogue.grades if is_allowed(g, question.selection.grades)]
     least = np.full(len(some), np.inf)
-    for one in candidates_of(question.selection, grades, question.built):
+    for one in question.candidates:
         statics = solve_sagging(question.robot, Poses.at(some), one.cable)
         used = statics.largest_tension_N / one.cable.allowable_tension_N
         least = np.fmin(least, used)

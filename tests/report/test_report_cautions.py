@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from altered import altered
 from report_cases import DEFAULTS, FAST
 from report_parts import cells
 from test_report_groups import YARD
@@ -86,7 +87,7 @@ def test_limits_of_the_grade_are_cautions(
         for o in fibre.selection.outcomes
     )
     selection = dataclasses.replace(fibre.selection, chosen=other, outcomes=outcomes)
-    page = page_of(dataclasses.replace(fibre, selection=selection))
+    page = page_of(altered(fibre, selection=selection))
     found = {s.title: s for s in page.confidence}
     assert titles == {t for t in found if t.startswith("Creep") or t == "Temperature"}
     assert all(found[title].tone == "doubt" for title in titles)

@@ -18,6 +18,7 @@ from designer.model.load_case import LoadCase, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.selection.candidate import candidates_of, undominated
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
@@ -165,3 +166,17 @@ def test_groups_have_the_stiffness_at_their_largest_tension() -> None:
     for product in choice.chosen.ropes:
         expected = product.cable.at_tension(tension_N).axial_stiffness_N
         assert product.cable.axial_stiffness_N == pytest.approx(expected, rel=1e-3)
+
+
+def test_no_rope_is_beaten_by_one_that_may_be_the_stiffer() -> None:
+    """A weaker rope that is softer where both may be: it is what is met that tells."""
+    (strong,) = candidates_of(Selection(), [fibre(diameters_mm=(6.0,))], AsBuilt(ROBOT))
+    breaking_N = 0.9 * strong.cable.allowable_tension_N
+    weak = replace(strong, cable=replace(strong.cable, allowable_tension_N=breaking_N))
+    assert undominated([strong, weak]) == (strong,)
+    assert undominated([strong, weak], at_any_tension=True) == (strong, weak)
+    assert weak.cable.stiffening is not None
+    stiffest_N = max(weak.cable.stiffening.axial_stiffness_N)
+    steel = replace(weak.cable, axial_stiffness_N=stiffest_N, stiffening=None)
+    stiff = replace(weak, cable=steel)
+    assert undominated([strong, stiff], at_any_tension=True) == (strong,)
