@@ -82,10 +82,10 @@ def require_number(
         raise ValueError(f"{name} must be finite, not {value:g}")
 
 
-def require_one_of(name: str, given: Iterable[object], known: Sequence[object]) -> None:
+def require_one_of(name: str, values: Iterable[object], known: Sequence[object]) -> None:
     """Raise ValueError unless everything given is known, and nothing is given twice."""
     seen: set[object] = set()
-    for value in given:
+    for value in values:
         if value not in known:
             raise ValueError(f"{name}: {value!r} is none of {', '.join(map(str, known))}")
         if value in seen:

@@ -60,9 +60,9 @@ class Fault:
 
     def __str__(self) -> str:
         place = self.file if self.line is None else f"{self.file}:{self.line}"
-        what = f"{self.field}: {self.problem}" if self.field else self.problem
+        problem = f"{self.field}: {self.problem}" if self.field else self.problem
         hint = f" (expected {self.expected})" if self.expected else ""
-        return " ".join(f"{place}: {what}{hint}".split())
+        return " ".join(f"{place}: {problem}{hint}".split())
 
 
 class InputError(DesignerError):

@@ -10,24 +10,24 @@ import numpy as np
 from designer.arrays import IntArray
 
 
-def nearest_name(given: str, names: Iterable[str]) -> str | None:
+def nearest_name(text: str, names: Iterable[str]) -> str | None:
     """Return the name most like the given one, letter case apart first; None for nothing like it.
 
     Parameters
     ----------
-    given : str
+    text : str
         What stands in the file.
     names : iterable of str
         What might have been meant.
     """
     known = list(names)
-    same_letters = [name for name in known if name.casefold() == given.casefold()]
-    return next(iter(same_letters or get_close_matches(given, known, n=1)), None)
+    same_letters = [name for name in known if name.casefold() == text.casefold()]
+    return next(iter(same_letters or get_close_matches(text, known, n=1)), None)
 
 
-def did_you_mean(given: str, names: Iterable[str]) -> str:
+def did_you_mean(text: str, names: Iterable[str]) -> str:
     """Return a hint to add to what is expected; empty where no name is near."""
-    nearest = nearest_name(given, names)
+    nearest = nearest_name(text, names)
     return f"; did you mean '{nearest}'?" if nearest else ""
 
 

@@ -462,4 +462,6 @@ def as_built_by(study: Study, section_m: float | None = None, *, mounted: bool =
 
 def rope_effects(study: Study) -> tuple[str, ...]:
     """Return the declared effects that belong to a rope, by their ids."""
-    return tuple(one.effect.id for one in declared_settings(study) if one.effect.of_rope)
+    return tuple(
+        setting.effect.id for setting in declared_settings(study) if setting.effect.of_rope
+    )

@@ -89,12 +89,12 @@ class QuantityError(ValueError):
         self.problem, self.expected = problem, expected
 
 
-def read_quantity(given: object, dimension: Dimension) -> float:
-    """Return the SI value of ``given``.
+def read_quantity(value: object, dimension: Dimension) -> float:
+    """Return the SI value of ``value``.
 
     Parameters
     ----------
-    given : int, float or str
+    value : int, float or str
         A bare number, which is SI already, or a text that may carry a unit.
     dimension : Dimension
         What kind of quantity it has to be.
@@ -110,17 +110,17 @@ def read_quantity(given: object, dimension: Dimension) -> float:
         If it is no number, not finite, or has an unknown unit or one of another dimension.
     """
     try:
-        return _read(given, dimension)
+        return _read(value, dimension)
     except _MisreadError as error:
-        raise error.about(given, dimension.expected) from None
+        raise error.about(value, dimension.expected) from None
 
 
-def split_quantity(given: object) -> tuple[float, str] | None:
+def split_quantity(value: object) -> tuple[float, str] | None:
     """Return number and unit of a quantity as they are written; None for what is none."""
-    number = _NUMBER.match(str(given).strip())
-    if number is None or isinstance(given, bool):
+    number = _NUMBER.match(str(value).strip())
+    if number is None or isinstance(value, bool):
         return None
-    return float(number[0]), str(given).strip()[number.end() :].strip()
+    return float(number[0]), str(value).strip()[number.end() :].strip()
 
 
 def in_SI(given: object) -> float:
@@ -152,17 +152,17 @@ def format_SI(value: float, dimension: Dimension) -> str:
     return f"{shown} {dimension.unit}".rstrip()
 
 
-def describe(given: object) -> str:
+def describe(value: object) -> str:
     """Name a value of a file within an error message, cut short and free of control codes."""
-    if given is None:
+    if value is None:
         return "an empty value"
-    if isinstance(given, bool):
-        return str(given).lower()
-    if isinstance(given, str):
-        return repr(given if len(given) <= _LONGEST_TEXT else given[:_LONGEST_TEXT] + "…")
-    if isinstance(given, int | float):
-        return f"{_as_float(given):.10g}"
-    return "a mapping" if isinstance(given, dict) else "a list"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return repr(value if len(value) <= _LONGEST_TEXT else value[:_LONGEST_TEXT] + "…")
+    if isinstance(value, int | float):
+        return f"{_as_float(value):.10g}"
+    return "a mapping" if isinstance(value, dict) else "a list"
 
 
 class _MisreadError(Exception):
@@ -170,10 +170,10 @@ class _MisreadError(Exception):
         super().__init__(problem)
         self.problem, self.instead, self.nearest = problem, instead, nearest
 
-    def about(self, given: object, expected: str) -> QuantityError:
+    def about(self, value: object, expected: str) -> QuantityError:
         """Return the error about a value of a file."""
         hint = f"; did you mean '{self.nearest}'?" if self.nearest else ""
-        return QuantityError(f"{describe(given)} {self.problem}", (self.instead or expected) + hint)
+        return QuantityError(f"{describe(value)} {self.problem}", (self.instead or expected) + hint)
 
 
 def _read(given: object, dimension: Dimension) -> float:

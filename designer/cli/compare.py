@@ -60,17 +60,17 @@ def compare(
 
 
 def _print_comparison(
-    found: Comparison, names: tuple[str, str], folder: Path, written: Sequence[str]
+    comparison: Comparison, names: tuple[str, str], folder: Path, written: Sequence[str]
 ) -> None:
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
     from designer.report.comparison import change, shown
 
-    if found.is_same:
+    if comparison.is_same:
         show("Nothing differs.")
     table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
-    for line in (*found.inputs, *found.answers, *found.unmet):
+    for line in (*comparison.inputs, *comparison.answers, *comparison.unmet):
         if line.differs:
             values = (shown(line.path, one) for one in (line.a, line.b))
             table.add_row(*map(escape, (line.label or line.path, *values, change(line))))

@@ -150,7 +150,7 @@ def _require_valid(
         section = checked(document, SHIPPED)
         study_of(section, document, path, SHIPPED, plugins)
     except InputError as error:
-        faults = [replace(one, line=None) for one in error.faults if one.field not in marked]
+        faults = [replace(fault, line=None) for fault in error.faults if fault.field not in marked]
         if faults:
             raise InputError(faults) from None
 

@@ -71,17 +71,17 @@ def optimise(
         ]
         bars = stack.enter_context(ProgressBars())
         with ends_gently() as stop:
-            found = optimum_of(laid_out, bars, stop)
-        write_optimum(found, building, folder, template, bars)
-        for place, analysis in zip(places, (found.given, found.optimised), strict=True):
+            optimum = optimum_of(laid_out, bars, stop)
+        write_optimum(optimum, building, folder, template, bars)
+        for place, analysis in zip(places, (optimum.given, optimum.optimised), strict=True):
             write_report_pages(analysis, place, template, bars)
             write_results(analysis, place)
         written = file_names(building)
     print_left_out(filter(None, [why_no_scenes()]))
-    _print_summary(found)
+    _print_summary(optimum)
     text = f"{folder}: {', '.join(written)}; full reports in given and optimised"
     show(text, markup=False)
-    if not found.is_better:
+    if not optimum.is_better:
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
@@ -93,11 +93,11 @@ def _print_summary(found: Optimum) -> None:
 
     show(headline(found), markup=False)
     table = bare_table("", "given", "optimised", "bounds")
-    for one, value in zip(found.plan.variables, found.best.values, strict=True):
-        ends = [f"{x:g} {one.unit}".rstrip() for x in (one.low, one.high)]
-        given = "" if one.given is None else f"{one.given:g} {one.unit}".rstrip()
-        now = f"{value:g} {one.unit}".rstrip()
-        table.add_row(*map(escape, (one.name, given, now, " to ".join(ends))))
+    for variable, value in zip(found.plan.variables, found.best.values, strict=True):
+        ends = [f"{x:g} {variable.unit}".rstrip() for x in (variable.low, variable.high)]
+        given = "" if variable.given is None else f"{variable.given:g} {variable.unit}".rstrip()
+        now = f"{value:g} {variable.unit}".rstrip()
+        table.add_row(*map(escape, (variable.name, given, now, " to ".join(ends))))
     show(table)
     for line in trust_lines(found):
         show(line, markup=False)

@@ -28,7 +28,7 @@ def catalogue_of(study: Study, plugins: Plugins) -> Catalogue:
     from designer.grades.registry import load_catalogue
 
     catalogue = load_catalogue(study.catalogues, plugins=plugins)
-    told = study.known_effects.problems
-    print_left_out(problem for problem in catalogue.problems if problem not in told)
+    problems = study.known_effects.problems
+    print_left_out(problem for problem in catalogue.problems if problem not in problems)
     catalogue.require_grades_of(study)
     return catalogue

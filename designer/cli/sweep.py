@@ -78,10 +78,10 @@ def sweep(
                 why = f"ended with {done}, which stay; the same command goes on"
                 print_left_out([f"{path}: {why}"])
                 raise typer.Exit(INTERRUPTED)
-        found = read_store(path)
-        write_sweep(found, plan.stem, building, template)
+        dataset = read_store(path)
+        write_sweep(dataset, plan.stem, building, template)
         written = file_names(building)
-    _print_summary(found)
+    _print_summary(dataset)
     show(f"{path}, {folder}: {', '.join(written)}", markup=False)
 
 

@@ -66,8 +66,12 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
     for need in analysis.needs:
-        met = need.found.verification
-        text = _extreme(need.diameter_m, met.max_tension_N) if need.is_held else bad("no cable")
+        verification = need.found.verification
+        text = (
+            _extreme(need.diameter_m, verification.max_tension_N)
+            if need.is_held
+            else bad("no cable")
+        )
         yield f"  {escape(need.found.case.name)}", text
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
@@ -129,10 +133,11 @@ def _summary_of_selection(
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
     for one in chosen.cases:
         if one.case is not STATIC:
-            met, cable = one.verification, one.most_used
-            at = ", ".join(f"{x:.4g}" for x in met.worst_place[:3])
+            verification, cable = one.verification, one.most_used
+            at = ", ".join(f"{x:.4g}" for x in verification.worst_place[:3])
             more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
-            used = f"{met.utilisation:.1%}, cable {cable} with {met.max_tension_N / 1e3:.4g} kN"
+            tension = f"{verification.max_tension_N / 1e3:.4g} kN"
+            used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
             yield f"  {escape(one.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
@@ -302,9 +307,9 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
 def _left(check: Check) -> Iterator[Row]:
     for name, scale, unit in _MEASURED:
         for label, model in check.models:
-            left = model.length_m if name == "length" else model.tension_N
-            if left is not None:
-                found = (left.rms.value, left.rms.low, left.rms.high, left.median)
+            length_m = model.length_m if name == "length" else model.tension_N
+            if length_m is not None:
+                found = (length_m.rms.value, length_m.rms.low, length_m.rms.high, length_m.median)
                 value, low, high, median = (f"{scale * x:.4g}" for x in found)
                 yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
     for label, model in check.models:

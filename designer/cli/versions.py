@@ -45,7 +45,7 @@ def _required() -> list[str]:
     except PackageNotFoundError:  # a checkout on Python's path
         return []
     names = (_NAME.match(one) for one in asked if "extra ==" not in one)
-    return [found[0] for found in names if found]
+    return [name[0] for name in names if name]
 
 
 def _linear_algebra() -> str:

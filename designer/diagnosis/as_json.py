@@ -26,7 +26,7 @@ Json = dict[str, Any]
 
 def diagnosis_dict(diagnosis: Diagnosis) -> Json:
     """Return everything that ``diagnosis.json`` holds; a missing number is None."""
-    where = diagnosis.left_in
+    left_in = diagnosis.left_in
     answer = {
         "format": DIAGNOSIS_FORMAT,
         "name": diagnosis.study.name,
@@ -47,8 +47,8 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         "not_plausible": diagnosis.doubts,
         "unexplained": {
             **_structure(diagnosis.structure_after),
-            "reading": where and where.reading,
-            "rows": where.rows if where else [],
+            "reading": left_in and left_in.reading,
+            "rows": left_in.rows if left_in else [],
         },
         "scatter": {"present": diagnosis.is_scattered, **diagnosis.scatter},
         **_errors(diagnosis),
@@ -56,12 +56,12 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         "balance": _balance(diagnosis),
         "proposals": [
             {
-                "found": one.found,
-                "rival": one.rival,
-                "poses": one.positions_m.tolist(),
-                "separation": one.separation.tolist(),
+                "found": proposal.found,
+                "rival": proposal.rival,
+                "poses": proposal.positions_m.tolist(),
+                "separation": proposal.separation.tolist(),
             }
-            for one in diagnosis.proposals
+            for proposal in diagnosis.proposals
         ],
         "design": {
             "before": diagnosis.design_before and asdict(diagnosis.design_before),
@@ -121,15 +121,18 @@ def effects_table(declared: tuple[DeclaredEffect, ...]) -> Json:
 
 
 def _by_model(
-    models: Mapping[str, Model | None], shown: Callable[[Model], Json | None]
+    models: Mapping[str, Model | None], function: Callable[[Model], Json | None]
 ) -> Json | None:
     """Return one thing of each model; None where it was not measured."""
-    found = {name: shown(model) for name, model in models.items() if model is not None}
+    found = {name: function(model) for name, model in models.items() if model is not None}
     return None if all(one is None for one in found.values()) else found
 
 
 def _rows(outliers: tuple[Outlier, ...], measured: Measured) -> Json:
-    told = [{"row": one.row, "reading": one.channel, "size": one.size} for one in outliers]
+    told = [
+        {"row": outlier.row, "reading": outlier.channel, "size": outlier.size}
+        for outlier in outliers
+    ]
     poses = "measured" if measured.has_poses else "estimated"
     return {"outliers": told, "notes": measured.notes, "poses": poses}
 
@@ -152,14 +155,14 @@ def _provenance(study: Study, measured: Measured) -> Json:
 
 def _balance(diagnosis: Diagnosis) -> Json | None:
     """Return how far poses are from balance, over the weight, where cables let them sway."""
-    left = diagnosis.imbalance
-    if left is None:
+    imbalance = diagnosis.imbalance
+    if imbalance is None:
         return None
-    held = left[~np.isnan(left)]
+    held = imbalance[~np.isnan(imbalance)]
     return {
         "left_median": float(np.median(held)) if held.size else None,
         "left_largest": float(held.max()) if held.size else None,
-        "rows_not_held": int(left.size - held.size),
+        "rows_not_held": int(imbalance.size - held.size),
     }
 
 

@@ -238,7 +238,7 @@ def _held(problem: Problem, settings: tuple[Setting, ...]) -> BoolArray:
 
 
 def _model(
-    problem: Problem, settings: tuple[Setting, ...], held: BoolArray, compared: BoolArray
+    problem: Problem, settings: tuple[Setting, ...], mask: BoolArray, compared: BoolArray
 ) -> Model:
     residual = problem.readings - problem.predicted(settings).stacked
     length_m, tension_N = np.hsplit(residual, 2)
@@ -246,7 +246,7 @@ def _model(
     return Model(
         settings=settings,
         residual=residual,
-        n_not_held=int((~held).sum()),
+        n_not_held=int((~mask).sum()),
         length_m=_left(length_m, compared),
         tension_N=_left(tension_N, compared),
         foretold=foretell(problem, settings, compared & has_lengths),

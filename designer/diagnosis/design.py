@@ -40,22 +40,22 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     study = diagnosis.study
     if study.workspace is None or study.selection is None or not study.robot.has_enough_cables:
         return diagnosis
-    first = _selected(study, grades)
+    selected = _selected(study, grades)
     reaching = [
         s.effect for s in (*diagnosis.given, *diagnosis.settings) if s.effect.reaches_design
     ]
     better = replace(study, effects=declared_by(diagnosis))
     is_other = any(not effect.of_rope for effect in reaching)
-    last = _selected(better, grades) if is_other else first
+    last = _selected(better, grades) if is_other else selected
     mounted = mounted_use(study)
     kept = None  # where the product chosen before is as good as any
-    before, after = first.product, last.product
+    before, after = selected.product, last.product
     if before is not None and (after is None or after.name != before.name):
         cable = Allowance.of(study.selection).cable(before.grade, before.size)
         kept = _use(last.built.of_products, study.workspace, cable)
     return replace(
         diagnosis,
-        design_before=first.choice,
+        design_before=selected.choice,
         design_after=last.choice,
         kept=kept,
         mounted_before=mounted,
@@ -87,7 +87,7 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
         built=built,
         load_cases=study.load_cases,
     )
-    found = Choice(
+    choice = Choice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
         diameter_m=chosen.size.diameter_m if chosen else math.nan,
@@ -96,7 +96,7 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
         optimum_tension_N=worst.max_tension_N if worst else math.nan,
         utilisation=chosen.verification.utilisation if chosen else math.nan,
     )
-    return _Selected(found, chosen, built)
+    return _Selected(choice, chosen, built)
 
 
 def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
@@ -118,16 +118,18 @@ def mounted_use(study: Study) -> Use | None:
         return None
     if rope.minimum_breaking_load_N is None:
         return None
-    left = selection.termination_efficiency
+    termination_efficiency = selection.termination_efficiency
     if selection.sheave_diameter_m and rope.diameter_m:
         bent = bending_efficiency(selection.sheave_diameter_m / rope.diameter_m)
         if math.isnan(bent):  # outside the rule
             return None
-        left = min(left, bent)
+        termination_efficiency = min(termination_efficiency, bent)
     cable = Cable(
         diameter_m=rope.diameter_m or math.nan,
         linear_density_kg_per_m=rope.linear_density_kg_per_m,
         axial_stiffness_N=rope.axial_stiffness_N,
-        allowable_tension_N=rope.minimum_breaking_load_N * left / selection.safety_factor,
+        allowable_tension_N=rope.minimum_breaking_load_N
+        * termination_efficiency
+        / selection.safety_factor,
     )
     return _use(as_built_by(study, mounted=True), workspace, cable)

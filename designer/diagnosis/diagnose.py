@@ -64,8 +64,8 @@ def diagnose_study(
         except EffectError as failure:
             if failure.effect_id in asked_for:
                 raise
-            known = study.known_effects.without(failure.effect_id, f"{failure}: left out")
-            study = replace(study, known_effects=known)
+            without = study.known_effects.without(failure.effect_id, f"{failure}: left out")
+            study = replace(study, known_effects=without)
 
 
 def diagnose(case: Case, progress: Callable[[str], None] = lambda _: None) -> Diagnosis:
@@ -177,14 +177,15 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
 def _finding(outcome: Outcome, effect: Effect, gain: Gain) -> Finding:
     search, searcher = outcome.search, outcome.searcher
     rivals = searcher.rivals(search.found, effect, search.fit, search.steps)
-    found = _estimates(search.fit)[effect.key]
+    estimate = _estimates(search.fit)[effect.key]
     is_near = all(
-        abs(found[p.name].value - p.neutral) < 2 * found[p.name].std for p in effect.parameters
+        abs(estimate[p.name].value - p.neutral) < 2 * estimate[p.name].std
+        for p in effect.parameters
     )
     doubt = "no value of it is further from doing nothing than twice its standard deviation"
     return Finding(
         effect=effect,
-        parameters=found,
+        parameters=estimate,
         rivals=tuple(dict.fromkeys(r.key for r in rivals)),
         heldout_gain=gain.share,
         heldout_gain_std=gain.std,
@@ -198,10 +199,10 @@ def _doubts(case: Case, model: Fit) -> Iterator[str]:
     for effect in case.given:
         for p in effect.parameters:
             low, high = (p.neutral + _UNKNOWN * (end - p.neutral) for end in p.plausible)
-            found = estimates[effect.key][p.name]
-            if not low - 2 * found.std <= found.value <= high + 2 * found.std:
+            estimate = estimates[effect.key][p.name]
+            if not low - 2 * estimate.std <= estimate.value <= high + 2 * estimate.std:
                 yield (
-                    f"{effect.key}: {p.name} = {found.value:.4g} {p.unit} is not plausible "
+                    f"{effect.key}: {p.name} = {estimate.value:.4g} {p.unit} is not plausible "
                     f"({low:.4g} to {high:.4g} would be)"
                 )
 

@@ -20,7 +20,7 @@ _MOST_CARRIERS = 4
 def drifting(
     problem: Problem,
     model: Fit,
-    found: Sequence[Effect],
+    effects: Sequence[Effect],
     structure: Structure,
     rows: BoolArray,
 ) -> Withdrawn | None:
@@ -34,7 +34,7 @@ def drifting(
     """
     from scipy.stats import chi2
 
-    keys = {effect.key for effect in found}
+    keys = {effect.key for effect in effects}
     limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
     unclipped = problem.residual(model.settings)
     residual = np.clip(unclipped, -limit, limit)

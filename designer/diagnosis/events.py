@@ -194,8 +194,8 @@ def _ends(residual: FloatArray, predicted: FloatArray) -> Iterator[Event]:
                 yield event
 
 
-def _end_of(own: FloatArray, left: FloatArray, text: str) -> Event | None:
-    """Return the saturation of one reading that grows with ``own``; see `find_events`.
+def _end_of(values: FloatArray, left: FloatArray, text: str) -> Event | None:
+    """Return the saturation of one reading that grows with ``values``; see `find_events`.
 
     Of all knees, the one is taken at which a bend explains most. Beyond it readings must not follow
     what is predicted at all; a gain or another law makes them follow by another measure.
@@ -205,20 +205,20 @@ def _end_of(own: FloatArray, left: FloatArray, text: str) -> Event | None:
     centred = left - np.median(left)
     variance = float(np.sum((centred - centred.mean()) ** 2))
     best, slope, at = 0.0, 0.0, 0.0
-    for knee in np.quantile(own, _KNEES):
-        beyond = np.maximum(own - knee, 0.0)
+    for knee in np.quantile(values, _KNEES):
+        beyond = np.maximum(values - knee, 0.0)
         beyond = beyond - beyond.mean()
         size = float(beyond @ beyond)
-        if np.sum(own > knee) >= _LEAST_ROWS and size > 0.0:
+        if np.sum(values > knee) >= _LEAST_ROWS and size > 0.0:
             along = float(beyond @ centred)
             if along**2 / size > best:
                 best, slope, at = along**2 / size, along / size, float(knee)
-    if not _FULL_SLOPE[0] < -slope < _FULL_SLOPE[1] or not (own > at).any():
+    if not _FULL_SLOPE[0] < -slope < _FULL_SLOPE[1] or not (values > at).any():
         return None
     # Such a correlation is as probable by accident in any knee, end and reading, 16 of them on
     # eight cables.
     looks = 2 * len(_KNEES) * 16
-    chance = looks * beta.sf(best / variance, 0.5, 0.5 * (len(own) - 2))
+    chance = looks * beta.sf(best / variance, 0.5, 0.5 * (len(values) - 2))
     return Event(text, best / variance, float(min(1.0, chance)))
 
 

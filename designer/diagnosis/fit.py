@@ -83,10 +83,10 @@ def with_places(settings: Sequence[Setting]) -> Iterator[tuple[Setting, slice]]:
 
 
 def starting_vector(
-    effects: Sequence[Effect], known: Sequence[Setting], start: Values
+    effects: Sequence[Effect], settings: Sequence[Setting], start: Values
 ) -> FloatArray:
     """Return values to start from: those known, else ``start``, else a typical change."""
-    found = {setting.effect.key: setting.values for setting in known}
+    found = {setting.effect.key: setting.values for setting in settings}
     vector = []
     for effect in effects:
         values = found.get(effect.key, start)
@@ -165,15 +165,15 @@ def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) ->
     """Return the slopes of the residual (n_rows, 2 n_cables, n_parameters)."""
 
     def compute() -> FloatArray:
-        here = problem.residual(settings_at(effects, vector))
+        residual = problem.residual(settings_at(effects, vector))
         parameters = [p for effect in effects for p in effect.parameters]
-        slopes = np.empty((*here.shape, len(parameters)))
+        slopes = np.empty((*residual.shape, len(parameters)))
         for k, p in enumerate(parameters):
             moved = vector.copy()
             # So short that one side will do, and far above the solver's residual.
             moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
             there = problem.residual(settings_at(effects, moved))
-            slopes[..., k] = (there - here) / (moved[k] - vector[k])
+            slopes[..., k] = (there - residual) / (moved[k] - vector[k])
         return slopes
 
     key = (problem.noise, *(effect.key for effect in effects), vector.tobytes())
@@ -183,7 +183,7 @@ def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) ->
 def _fit_from(
     problem: Problem,
     effects: Sequence[Effect],
-    taken: BoolArray,
+    mask: BoolArray,
     start: FloatArray,
     turns: int,
     tolerance: float,
@@ -195,9 +195,9 @@ def _fit_from(
     inside = np.clip(start, low + 1e-9 * (high - low), high - 1e-9 * (high - low))
     for _ in range(5):  # until the distrust of readings agrees with what the fit leaves
         answer = least_squares(
-            lambda v: problem.residual(settings_at(effects, v))[taken],
+            lambda v: problem.residual(settings_at(effects, v))[mask],
             inside,
-            jac=lambda v: jacobian(problem, effects, v)[taken],
+            jac=lambda v: jacobian(problem, effects, v)[mask],
             bounds=(low, high),
             x_scale=[p.typical for p in parameters],
             loss="huber",
@@ -209,14 +209,14 @@ def _fit_from(
         if not problem.predict.trust_anew(settings_at(effects, answer.x), problem.noise):
             break
         inside = answer.x
-    loss, count = 2.0 * float(answer.cost), problem.free_readings(taken)
+    loss, count = 2.0 * float(answer.cost), problem.free_readings(mask)
     variance = max(1.0, loss / max(count - len(start), 1))
     # Slopes are scaled by Huber's weights, so that outliers add no certainty.
-    slopes = np.zeros((*taken.shape, len(start)))
-    slopes[taken] = answer.jac
-    residual = np.full(taken.shape, np.nan)
+    slopes = np.zeros((*mask.shape, len(start)))
+    slopes[mask] = answer.jac
+    residual = np.full(mask.shape, np.nan)
     limit = HUBER * np.sqrt(variance)
-    residual[taken] = np.clip(answer.fun, -limit, limit)
+    residual[mask] = np.clip(answer.fun, -limit, limit)
     settings = settings_at(effects, answer.x)
     std, inflation, wald = _doubts(settings, slopes, residual, variance)
     return Fit(settings, answer.x, std, loss, count, inflation, wald)

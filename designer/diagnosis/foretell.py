@@ -70,29 +70,29 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     built = problem.predict.built(settings)
     force = added_force_N(built, measured)
     rotation = measured.poses.rotation
-    there = Poses(
+    poses = Poses(
         measured.poses.position_m[rows], rotation if rotation.ndim == 2 else rotation[rows]
     )
-    found = solve_forward(
-        built.robot, built.cable, true.length_m[rows], there, None if force is None else force[rows]
+    forward_statics = solve_forward(
+        built.robot, built.cable, true.length_m[rows], poses, None if force is None else force[rows]
     )
     block = block_of(len(chosen))[rows]
-    away = np.linalg.norm(found.poses.position_m - there.position_m, axis=-1)
-    tension = true.tension_N[rows] - found.statics.exit_tension_N
+    away = np.linalg.norm(forward_statics.poses.position_m - poses.position_m, axis=-1)
+    tension = true.tension_N[rows] - forward_statics.statics.exit_tension_N
     return Foretold(
         n_rows=rows.size,
-        n_solved=int(found.statics.is_solved.sum()),
+        n_solved=int(forward_statics.statics.is_solved.sum()),
         position_m=bootstrap(away[:, None], block),
         turn_rad=None
         if built.robot.is_point_mass
-        else bootstrap(_turn_rad(found.poses, there)[:, None], block),
+        else bootstrap(_turn_rad(forward_statics.poses, poses)[:, None], block),
         tension_N=None if np.isnan(tension).all() else bootstrap(tension, block),
     )
 
 
-def _turn_rad(found: Poses, there: Poses) -> FloatArray:
+def _turn_rad(poses: Poses, there: Poses) -> FloatArray:
     """Return the angle between two sets of poses (n_rows,); NaN where there is none."""
-    between = np.swapaxes(there.rotation, -1, -2) @ found.rotation
+    between = np.swapaxes(there.rotation, -1, -2) @ poses.rotation
     cosine = 0.5 * (np.trace(between, axis1=-2, axis2=-1) - 1.0)
     axis = np.stack([between[..., i, j] - between[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
     return np.asarray(np.arctan2(0.5 * np.linalg.norm(axis, axis=0), cosine))

@@ -155,12 +155,12 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
         Where the robot works.
     """
     places = np.concatenate(list(region.samples_m(_CANDIDATES, "low_discrepancy", 0)))
-    shown = readings_of(machine, Poses.at(places)).stacked
-    scale = np.maximum(np.nanstd(shown, axis=0), 1e-12)
-    unlike = np.where(np.isnan(shown), np.inf, 0.0).sum(axis=1)  # what the machine cannot hold
+    stacked = readings_of(machine, Poses.at(places)).stacked
+    scale = np.maximum(np.nanstd(stacked, axis=0), 1e-12)
+    unlike = np.where(np.isnan(stacked), np.inf, 0.0).sum(axis=1)  # what the machine cannot hold
     read = np.hstack([measured.length_m, measured.tension_N])
     nearest = [
-        int(np.argmin(np.nansum(((row - shown) / scale) ** 2, axis=1) + unlike)) for row in read
+        int(np.argmin(np.nansum(((row - stacked) / scale) ** 2, axis=1) + unlike)) for row in read
     ]
     rotation = np.eye(3)
     if not machine.robot.is_point_mass:
@@ -219,13 +219,13 @@ def _further(
     return true, Readings(shown.length_m + length, shown.tension_N + tension)
 
 
-def _loss(left: FloatArray) -> FloatArray:
-    return np.asarray(huber(left).sum(axis=1))
+def _loss(values: FloatArray) -> FloatArray:
+    return np.asarray(huber(values).sum(axis=1))
 
 
-def _either(first: BoolArray, one: Poses, other: Poses) -> Poses:
-    """Return the poses of one where ``first`` (n_rows,), else of the other."""
-    rotation = one.rotation
+def _either(mask: BoolArray, poses: Poses, other: Poses) -> Poses:
+    """Return the poses of one where ``mask`` (n_rows,), else of the other."""
+    rotation = poses.rotation
     if rotation.ndim > 2:
-        rotation = np.where(first[:, None, None], rotation, other.rotation)
-    return Poses(np.where(first[:, None], one.position_m, other.position_m), rotation)
+        rotation = np.where(mask[:, None, None], rotation, other.rotation)
+    return Poses(np.where(mask[:, None], poses.position_m, other.position_m), rotation)

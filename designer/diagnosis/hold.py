@@ -84,7 +84,7 @@ class Gain:
 def search_and_hold(
     problem: Problem,
     candidates: Sequence[Effect],
-    given: Sequence[Effect],
+    effects: Sequence[Effect],
     rows: BoolArray,
     progress: Pace,
 ) -> Outcome:
@@ -93,7 +93,7 @@ def search_and_hold(
     Where sensors are on each other's plugs there is nothing to search for. Parameters as for
     `Searcher`.
     """
-    searcher = Searcher(problem, candidates, given, rows, progress)
+    searcher = Searcher(problem, candidates, effects, rows, progress)
     unsearched = searcher.fit([], thorough=True)
     if find_swapped(*_residual_and_predicted(problem, unsearched.settings, rows)):
         structure = structure_left(problem, unsearched.settings, rows)
@@ -109,11 +109,11 @@ def search_and_hold(
         structure = structure_left(problem, outcome.search.fit.settings, rows)
         outcome = replace(outcome, structure=structure)
     rest = without(candidates, *(one.effect for one in outcome.withdrawn))
-    return replace(outcome, searcher=Searcher(problem, rest, given, rows, progress))
+    return replace(outcome, searcher=Searcher(problem, rest, effects, rows, progress))
 
 
 def keep_what_helps(
-    outcome: Outcome, whole: Problem, heldout: BoolArray, progress: Pace
+    outcome: Outcome, problem: Problem, heldout: BoolArray, progress: Pace
 ) -> tuple[Outcome, dict[str, Gain]]:
     """Withdraw what has no clear gain on held-out rows, least clear first; fit the rest anew.
 
@@ -121,7 +121,7 @@ def keep_what_helps(
     ----------
     outcome : Outcome
         Of a search to which the readings of held-out rows were not shown.
-    whole : Problem
+    problem : Problem
         The same problem with all readings.
     heldout : array (n_rows,) of bool
         The rows to predict.
@@ -138,10 +138,10 @@ def keep_what_helps(
         gains, structure = dict[str, Gain](), outcome.structure
         gone = implausible(model, found) or _faint(model, found)
         if gone is None:
-            left = whole.residual(model.settings)[heldout]
+            left = problem.residual(model.settings)[heldout]
             for effect in found:  # the others fitted anew without it
                 rest = outcome.searcher.fit(without(found, effect.key), model)
-                gains[effect.key] = _gain(whole.residual(rest.settings)[heldout], left, heldout)
+                gains[effect.key] = _gain(problem.residual(rest.settings)[heldout], left, heldout)
             least = min(
                 gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std, default=""
             )
@@ -149,7 +149,7 @@ def keep_what_helps(
                 gain = gains[least]
                 gone = Withdrawn(least, reason=Reason.UNSEEN, gain=gain.share, gain_std=gain.std)
         if gone is None:
-            structure = structure_left(whole, model.settings, np.ones_like(heldout))
+            structure = structure_left(problem, model.settings, np.ones_like(heldout))
             # What begins at a time is no step if what is left goes with time all the same.
             steps = [effect.key for effect in found if effect.starts_from is not None]
             if steps and any(carrier.is_order for carrier in structure.present):
@@ -201,9 +201,9 @@ def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
     return drifting(problem, model, found, structure, rows)
 
 
-def implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
     """Return the first effect with a value that an engineer would not believe."""
-    keys = {effect.key for effect in found}
+    keys = {effect.key for effect in effects}
     for setting in model.settings:
         for p in setting.effect.parameters:
             value = setting.values[p.name]
@@ -214,14 +214,14 @@ def implausible(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
     return None
 
 
-def _faint(model: Fit, found: Sequence[Effect]) -> Withdrawn | None:
+def _faint(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
     """Return the first effect that may as well do nothing, by its clustered covariance.
 
     All its values together: those of a moved exit point are each in doubt through the others.
     """
     from scipy.stats import chi2
 
-    for effect in found:
+    for effect in effects:
         if chi2.sf(model.wald[effect.key], len(effect.parameters)) > SIGNIFICANCE:
             return Withdrawn(effect.key, reason=Reason.FAINT)
     return None

@@ -108,14 +108,14 @@ class _Guess:
     distrust: tuple[float, float] = (1.0, 1.0)
 
     def after(
-        self, measured: Measured, true: Readings, shown: Readings, noise: Noise, *, judges: bool
+        self, measured: Measured, true: Readings, readings: Readings, noise: Noise, *, judges: bool
     ) -> _Guess:
         """Return the guess that an answer leads to; with ``judges``, also of the distrust."""
-        more = (shown.length_m - true.length_m, shown.tension_N - true.tension_N)
+        more = (readings.length_m - true.length_m, readings.tension_N - true.tension_N)
         if not judges:
             return _Guess(np.nan_to_num(more), self.distrust)
-        length = np.abs(measured.length_m - shown.length_m) / noise.length_m
-        tension = np.abs(measured.tension_N - shown.tension_N) / noise.tension_N
+        length = np.abs(measured.length_m - readings.length_m) / noise.length_m
+        tension = np.abs(measured.tension_N - readings.tension_N) / noise.tension_N
         distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
         return _Guess(np.nan_to_num(more), distrust)
 

@@ -22,7 +22,7 @@ def first_noise(
     measured: Measured,
     predict: Predictor,
     rows: BoolArray,
-    given: Sequence[Effect] = (),
+    effects: Sequence[Effect] = (),
 ) -> Noise:
     """Return the noise as declared, else as the fast part of the first residual shows it.
 
@@ -35,7 +35,7 @@ def first_noise(
         What is declared, the data, the model as declared.
     rows : array (n_rows,) of bool
         What a fit may see.
-    given : sequence of Effect
+    effects : sequence of Effect
         Unknown from the start: fitted first.
     """
     declared = (measurements.length_noise_m, measurements.tension_noise_N)
@@ -48,7 +48,7 @@ def first_noise(
     # By how much a model may be off at first: mostly their ratio counts, and tensions are foretold
     # worse than lengths.
     rough = Problem(measured, predict, Noise(0.01 * length, 0.1 * tension, "rough"))
-    settings = fit(rough, given, rows).settings if given else ()
+    settings = fit(rough, effects, rows).settings if effects else ()
     kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
     found = [
         _fast_part(kind, measured) if value is None else value

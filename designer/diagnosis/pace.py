@@ -56,9 +56,9 @@ class Pace:
         """What was not tried for lack of time, in words."""
         return tuple(self._left_out)
 
-    def leave_out(self, what: str) -> None:
+    def leave_out(self, text: str) -> None:
         """Note what is not tried, for lack of time."""
-        self._left_out.append(what)
+        self._left_out.append(text)
 
     def each(self, part: str, steps: Sequence[One]) -> Iterator[One]:
         """Yield the steps of a part of the search, telling of each; leave out those too late."""

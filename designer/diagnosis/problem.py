@@ -42,14 +42,14 @@ class Problem:
         """Measured lengths [m], then tensions [N] (n_rows, 2 n_cables); NaN where missing."""
         return np.hstack([self.measured.length_m, self.measured.tension_N])
 
-    def free_readings(self, taken: BoolArray) -> int:
+    def free_readings(self, mask: BoolArray) -> int:
         """Return how many of the readings taken (n_rows, 2 n_cables) are left to test the model.
 
         A row of a redundant robot gives up one for each cable to spare, for its internal forces,
         and as many as its degrees of freedom where its pose was not measured.
         """
         given_up = self.predict.row_unknowns
-        return int(np.maximum(taken.sum(axis=1) - given_up, 0).sum())
+        return int(np.maximum(mask.sum(axis=1) - given_up, 0).sum())
 
     def predicted(self, settings: Sequence[Setting]) -> Readings:
         """Return what the sensors would show with these effects."""

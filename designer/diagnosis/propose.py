@@ -61,8 +61,8 @@ def propose(
         What to call them.
     """
     positions = _candidates(problem.measured, region)
-    there = _measured_at(problem.measured, positions)
-    elsewhere = replace(problem, measured=there, predict=problem.predict.at(there))
+    measured = _measured_at(problem.measured, positions)
+    elsewhere = replace(problem, measured=measured, predict=problem.predict.at(measured))
     one, other = (elsewhere.predicted(settings).stacked for settings in (found, rival))
     is_measured = ~np.isnan(problem.readings).all(axis=0)
     gap = (one - other)[:, is_measured] / problem.sigma[is_measured]

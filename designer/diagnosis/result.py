@@ -277,10 +277,10 @@ class Diagnosis:
     @property
     def is_scattered(self) -> bool:
         """Whether more is left than the sensors explain: over 1.5 times the declared noise."""
-        given = self.study.measurements
+        measurements = self.study.measurements
         declared = {
-            "length": given is not None and given.length_noise_m is not None,
-            "tension": given is not None and given.tension_noise_N is not None,
+            "length": measurements is not None and measurements.length_noise_m is not None,
+            "tension": measurements is not None and measurements.tension_noise_N is not None,
         }
         return any(x > MOST_SCATTER for name, x in self.scatter.items() if declared[name])
 

@@ -12,10 +12,10 @@ MAD_TO_STD = 1.4826
 
 def spread(values: FloatArray) -> float:
     """Return the standard deviation of the bulk about its median; 0 without values."""
-    known = values[~np.isnan(values)]
-    if not known.size:
+    value = values[~np.isnan(values)]
+    if not value.size:
         return 0.0
-    return MAD_TO_STD * float(np.median(np.abs(known - np.median(known))))
+    return MAD_TO_STD * float(np.median(np.abs(value - np.median(value))))
 
 
 def rms(residual: FloatArray) -> float:

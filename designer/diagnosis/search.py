@@ -157,28 +157,28 @@ class Searcher:
 
     def run(self) -> Search:
         """Add, exchange and prune until nothing changes, or a set of effects comes again."""
-        found: list[Effect] = []
+        effects: list[Effect] = []
         steps: list[Step] = []
-        present = self.fit(found)
+        present = self.fit(effects)
         tried: list[set[Effect]] = []
-        while set(found) not in tried:
-            tried.append(set(found))
-            trials = self.trials(found, present, f"round {len(steps) + 1}")
+        while set(effects) not in tried:
+            tried.append(set(effects))
+            trials = self.trials(effects, present, f"round {len(steps) + 1}")
             is_over = self._progress.is_over
             best = None if is_over else _simplest(trials)
             if trials:
                 steps.append(Step(tuple(trials), best.effect if best else None, not is_over))
             # More that a machine lacks at once are not to be told apart by one log.
-            if best is None or len(found) == 5:
+            if best is None or len(effects) == 5:
                 break
             self._progress(f"found {best.effect.key}")
             # What is worse alone is seldom better in the place of a member.
             outsiders = [t.effect for t in trials[:8]]
-            found = self._exchanged([*found, best.effect], best.fit, outsiders)
-            found = self._pruned(found)
-            present = self.fit(found, best.fit)
-        found = self._predicting(found, present)
-        return Search(tuple(steps), self.fit(found, present, thorough=True), tuple(found))
+            effects = self._exchanged([*effects, best.effect], best.fit, outsiders)
+            effects = self._pruned(effects)
+            present = self.fit(effects, best.fit)
+        effects = self._predicting(effects, present)
+        return Search(tuple(steps), self.fit(effects, present, thorough=True), tuple(effects))
 
     def fit(
         self,
@@ -190,15 +190,15 @@ class Searcher:
     ) -> Fit:
         """Fit the given effects and the found ones together."""
         effects = self._sorted([*self._given, *found])
-        known = near.settings if near else ()
-        return fit(self._problem, effects, self._rows, known, thorough=thorough, anew=anew)
+        settings = near.settings if near else ()
+        return fit(self._problem, effects, self._rows, settings, thorough=thorough, anew=anew)
 
-    def trials(self, found: Sequence[Effect], present: Fit, part: str) -> list[Trial]:
+    def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[Trial]:
         """Try every other candidate in addition, best first."""
-        others = self._others(found)
+        others = self._others(effects)
         tried: list[Trial] = []
         for effect in self._progress.each(part, others):
-            model = self.fit([*found, effect], present, anew=True)
+            model = self.fit([*effects, effect], present, anew=True)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
             chance = _chance(gain, effect, len(others))
             tried.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
@@ -214,13 +214,13 @@ class Searcher:
             if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
-            gain = self._unseen_loss(found, trial.fit)
-            gain -= self._unseen_loss([*found, trial.effect], trial.fit)
+            gain = self._unseen_loss(effects, trial.fit)
+            gain -= self._unseen_loss([*effects, trial.effect], trial.fit)
             answer.append(replace(trial, heldout_gain=gain / trial.fit.variance))
         return answer
 
     def rivals(
-        self, found: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
+        self, effects: Sequence[Effect], effect: Effect, present: Fit, steps: Sequence[Step]
     ) -> list[Effect]:
         """Return the effects that the data cannot reject in place of one that was found.
 
@@ -229,13 +229,13 @@ class Searcher:
         parameters or without one; or if it predicted unseen rows at least half as well when
         ``effect`` was added, and predicts them about as well in its place.
         """
-        rest = [e for e in found if e.key != effect.key]
+        rest = [e for e in effects if e.key != effect.key]
         scale = present.variance * present.inflation[effect.key]
         added = [step for step in steps if step.added is not None and step.added.key == effect.key]
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         answer = []
-        for other in self._progress.each(f"rivals of {effect.key}", self._others(found)):
+        for other in self._progress.each(f"rivals of {effect.key}", self._others(effects)):
             trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
             fits = [self.fit([*rest, other], present, anew=True)]
             last = dict.fromkeys([*trials[:1], *trials[-1:]])
@@ -249,7 +249,9 @@ class Searcher:
             )
             suits = min(gaps) / scale < RIVAL_MARGIN
             if not suits and other.key in good:
-                gap = self._unseen_loss([*rest, other], swapped) - self._unseen_loss(found, present)
+                gap = self._unseen_loss([*rest, other], swapped) - self._unseen_loss(
+                    effects, present
+                )
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
                 answer.append(other)
@@ -269,46 +271,46 @@ class Searcher:
         return loss
 
     def _exchanged(
-        self, found: list[Effect], near: Fit, outsiders: Sequence[Effect]
+        self, effects: list[Effect], near: Fit, outsiders: Sequence[Effect]
     ) -> list[Effect]:
         """Replace a member by an outsider where that is clearly better: greed errs at times."""
-        present = self.fit(found, near)
-        for k in range(len(found) - 1):  # the newest was chosen among all
-            for other in outsiders:
-                if other not in self._others(found) or self._progress.is_over:
+        present = self.fit(effects, near)
+        for k in range(len(effects) - 1):  # the newest was chosen among all
+            for outsider in outsiders:
+                if outsider not in self._others(effects) or self._progress.is_over:
                     continue
-                swapped = [*found[:k], other, *found[k + 1 :]]
+                swapped = [*effects[:k], outsider, *effects[k + 1 :]]
                 model = self.fit(swapped, present)
                 better = (self._penalised(present) - self._penalised(model)) / model.variance
                 if better > RIVAL_MARGIN:
-                    found, present = swapped, model
-        return found
+                    effects, present = swapped, model
+        return effects
 
-    def _pruned(self, found: list[Effect]) -> list[Effect]:
+    def _pruned(self, effects: list[Effect]) -> list[Effect]:
         """Leave out what the others have made superfluous."""
-        present = self.fit(found)
-        for effect in list(found):
-            if len(found) == 1:
+        present = self.fit(effects)
+        for effect in list(effects):
+            if len(effects) == 1:
                 break
-            rest = [e for e in found if e.key != effect.key]
+            rest = [e for e in effects if e.key != effect.key]
             without = self.fit(rest, present)
             scale = present.variance * present.inflation[effect.key]
             gain = (without.loss - present.loss) / scale
             if _chance(gain, effect, len(self._candidates)) > SIGNIFICANCE:
-                found, present = rest, without
-        return found
+                effects, present = rest, without
+        return effects
 
-    def _predicting(self, found: list[Effect], present: Fit) -> list[Effect]:
+    def _predicting(self, effects: list[Effect], present: Fit) -> list[Effect]:
         """Leave out what no longer helps to predict rows that a fit has not seen."""
-        loss = self._unseen_loss(found, present) if len(found) > 1 else 0.0
-        for effect in list(found):
-            if len(found) == 1:
+        loss = self._unseen_loss(effects, present) if len(effects) > 1 else 0.0
+        for effect in list(effects):
+            if len(effects) == 1:
                 break
-            rest = [e for e in found if e.key != effect.key]
+            rest = [e for e in effects if e.key != effect.key]
             without = self._unseen_loss(rest, present)
             if without <= loss:
-                found, loss = rest, without
-        return found
+                effects, loss = rest, without
+        return effects
 
     def _penalised(self, model: Fit) -> float:
         return model.loss + _PENALTY * model.variance * len(model.vector)

@@ -29,13 +29,13 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
     misspelt. After the first hundred the rest are left out.
     """
     details = error.errors(include_url=False)[:MOST_FAULTS]
-    unknown = [one["loc"] for one in details if one["type"] in _UNKNOWN]
+    unknown = [detail["loc"] for detail in details if detail["type"] in _UNKNOWN]
     meant = [(loc, _nearest_field(loc, schema)) for loc in unknown]
     misspelt = {(*loc[:-1], nearest) for loc, nearest in meant if nearest is not None}
     return [
-        document.fault(_document_path(one, document), *_words(one, schema))
-        for one in details
-        if one["loc"] not in misspelt
+        document.fault(_document_path(detail, document), *_words(detail, schema))
+        for detail in details
+        if detail["loc"] not in misspelt
     ]
 
 
@@ -70,7 +70,7 @@ def _branch(kind: Any, label: Key) -> Any:
     parts = get_args(kind)
     if any(isinstance(part, Tag) and part.tag == label for part in parts):
         return kind
-    return next((found for part in parts if (found := _branch(part, label)) is not None), None)
+    return next((branch for part in parts if (branch := _branch(part, label)) is not None), None)
 
 
 def _sections_in(kind: Any) -> Iterator[AnySection]:

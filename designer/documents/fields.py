@@ -221,9 +221,9 @@ class _ListOf:
         return given
 
 
-def list_of(least: int, most: int, expected: str) -> _ListOf:
+def list_of(least: int, number: int, expected: str) -> _ListOf:
     """Return the check of a list's length, before its items are read."""
-    return _ListOf(least, most, expected)
+    return _ListOf(least, number, expected)
 
 
 def only_word(word: str, expected: str) -> BeforeValidator:
@@ -237,11 +237,11 @@ def only_word(word: str, expected: str) -> BeforeValidator:
     return BeforeValidator(check)
 
 
-def in_brackets(given: object) -> str:
+def in_brackets(value: object) -> str:
     """Return how a text with commas is written as the list that it was meant for; else nothing."""
-    if not isinstance(given, str) or "," not in given or len(given) > LONGEST_TEXT:
+    if not isinstance(value, str) or "," not in value or len(value) > LONGEST_TEXT:
         return ""
-    return f"; a list stands in brackets: [{printable(given)}]"
+    return f"; a list stands in brackets: [{printable(value)}]"
 
 
 def _text(given: object) -> str:
@@ -276,11 +276,11 @@ def different(names: tuple[str, ...]) -> tuple[str, ...]:
     return names
 
 
-def mapping(given: object) -> object:
+def mapping(value: object) -> object:
     """Return the mapping unchanged, or refuse what is given."""
-    if not isinstance(given, dict):
-        raise refusal(f"{describe(given)} is not a mapping", "a mapping such as {}")
-    return given
+    if not isinstance(value, dict):
+        raise refusal(f"{describe(value)} is not a mapping", "a mapping such as {}")
+    return value
 
 
 def not_empty(given: dict[str, Any]) -> dict[str, Any]:

@@ -18,24 +18,24 @@ DIAGNOSIS_FORMAT = 1
 """Of ``diagnosis.json``."""
 
 
-def why_unreadable(given: object, newest: int, written_by: str = "") -> tuple[str, str] | None:
+def why_unreadable(value: object, newest: int, written_by: str = "") -> tuple[str, str] | None:
     """Return why a file of this format cannot be read and what to do; None where it can be.
 
     Parameters
     ----------
-    given : object
+    value : object
         What the file says under ``format``; None where it says nothing.
     newest : int
         The newest format that is read.
     written_by : str
         Version of the program that wrote the file, where the file tells.
     """
-    if given is None:
+    if value is None:
         return None
-    if isinstance(given, bool) or not isinstance(given, int) or given < 1:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         return "is no format", f"a whole number, 1 to {newest}"
-    if given <= newest:
+    if value <= newest:
         return None
     needed = f"{written_by} or newer" if written_by else f"newer than {__version__}"
-    problem = f"format {given} is newer than this cdpr-designer {__version__} reads"
+    problem = f"format {value} is newer than this cdpr-designer {__version__} reads"
     return problem, f"format 1 to {newest}; this file needs cdpr-designer {needed}"

@@ -23,8 +23,8 @@ def with_schema_moved(text: str, start: Path, moved: Callable[[Path], str]) -> s
     ``start`` is the folder that the study was in; ``moved`` gives a path as it is from the other.
     """
 
-    def renamed(found: re.Match[str]) -> str:
-        head, name = found.groups()
+    def renamed(match: re.Match[str]) -> str:
+        head, name = match.groups()
         is_relative = "://" not in name and not Path(name).is_absolute()
         return head + (moved(start / name) if is_relative else name)
 

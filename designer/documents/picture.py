@@ -94,16 +94,16 @@ def _why_no_svg(raw: bytes) -> tuple[str, str] | None:
         (fault,) = error.faults
         place = "" if fault.line is None else f" in line {fault.line}"
         return f"is no plain SVG{place}: {fault.problem}", "one without that"
-    outside = next((place for one in root.everything() for place in _outside(one)), None)
+    outside = next((place for element in root.everything() for place in _outside(element)), None)
     outside = outside or ("a style sheet" if b"<?xml-stylesheet" in raw else None)
     return None if outside is None else (f"refers to {outside[:80]!r}", _WHY[_LOADS][1])
 
 
 def _outside(element: Element) -> list[str]:
     """Return the addresses in an element that lead out of the picture."""
-    given = element.attributes
-    named = [value for name, value in given.items() if name.split(":")[-1] in ("href", "src")]
-    texts = (*given.values(), element.text)
+    attributes = element.attributes
+    named = [value for name, value in attributes.items() if name.split(":")[-1] in ("href", "src")]
+    texts = (*attributes.values(), element.text)
     named += ["".join(found) for text in texts for found in _ADDRESS.findall(text)]
     return [address for address in named if not _INSIDE.match(address.strip())]
 

@@ -59,10 +59,10 @@ def fields_of(section: AnySection) -> Mapping[str, FieldInfo]:
 def _annotated_fields(section: Any) -> dict[str, FieldInfo]:
     hints = get_type_hints(section, include_extras=True)
     infos = {
-        one.name: FieldInfo.from_annotation(hints[one.name])
-        if one.default is dataclasses.MISSING
-        else FieldInfo.from_annotated_attribute(hints[one.name], one.default)
-        for one in dataclasses.fields(section)
+        field.name: FieldInfo.from_annotation(hints[field.name])
+        if field.default is dataclasses.MISSING
+        else FieldInfo.from_annotated_attribute(hints[field.name], field.default)
+        for field in dataclasses.fields(section)
     }
     return {info.alias or name: info for name, info in infos.items()}
 

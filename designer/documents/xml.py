@@ -43,17 +43,17 @@ class Element:
 
     def find(self, *path: str) -> Element | None:
         """Return the first descendant along a path of names; None if there is none."""
-        found: Element | None = self
+        element: Element | None = self
         for tag in path:
-            found = None if found is None else next(found.all(tag), None)
-        return found
+            element = None if element is None else next(element.all(tag), None)
+        return element
 
     def need(self, *path: str) -> Element:
         """Return the same; `InputError` if there is none."""
-        found = self.find(*path)
-        if found is None:
+        find = self.find(*path)
+        if find is None:
             self.refuse(f"<{self.tag}> has no <{'/'.join(path)}>", f"<{path[-1]}> in it")
-        return found
+        return find
 
     def attribute(self, name: str) -> str:
         """Return an attribute; `InputError` if there is none."""

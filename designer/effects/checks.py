@@ -82,8 +82,8 @@ def _flaws_of_parameter(parameter: object) -> Iterator[str]:
     except QuantityError as error:
         yield f"the dimension of {parameter.name!r}: its example {error}"
     if not isinstance(parameter.size, Size) and not callable(parameter.size):
-        given = type(parameter.size).__name__
-        yield f"the size of {parameter.name} is {given}, not a Size or a function"
+        name__ = type(parameter.size).__name__
+        yield f"the size of {parameter.name} is {name__}, not a Size or a function"
 
 
 def flaws_of_size(parameter: Parameter, machine: Machine) -> Iterator[str]:

@@ -136,8 +136,8 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
     return AsBuilt(thin, _unchanged if has_none else lambda cable: built(cable).cable)
 
 
-def _is_same(one: Robot, other: Robot) -> bool:
-    pairs: list[tuple[Any, Any]] = [(one, other), (one.platform, other.platform)]
+def _is_same(robot: Robot, other: Robot) -> bool:
+    pairs: list[tuple[Any, Any]] = [(robot, other), (robot.platform, other.platform)]
     return all(
         np.array_equal(getattr(mine, field.name), getattr(theirs, field.name))
         for mine, theirs in pairs

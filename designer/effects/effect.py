@@ -250,7 +250,7 @@ class Effect:
 
     def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
         """Return the parameters on a robot with so many cables."""
-        return tuple(one for each in self.parameters for one in each.of_cables(n_cables))
+        return tuple(one for parameter in self.parameters for one in parameter.of_cables(n_cables))
 
     def on(self, machine: Machine) -> list[Effect]:
         """Return what a machine may have of it: the effect, one for each cable, or none."""
@@ -258,15 +258,16 @@ class Effect:
             return []
         n_cables = machine.robot.n_cables
         sized = tuple(p.sized(machine) for p in self.parameters)
-        own = replace(
-            self, parameters=tuple(one for each in sized for one in each.of_cables(n_cables))
+        effect = replace(
+            self,
+            parameters=tuple(parameter for each in sized for parameter in each.of_cables(n_cables)),
         )
         if self.takes_machine:
-            own = own._given(machine=machine)
+            effect = effect._given(machine=machine)
         if not self.takes_cable:
-            return [own]
+            return [effect]
         return [
-            replace(own._given(cable=k), cable=k, summary=self.summary.format(cable=k))
+            replace(effect._given(cable=k), cable=k, summary=self.summary.format(cable=k))
             for k in range(1, n_cables + 1)
         ]
 

@@ -35,8 +35,8 @@ def _sound(
 ) -> Effect | None:
     """Return an effect that can be used; None, and a line in ``problems``, for another."""
     if not isinstance(item, Effect):
-        given = type(item).__name__
-        problems.append(f"{offer.label}: register_effects() gave {given}, not an Effect: left out")
+        name__ = type(item).__name__
+        problems.append(f"{offer.label}: register_effects() gave {name__}, not an Effect: left out")
         return None
     named = f"{offer.label}: effect {one_line(repr(item.id))}"
     flaw = attempt(lambda: find_flaw(item), named, "cannot be built", problems)

@@ -87,9 +87,9 @@ def _beside(path: Path, kind: str, wanted: str) -> Path:
     return other
 
 
-def _chosen_set(cables: Element, wanted: str | None) -> Element:
+def _chosen_set(cables: Element, text: str | None) -> Element:
     sets = {one.attributes.get("id", ""): one for one in cables.all("cable_set")}
-    name = wanted if wanted is not None else cables.attributes.get("default_cable_set")
+    name = text if text is not None else cables.attributes.get("default_cable_set")
     if not sets:
         cables.refuse("the file has no cable set", "<cable_set>")
     if name is None and len(sets) == 1:
@@ -121,9 +121,9 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     position, euler = _initial(joint_element, joint, base)
     limits, no_region = _limits(joint_element, joint, base)
     if not joint.turns:
-        held = held_at_one_point(cable_set, attachments)
-        position = None if position is None else moved(position, held)
-        limits = None if limits is None else _shifted(limits, held)
+        point = held_at_one_point(cable_set, attachments)
+        position = None if position is None else moved(position, point)
+        limits = None if limits is None else _shifted(limits, point)
     radius, remarks = _pulleys(cable_set)
     tension_min, told = _forces(cable_set)
     return ForeignRobot(
@@ -232,8 +232,10 @@ def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...
     ]
     if not pulleys:
         return None, {}
-    radii = {one.need("pulley_radius").numbers(1)[0] for one in pulleys}
-    upward = all(math.isclose(_point(one.need("cable_entry_vector"))[2], 1.0) for one in pulleys)
+    radii = {pulley.need("pulley_radius").numbers(1)[0] for pulley in pulleys}
+    upward = all(
+        math.isclose(_point(pulley.need("cable_entry_vector"))[2], 1.0) for pulley in pulleys
+    )
     if len(pulleys) == len(cables) and len(radii) == 1 and upward:
         return radii.pop(), {}
     return None, {

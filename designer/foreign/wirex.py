@@ -143,7 +143,7 @@ def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
 
 def _pulley_radius(bases: list[Element], remarks: dict[str, tuple[str, ...]]) -> float | None:
     """Return the radius of the pulleys, where a study can have them and the file says so."""
-    given = [one for one in bases if "radius" in one.attributes]
+    given = [base for base in bases if "radius" in base.attributes]
     radii = {one.number("radius") for one in given}
     if not given or radii == {0.0}:
         return None

@@ -19,7 +19,7 @@ class GradeError(ValueError):
         self.problem, self.expected = problem, expected
 
 
-def family_of(wanted: GradeFamily, catalogues: Sequence[Path], plugins: Plugins) -> Material:
+def family_of(grade_family: GradeFamily, catalogues: Sequence[Path], plugins: Plugins) -> Material:
     """Return the material that a grade of the catalogue, or of ``catalogues``, stands for.
 
     Raises
@@ -29,11 +29,11 @@ def family_of(wanted: GradeFamily, catalogues: Sequence[Path], plugins: Plugins)
     """
     readable = [path for path in catalogues if path.exists()]
     catalogue = kept_catalogue(readable, plugins)
-    grade = next((g for g in catalogue.grades if g.id == wanted.grade), None)
+    grade = next((g for g in catalogue.grades if g.id == grade_family.grade), None)
     if grade is None:
-        raise GradeError(*catalogue.explain_unknown(wanted.grade))
+        raise GradeError(*catalogue.explain_unknown(grade_family.grade))
     try:
-        return grade.family(wanted.safety_factor)
+        return grade.family(grade_family.safety_factor)
     except ValueError as error:  # a grade made in Python may lack stiffness or area
         expected = "a grade with breaking load, mass and stiffness"
         raise GradeError(f"cannot stand for a family: {error}", expected) from None

@@ -47,23 +47,25 @@ def read_grade(path: Path) -> Grade:
     except ValidationError as error:
         faults += schema_faults(error, document, GradeSheet)
     else:
-        given = {one.name: getattr(sheet, one.name) for one in fields(sheet)}
+        given = {field.name: getattr(sheet, field.name) for field in fields(sheet)}
         grade = Grade(**given, file=path.name)
-        faults += [document.fault(one.keys, one.problem, one.expected) for one in find_flaws(grade)]
+        faults += [
+            document.fault(flaw.keys, flaw.problem, flaw.expected) for flaw in find_flaws(grade)
+        ]
     if faults:
         raise InputError(sorted(faults, key=lambda fault: fault.line or 0))
     return grade
 
 
-def _with_units(given: Any) -> Any:
+def _with_units(value: Any) -> Any:
     """Return a grade whose table has on each bare number, quoted or not, its unit of ``units``."""
-    if not isinstance(given, dict) or not isinstance(given.get("sizes"), list):
-        return given
+    if not isinstance(value, dict) or not isinstance(value.get("sizes"), list):
+        return value
     try:
-        units = asdict(reader_of(Units).validate_python(given.get("units")))
+        units = asdict(reader_of(Units).validate_python(value.get("units")))
     except ValidationError:  # is reported once, not in every row
-        return given
-    return {**given, "sizes": [_with_unit(row, units) for row in given["sizes"]]}
+        return value
+    return {**value, "sizes": [_with_unit(row, units) for row in value["sizes"]]}
 
 
 def _with_unit(row: Any, units: Mapping[str, str | None]) -> Any:
@@ -90,19 +92,21 @@ def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
         return [], list(error.faults)
     for file in files:
         try:
-            found = GradeFile(read_grade(file), file)
+            grade_file = GradeFile(read_grade(file), file)
         except InputError as error:
             faults += error.faults
             continue
-        first = grades.setdefault(found.grade.id, found)
-        if first is not found:
-            faults.append(id_fault(found, f"{found.grade.id!r} is in {first.path} already"))
+        first = grades.setdefault(grade_file.grade.id, grade_file)
+        if first is not grade_file:
+            faults.append(
+                id_fault(grade_file, f"{grade_file.grade.id!r} is in {first.path} already")
+            )
     return list(grades.values()), faults
 
 
-def id_fault(found: GradeFile, problem: str) -> Fault:
+def id_fault(grade_file: GradeFile, problem: str) -> Fault:
     """Return a fault of this grade's id, with its line."""
-    return read_document(found.path).fault(("id",), problem, "an id of its own")
+    return read_document(grade_file.path).fault(("id",), problem, "an id of its own")
 
 
 def nothing_found_fault(path: Path) -> Fault:

@@ -270,10 +270,10 @@ class Grade(GradeSheet):
         ValueError
             If it has neither.
         """
-        found = self.modulus or self.stiffness
-        if found is None:
+        stiffness = self.modulus or self.stiffness
+        if stiffness is None:
             raise ValueError(f"{self.id}: neither modulus nor stiffness is known")
-        return found
+        return stiffness
 
     def axial_stiffness_N(self, size: Size, load_fraction: float = TYPICAL_LOAD_FRACTION) -> float:
         """Return EA of a size [N]; of a fibre rope, EA at this load over breaking load.

@@ -31,6 +31,6 @@ def _changed_at(path: Path) -> tuple[float, ...]:
     """Return when a file, or those of a folder, were changed; nothing where there is none."""
     try:
         files = sorted(path.rglob("*")) if path.is_dir() else [path]
-        return tuple(one.stat().st_mtime for one in files)
+        return tuple(file.stat().st_mtime for file in files)
     except OSError:
         return ()

@@ -102,10 +102,10 @@ def bounds_of(grade: Grade) -> Bounds:
 
 def metallic_modulus_bounds_Pa(grade: Grade) -> tuple[float, float] | None:
     """Return the bounds of a wire rope's modulus on the metallic area; None for other ropes."""
-    both = _METALLIC_MODULUS_PA.get(grade.material or "")
-    if both is None:
+    interval = _METALLIC_MODULUS_PA.get(grade.material or "")
+    if interval is None:
         return None
-    laid_twice, strand = both
+    laid_twice, strand = interval
     return strand if _is_strand(grade) else laid_twice
 
 

@@ -83,10 +83,10 @@ class Catalogue:
             With a fault for each; names the nearest ids.
         """
         known = {grade.id for grade in self.grades}
-        wanted = study.selection.grades if study.selection else None
+        grades = study.selection.grades if study.selection else None
         faults = [
             study.source.fault(f"selection.grades[{k}]", *self.explain_unknown(grade))
-            for k, grade in enumerate(wanted or ())
+            for k, grade in enumerate(grades or ())
             if grade not in known
         ]
         if faults:

@@ -220,8 +220,8 @@ def standard_ropes() -> Iterator[Grade]:
 
 
 def _modulus(factors: Factors) -> Modulus:
-    own = _MODULI.get((factors.construction, factors.core))
-    if own is not None:
-        return own
+    interval = _MODULI.get((factors.construction, factors.core))
+    if interval is not None:
+        return interval
     has_six_strands = factors.construction.startswith("6x")
     return _FIBRE_CORE if factors.core == "FC" and has_six_strands else _ANY_ROPE

@@ -72,7 +72,9 @@ def _begin(folder: Path, undo: Undo) -> Path:
 
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder}: is a file (expected a folder to write into)")
-    for missing in reversed([one for one in (folder, *folder.parents) if not one.exists()]):
+    for missing in reversed(
+        [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    ):
         undo.add(partial(_remove_empty, missing))
     folder.mkdir(parents=True, exist_ok=True)
     clear_left_overs(folder)
@@ -147,7 +149,7 @@ def _remove_empty(folder: Path) -> None:
 
 
 def _not_writable(path: Path, error: OSError) -> str:
-    file = next((one for one in path.parents if _is_file(one)), None)
+    file = next((parent for parent in path.parents if _is_file(parent)), None)
     reason = f"{file} is a file" if file else error.strerror
     if isinstance(error, FileExistsError) and path.is_symlink():
         reason = "it is a link that leads nowhere"

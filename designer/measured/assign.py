@@ -66,69 +66,71 @@ class Assigned:
 
 def assign(table: Table, study: Study, measurements: Measurements) -> Assigned:
     """Return the table with its columns assigned by the config's map and by their names."""
-    found = Assigned(table)
+    assigned = Assigned(table)
     named: dict[str, RawColumn] = {}
     for place, column in enumerate(table.columns, start=1):
         if column.name:
             named.setdefault(column.name, column)
         elif not column.is_empty:
-            found.notes.append(f"column {place} has no name and was left out")
+            assigned.notes.append(f"column {place} has no name and was left out")
     for entry in measurements.columns:
-        _assign_mapped(found, named, entry, study)
+        _assign_mapped(assigned, named, entry, study)
     mapped = {entry.name for entry in measurements.columns}
     for column in named.values():
         if column.name not in mapped:
-            _assign_by_name(found, column, study)
+            _assign_by_name(assigned, column, study)
     # Take a wind without its horizontal components as covariates.
-    present = [name for name in WIND if name in found.ours]
-    missing = [name for name in WIND[:2] if name not in found.ours]
+    present = [name for name in WIND if name in assigned.ours]
+    missing = [name for name in WIND[:2] if name not in assigned.ours]
     if present and missing:
-        found.notes.append(f"the wind is not used as such: there is no {' and no '.join(missing)}")
+        assigned.notes.append(
+            f"the wind is not used as such: there is no {' and no '.join(missing)}"
+        )
         for name in present:
-            found.covariates[name] = found.ours.pop(name)
+            assigned.covariates[name] = assigned.ours.pop(name)
     if not measurements.has_poses:
-        given = [name for name in found.ours if name in POSITION or is_rotation(name)]
-        for name in given:
-            del found.ours[name]
-        if given:
-            found.notes.append(f"{', '.join(given)} left out: poses are said to be unknown")
-    found.faults.extend(_missing(found, study, has_poses=measurements.has_poses))
-    return found
+        names = [name for name in assigned.ours if name in POSITION or is_rotation(name)]
+        for name in names:
+            del assigned.ours[name]
+        if names:
+            assigned.notes.append(f"{', '.join(names)} left out: poses are said to be unknown")
+    assigned.faults.extend(_missing(assigned, study, has_poses=measurements.has_poses))
+    return assigned
 
 
 def _assign_mapped(
-    found: Assigned, named: dict[str, RawColumn], entry: LogColumn, study: Study
+    assigned: Assigned, named: dict[str, RawColumn], entry: LogColumn, study: Study
 ) -> None:
     column = named.get(entry.name)
     if column is None:
-        found.awaited.add(entry.target)
-        problem = f"there is no such column in {found.table.name}"
+        assigned.awaited.add(entry.target)
+        problem = f"there is no such column in {assigned.table.name}"
         expected = f"a name in its first line{did_you_mean(entry.name, named)}"
-        found.faults.append(study.source.fault(f"{_MAP}.{entry.name}", problem, expected))
+        assigned.faults.append(study.source.fault(f"{_MAP}.{entry.name}", problem, expected))
     elif entry.target == COVARIATE:
-        found.covariates[entry.name] = column
+        assigned.covariates[entry.name] = column
     elif entry.target != IGNORE:
-        found.ours[entry.target] = replace(
+        assigned.ours[entry.target] = replace(
             column, values=column.values * entry.scale + entry.offset
         )
 
 
-def _assign_by_name(found: Assigned, column: RawColumn, study: Study) -> None:
+def _assign_by_name(assigned: Assigned, column: RawColumn, study: Study) -> None:
     name, robot = column.name, study.robot
-    if name in found.ours:
+    if name in assigned.ours:
         problem = f"another column is mapped onto {name}, and this has the name already"
         expected = f"'{name}: {IGNORE}' or '{name}: {COVARIATE}' in {_MAP}"
-        found.faults.append(found.table.fault(None, name, problem, expected))
+        assigned.faults.append(assigned.table.fault(None, name, problem, expected))
     elif is_rotation(name) and name in ROTATION_VECTOR and robot.is_point_mass:
-        found.notes.append(f"{name} was left out: a point mass has no orientation")
+        assigned.notes.append(f"{name} was left out: a point mass has no orientation")
     elif name in standard_names(robot.n_cables):
-        found.ours[name] = column
+        assigned.ours[name] = column
     elif cable_of(name) is not None:
         problem = f"there is no such cable, the robot has {robot.n_cables}"
         expected = f"cables 1 to {robot.n_cables}; or '{name}: {IGNORE}' in {_MAP}"
-        found.faults.append(found.table.fault(None, name, problem, expected))
+        assigned.faults.append(assigned.table.fault(None, name, problem, expected))
     else:
-        found.covariates[name] = column
+        assigned.covariates[name] = column
 
 
 def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Fault]:
@@ -167,9 +169,9 @@ def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Faul
             yield from _missing_of(found, names)
 
 
-def _missing_of(found: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:
+def _missing_of(assigned: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:
     for name in names:
-        if name not in found.ours and name not in found.awaited:
-            hint = did_you_mean(name, found.covariates)
+        if name not in assigned.ours and name not in assigned.awaited:
+            hint = did_you_mean(name, assigned.covariates)
             expected = f"a column of this name, or one mapped onto it in {_MAP}{hint}"
-            yield found.table.fault(None, name, "is missing", expected)
+            yield assigned.table.fault(None, name, "is missing", expected)

@@ -34,7 +34,7 @@ def read_cells(cells: Sequence[str], first_row: int) -> tuple[FloatArray, list[T
         for row, (cell, number) in enumerate(zip(cells, numbers, strict=True), start=first_row)
         if number is None
     ]
-    return np.array([math.nan if one is None else one for one in numbers]), texts
+    return np.array([math.nan if number is None else number for number in numbers]), texts
 
 
 def is_number(cell: str) -> bool:

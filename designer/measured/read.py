@@ -49,13 +49,13 @@ def read_measured(study: Study) -> Measured:
         raise InputError([study.source.fault("measurements", "is missing", expected)])
     table = _table(study, measurements)
     with np.errstate(over="ignore", invalid="ignore"):  # numbers without bounds become faults
-        found = assign(table, study, measurements)
-        rows = usable_rows(found, study.robot.n_cables, settled=measurements.settled)
-        faults = [*found.table.faults, *found.faults, *cell_faults(found), *rows.faults]
-        _refuse([*faults, *quaternion_faults(found, rows.kept)])
+        assigned = assign(table, study, measurements)
+        rows = usable_rows(assigned, study.robot.n_cables, settled=measurements.settled)
+        faults = [*assigned.table.faults, *assigned.faults, *cell_faults(assigned), *rows.faults]
+        _refuse([*faults, *quaternion_faults(assigned, rows.kept)])
     rows = thinned(rows, settled=measurements.settled)
     if measurements.has_poses:
-        poses = _poses(found, rows.kept, is_point_mass=study.robot.is_point_mass)
+        poses = _poses(assigned, rows.kept, is_point_mass=study.robot.is_point_mass)
         has_moved = np.ptp(poses.position_m, axis=0).max() > 1e-6
         has_turned = poses.rotation.ndim > 2 and np.ptp(poses.rotation, axis=0).max() > 1e-6
         if not has_moved and not has_turned:
@@ -63,14 +63,14 @@ def read_measured(study: Study) -> Measured:
             raise InputError([Fault(table.name, None, "", problem, "different poses")])
     else:
         poses = Poses.at(np.full((int(rows.kept.sum()), 3), np.nan))
-    measured = _measured(found, rows, poses, study.robot.n_cables, settled=measurements.settled)
+    measured = _measured(assigned, rows, poses, study.robot.n_cables, settled=measurements.settled)
     if not measurements.has_poses:
         measured = replace(measured, has_poses=False)
         _refuse_without_spare_readings(study.robot, measured, table)
         return measured
     told = (*(effect.id for effect in study.effects), *measurements.unknown)
-    known = study.known_effects.effects
-    is_homed = not any(effect.shifts_lengths and effect.is_among(told) for effect in known)
+    effects = study.known_effects.effects
+    is_homed = not any(effect.shifts_lengths and effect.is_among(told) for effect in effects)
     _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
     _refuse(sense_faults(study.robot, measured, table, is_homed=is_homed))
     return measured
@@ -105,11 +105,11 @@ def _poses(found: Assigned, kept: BoolArray, *, is_point_mass: bool) -> Poses:
     return Poses(frozen_array(position), frozen_array(orientation(found.rotation, values)))
 
 
-def _stacked(found: Assigned, names: tuple[str, ...], kept: BoolArray) -> FloatArray:
+def _stacked(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> FloatArray:
     """Return columns side by side (n_kept, n_names), NaN for those that there are not."""
-    empty = np.full(found.table.n_rows, np.nan)
-    columns = [found.ours[name].values if name in found.ours else empty for name in names]
-    return np.stack(columns, axis=1)[kept]
+    empty = np.full(assigned.table.n_rows, np.nan)
+    columns = [assigned.ours[name].values if name in assigned.ours else empty for name in names]
+    return np.stack(columns, axis=1)[mask]
 
 
 def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Table) -> None:
@@ -128,32 +128,32 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Tabl
 
 
 def _measured(
-    found: Assigned, rows: Rows, poses: Poses, n_cables: int, *, settled: bool
+    assigned: Assigned, rows: Rows, poses: Poses, n_cables: int, *, settled: bool
 ) -> Measured:
-    notes = [*found.notes, *rows.notes]
+    notes = [*assigned.notes, *rows.notes]
     kept = rows.kept
     lengths, tensions = (names(n_cables) for names in (length_names, tension_names))
     notes += [
         f"{column.name} has no reading"
-        for column in found.present(lengths + tensions)
+        for column in assigned.present(lengths + tensions)
         if np.isnan(column.values[kept]).all()
     ]
     row_numbers = np.flatnonzero(kept).astype(np.int64) + 1
     row_numbers.setflags(write=False)
-    time = time_s(found, kept, notes)
+    time = time_s(assigned, kept, notes)
     return Measured(
         poses=poses,
-        length_m=frozen_array(_stacked(found, lengths, kept)),
-        tension_N=frozen_array(_stacked(found, tensions, kept)),
+        length_m=frozen_array(_stacked(assigned, lengths, kept)),
+        tension_N=frozen_array(_stacked(assigned, tensions, kept)),
         settled=settled,
         time_s=time,
-        temperature_C=temperature_C(found, kept, time, notes),
-        wind_m_per_s=wind_m_per_s(found, kept, time, notes),
-        covariates=covariates(found, kept, notes),
+        temperature_C=temperature_C(assigned, kept, time, notes),
+        wind_m_per_s=wind_m_per_s(assigned, kept, time, notes),
+        covariates=covariates(assigned, kept, notes),
         row_numbers=row_numbers,
         notes=tuple(notes),
         thinned=rows.thinned,
-        sha256=found.table.sha256,
+        sha256=assigned.table.sha256,
     )
 
 
@@ -178,17 +178,17 @@ def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
     return np.asarray(rotation.as_matrix(), dtype=np.float64)
 
 
-def quaternion_faults(found: Assigned, kept: BoolArray) -> list[Fault]:
+def quaternion_faults(assigned: Assigned, mask: BoolArray) -> list[Fault]:
     """Return the rows whose quaternion is not of unit length within a hundredth."""
-    columns = found.present(QUATERNION)
+    columns = assigned.present(QUATERNION)
     if len(columns) < len(QUATERNION):
         return []
     norm = np.sqrt(sum(column.values**2 for column in columns))
-    rows = np.flatnonzero(kept & np.isfinite(norm) & (np.abs(norm - 1.0) > 0.01))
+    rows = np.flatnonzero(mask & np.isfinite(norm) & (np.abs(norm - 1.0) > 0.01))
     faults = (
-        found.table.fault(
+        assigned.table.fault(
             int(row), columns[0].name, f"has a quaternion of length {norm[row]:.4g}", "1 within 1 %"
         )
         for row in rows
     )
-    return found.table.first_few(faults, len(rows), "such quaternions")
+    return assigned.table.first_few(faults, len(rows), "such quaternions")

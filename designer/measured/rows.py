@@ -60,10 +60,10 @@ def is_numeric(column: RawColumn) -> bool:
     return column.n_numbers > 0 and column.n_numbers >= column.n_texts
 
 
-def cell_faults(found: Assigned) -> list[Fault]:
+def cell_faults(assigned: Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
-    others = [("", column) for column in found.covariates.values() if is_numeric(column)]
-    columns = [*found.ours.items(), *others]
+    others = [("", column) for column in assigned.covariates.values() if is_numeric(column)]
+    columns = [*assigned.ours.items(), *others]
     faults: list[Fault] = []
     total = 0
     for name, column in columns:
@@ -77,26 +77,26 @@ def cell_faults(found: Assigned) -> list[Fault]:
             if abs(value) > _LARGEST_NUMBER:
                 expected = "a finite number, or nothing where there is none"
             problem = f"has the value {value:g}"
-            faults.append(found.table.fault(int(row), column.name, problem, expected))
-    wild = found.table.first_few(faults, total, "values out of all bounds")
-    return [*_text_faults(found, [one for _, one in columns]), *wild]
+            faults.append(assigned.table.fault(int(row), column.name, problem, expected))
+    wild = assigned.table.first_few(faults, total, "values out of all bounds")
+    return [*_text_faults(assigned, [one for _, one in columns]), *wild]
 
 
-def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
+def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
     """Return which rows have a pose and a reading.
 
     Parameters
     ----------
-    found : Assigned
+    assigned : Assigned
         The table with its columns assigned; some may be missing, which is not told again.
     n_cables : int
         Number of cables of the robot.
     settled : bool
         Whether the rows are poses at rest, which may have the same time.
     """
-    has_pose, faults = _with_pose(found)
+    has_pose, faults = _with_pose(assigned)
     has_reading = np.ones_like(has_pose)
-    if readings := found.present(length_names(n_cables) + tension_names(n_cables)):
+    if readings := assigned.present(length_names(n_cables) + tension_names(n_cables)):
         has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
     kept = has_pose & has_reading
     notes = [
@@ -104,14 +104,14 @@ def usable_rows(found: Assigned, n_cables: int, *, settled: bool) -> Rows:
         for left_out, what in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
-    if time := found.ours.get(TIME_NAME):
-        faults += _time_faults(found.table, time, kept, settled=settled)
+    if time := assigned.ours.get(TIME_NAME):
+        faults += _time_faults(assigned.table, time, kept, settled=settled)
     if kept.sum() < FEWEST_ROWS:
-        total = found.table.n_rows
+        total = assigned.table.n_rows
         problem = f"{kept.sum()} of {total} rows have a pose and a reading"
         problem = problem if total else "there are no rows"
         expected = f"at least {FEWEST_ROWS} rows"
-        faults.append(Fault(found.table.name, None, "", problem, expected))
+        faults.append(Fault(assigned.table.name, None, "", problem, expected))
     return Rows(kept, faults, notes)
 
 
@@ -136,14 +136,14 @@ def thinned(rows: Rows, *, settled: bool) -> Rows:
     return replace(rows, kept=kept, notes=[*rows.notes, text], thinned=text)
 
 
-def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
+def _text_faults(assigned: Assigned, columns: list[RawColumn]) -> list[Fault]:
     with_text = [column for column in columns if column.n_texts]
     in_top_row = [column.n_texts == 1 and column.texts[0].row == 0 for column in with_text]
     if len(with_text) > 1 and all(in_top_row):
         text = describe(with_text[0].texts[0].text)
         problem = f"holds texts, such as {text}, in {len(with_text)} columns"
         expected = "numbers; units of columns go into measurements.columns"
-        return [found.table.fault(0, "", problem, expected)]
+        return [assigned.table.fault(0, "", problem, expected)]
     faults = []
     for column in with_text:
         for cell in column.texts:
@@ -151,15 +151,15 @@ def _text_faults(found: Assigned, columns: list[RawColumn]) -> list[Fault]:
             if "," in cell.text and is_number(cell.text.replace(",", "")):
                 expected = "a number with a decimal point and without commas"
             problem = f"has the text {describe(cell.text)}"
-            faults.append(found.table.fault(cell.row, column.name, problem, expected))
+            faults.append(assigned.table.fault(cell.row, column.name, problem, expected))
     total = sum(column.n_texts for column in columns)
-    return found.table.first_few(faults, total, "cells with a text")
+    return assigned.table.first_few(faults, total, "cells with a text")
 
 
-def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
+def _with_pose(assigned: Assigned) -> tuple[BoolArray, list[Fault]]:
     """Return which rows have a pose, and the faults of those that have half of one."""
-    table = found.table
-    columns = found.present((*POSITION, *found.rotation)) if table.n_rows else []
+    table = assigned.table
+    columns = assigned.present((*POSITION, *assigned.rotation)) if table.n_rows else []
     empty = [column for column in columns if column.is_empty]
     faults = [table.fault(None, one.name, "is empty", "a pose in each row") for one in empty]
     filled = [column for column in columns if not column.is_empty and not column.n_texts]
@@ -174,14 +174,14 @@ def _with_pose(found: Assigned) -> tuple[BoolArray, list[Fault]]:
 
 
 def _time_faults(
-    table: Table, time: RawColumn, kept: BoolArray, *, settled: bool
+    table: Table, time: RawColumn, mask: BoolArray, *, settled: bool
 ) -> Iterator[Fault]:
     if not (time.is_empty or time.n_texts):
-        rows = np.flatnonzero(np.isnan(time.values) & kept)
+        rows = np.flatnonzero(np.isnan(time.values) & mask)
         expected = "a time in each row, or in none"
         missing = (table.fault(int(row), time.name, "has no time", expected) for row in rows)
         yield from table.first_few(missing, len(rows), "rows without a time")
-    rows = np.flatnonzero(kept & np.isfinite(time.values))
+    rows = np.flatnonzero(mask & np.isfinite(time.values))
     values = time.values[rows]
     if not settled and len(rows) and np.ptp(values) == 0.0:
         expected = "a time that grows, or no such column"

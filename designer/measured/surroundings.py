@@ -10,32 +10,32 @@ from designer.measured.names import TEMPERATURE_NAME, TIME_NAME, WIND
 from designer.measured.rows import is_numeric
 
 
-def time_s(found: Assigned, kept: BoolArray, notes: list[str]) -> FloatArray | None:
+def time_s(assigned: Assigned, mask: BoolArray, notes: list[str]) -> FloatArray | None:
     """Return the time of each row [s]; None where it is not recorded or always the same."""
-    return _varying(found, TIME_NAME, kept, notes)
+    return _varying(assigned, TIME_NAME, mask, notes)
 
 
 def temperature_C(
-    found: Assigned, kept: BoolArray, time: FloatArray | None, notes: list[str]
+    assigned: Assigned, mask: BoolArray, time: FloatArray | None, notes: list[str]
 ) -> FloatArray | None:
     """Return the temperature in each row [°C]; None where not recorded or always the same."""
-    values = _varying(found, TEMPERATURE_NAME, kept, notes)
+    values = _varying(assigned, TEMPERATURE_NAME, mask, notes)
     if values is None:
         return None
-    return _filled(values, time, found.ours[TEMPERATURE_NAME].name, notes)
+    return _filled(values, time, assigned.ours[TEMPERATURE_NAME].name, notes)
 
 
 def wind_m_per_s(
-    found: Assigned, kept: BoolArray, time: FloatArray | None, notes: list[str]
+    assigned: Assigned, mask: BoolArray, time: FloatArray | None, notes: list[str]
 ) -> FloatArray | None:
     """Return the wind in each row (n_rows, 3) [m/s]; None where not recorded or always the same."""
-    present = {name: found.ours[name] for name in WIND if name in found.ours}
+    present = {name: assigned.ours[name] for name in WIND if name in assigned.ours}
     if not present:
         return None
-    wind = np.zeros((int(kept.sum()), 3))
+    wind = np.zeros((int(mask.sum()), 3))
     for axis, name in enumerate(WIND):
         if name in present:
-            wind[:, axis] = present[name].values[kept]
+            wind[:, axis] = present[name].values[mask]
         else:
             notes.append(f"the wind is taken as horizontal: there is no {name}")
     told = ", ".join(column.name for column in present.values())
@@ -47,12 +47,12 @@ def wind_m_per_s(
     return frozen_array(np.stack(filled, axis=1))
 
 
-def covariates(found: Assigned, kept: BoolArray, notes: list[str]) -> dict[str, FloatArray]:
+def covariates(assigned: Assigned, mask: BoolArray, notes: list[str]) -> dict[str, FloatArray]:
     """Return every other column of numbers that differ from row to row."""
     reasons: dict[str, list[str]] = {}
     used: dict[str, FloatArray] = {}
-    for name, column in found.covariates.items():
-        values = column.values[kept]
+    for name, column in assigned.covariates.items():
+        values = column.values[mask]
         reason = _reason(values, is_text=not is_numeric(column) and not column.is_empty)
         if reason:
             reasons.setdefault(reason, []).append(name)
@@ -76,12 +76,12 @@ def _is_constant(values: FloatArray) -> bool:
     return len(present) == 0 or bool(np.ptp(present) == 0.0)
 
 
-def _varying(found: Assigned, name: str, kept: BoolArray, notes: list[str]) -> FloatArray | None:
+def _varying(assigned: Assigned, name: str, mask: BoolArray, notes: list[str]) -> FloatArray | None:
     """Return one of our columns; None, and a note, where it is always the same."""
-    column = found.ours.get(name)
+    column = assigned.ours.get(name)
     if column is None:
         return None
-    values = frozen_array(column.values[kept])
+    values = frozen_array(column.values[mask])
     if _is_constant(values):
         why = "empty" if np.isnan(values).all() else "the same in all rows"
         notes.append(f"{column.name} left out, {why}")

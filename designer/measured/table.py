@@ -128,7 +128,7 @@ def read_table(file: BinaryIO, name: str) -> Table:
         table.fault(row, "", f"has {width} value{'s' * (width != 1)}", expected)
         for row, width in misfits
     )
-    told = table.first_few(of_another_width, len(misfits), "rows of another width")
+    faults = table.first_few(of_another_width, len(misfits), "rows of another width")
     places: dict[str, int] = {}
     repeated = []
     for place, own in enumerate(names, start=1):
@@ -136,7 +136,7 @@ def read_table(file: BinaryIO, name: str) -> Table:
             problem = f"columns {places[own]} and {place} have the same name"
             repeated.append(table.fault(None, own, problem, "a name for each column"))
         places.setdefault(own, place)
-    return replace(table, faults=(*repeated, *told))
+    return replace(table, faults=(*repeated, *faults))
 
 
 def _refuse(name: str, line: int | None, problem: str, expected: str = _EXPECTED) -> NoReturn:

@@ -74,8 +74,8 @@ def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
     ``share`` (n, 3) tells, between 0 and 1, which triangle of the fan about the first corner, and
     where in it.
     """
-    first, second, third = corners_m[0], corners_m[1:-1], corners_m[2:]
-    u, v = second - first, third - first
+    corner, second, third = corners_m[0], corners_m[1:-1], corners_m[2:]
+    u, v = second - corner, third - corner
     gram = np.einsum("ik,ik->i", u, u) * np.einsum("ik,ik->i", v, v)
     area = np.sqrt(np.maximum(gram - np.einsum("ik,ik->i", u, v) ** 2, 0.0))
     total = np.cumsum(area)
@@ -83,7 +83,7 @@ def within_m(corners_m: FloatArray, share: FloatArray) -> FloatArray:
     a, b = share[:, 1], share[:, 2]
     beyond = a + b > 1.0
     a, b = np.where(beyond, 1.0 - a, a), np.where(beyond, 1.0 - b, b)
-    return np.asarray(first + a[:, None] * u[which] + b[:, None] * v[which])
+    return np.asarray(corner + a[:, None] * u[which] + b[:, None] * v[which])
 
 
 def centroid_m(polygon_m: FloatArray) -> FloatArray:

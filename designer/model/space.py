@@ -142,10 +142,10 @@ class Space:
         end.
         """
         bounds = self.orientations.range_rad
-        each = 1 if bounds is not None else self.orientations.count
-        on_border = max(per_edge // each, 8), max(per_face // each, 32)
+        count = 1 if bounds is not None else self.orientations.count
+        on_border = max(per_edge // count, 8), max(per_face // count, 32)
         border = self.region.border().samples_m(rng, *on_border)
-        within = self.region.inside_m(rng, max(inside // each, 64))
+        within = self.region.inside_m(rng, max(inside // count, 64))
         positions = np.concatenate([border, within])
         if bounds is None:
             return self.places(positions)

@@ -67,8 +67,8 @@ def optimum_of(plan: Plan, reporter: Reporter = SILENT, stop: Stop = lambda: Fal
     examiner = Examiner(plan, promising(given_study, catalogue.grades))
     with reporter.task("optimise", plan.budget.evaluations) as advance:
         searched = search(examiner, advance, stop)
-    given = analyse(given_study, catalogue, reporter=reporter)
-    return _verified(examiner, catalogue, searched, given, reporter)
+    analysis = analyse(given_study, catalogue, reporter=reporter)
+    return _verified(examiner, catalogue, searched, analysis, reporter)
 
 
 def _verified(
@@ -151,9 +151,9 @@ def optimised_text(plan: Plan, values: Values) -> str:
 def _profiles(examiner: Examiner, best: Trial) -> tuple[Profile, ...]:
     """Return what each variable does by itself about the optimum."""
     found = []
-    for k, one in enumerate(examiner.plan.variables[:_MOST_PROFILES]):
-        values = {one.at(float(x)) for x in np.linspace(0.0, 1.0, LINE)} | {best.values[k]}
+    for k, variable in enumerate(examiner.plan.variables[:_MOST_PROFILES]):
+        values = {variable.at(float(x)) for x in np.linspace(0.0, 1.0, LINE)} | {best.values[k]}
         line = tuple(sorted(values))
-        tried = [examiner.trial((*best.values[:k], x, *best.values[k + 1 :])) for x in line]
-        found.append(Profile(line, tuple(t.value if t.holds else math.nan for t in tried)))
+        trials = [examiner.trial((*best.values[:k], x, *best.values[k + 1 :])) for x in line]
+        found.append(Profile(line, tuple(t.value if t.holds else math.nan for t in trials)))
     return tuple(found)

@@ -81,14 +81,14 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
     given = document_of(raw, str(study_path))
     study = Base(given, (), with_plugins).study()
     variables = variables_of(document, given, faults)
-    moves_anchors = any("anchors" in tie.keys for one in variables for tie in one.ties)
+    moves_anchors = any("anchors" in tie.keys for variable in variables for tie in variable.ties)
     fixed = _with_fixed_regions(text, given, study) if moves_anchors else text
     if section.region == "follows":
         fixed = text
     objective = _objective(document, section.objective, faults)
     limits = _limits(document, section.constraints, faults)
     measures = [one for one in (objective, *(limit.measure for limit in limits)) if one]
-    kept = tuple(one.path for one in measures)
+    kept = tuple(measure.path for measure in measures)
     if study.workspace is not None:  # all that the study asks for constrains the search
         kept += ("answer",)
     base = Base(document_of(fixed.encode(), str(study_path)), kept, with_plugins)
@@ -104,7 +104,7 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
         region_stays=fixed != text,
         variables=variables,
         objective=for_study(objective, study),
-        limits=tuple(replace(one, measure=for_study(one.measure, study)) for one in limits),
+        limits=tuple(replace(limit, measure=for_study(limit.measure, study)) for limit in limits),
         budget=Budget(section.budget.evaluations or evaluations, section.budget.time),
         starts=section.starts,
         seed=section.seed,
@@ -134,16 +134,16 @@ def _with_fixed_regions(text: str, document: Document, study: Study) -> str:
     return text
 
 
-def _objective(document: Document, given: Any, faults: list[Fault]) -> Measure | None:
-    if isinstance(given, str) and given in MEASURES:
-        return MEASURES[given]
-    if isinstance(given, dict) and len(given) == 1:
-        ((way, path),) = given.items()
+def _objective(document: Document, value: Any, faults: list[Fault]) -> Measure | None:
+    if isinstance(value, str) and value in MEASURES:
+        return MEASURES[value]
+    if isinstance(value, dict) and len(value) == 1:
+        ((way, path),) = value.items()
         if way in ("minimise", "maximise") and isinstance(path, str):
             return measure_at(path, 1 if way == "minimise" else -1)
-    name = given if isinstance(given, str) else ""
+    name = value if isinstance(value, str) else ""
     expected = _OBJECTIVE + did_you_mean(name, MEASURES)
-    faults.append(document.fault(("objective",), f"{describe(given)} is not known", expected))
+    faults.append(document.fault(("objective",), f"{describe(value)} is not known", expected))
     return None
 
 

@@ -95,7 +95,7 @@ class Optimum:
         """Whether the study as it is holds as asked."""
         result = self.comparison.a
         return self.given.is_positive and not any(
-            one.is_broken_by(result) for one in self.plan.limits
+            limit.is_broken_by(result) for limit in self.plan.limits
         )
 
     @property
@@ -119,7 +119,7 @@ class Optimum:
     def worsened(self) -> list[Line]:
         """What got notably worse by it, of what is not asked for: give, and clearance."""
         lines = (line for line in self.comparison.answers if line.path in _WORSE)
-        return [one for one in lines if (one.relative or 0.0) * _WORSE[one.path] > _NOTABLE]
+        return [line for line in lines if (line.relative or 0.0) * _WORSE[line.path] > _NOTABLE]
 
     @property
     def demands(self) -> tuple[str, ...]:
@@ -151,7 +151,7 @@ class Optimum:
 
     def to_dict(self) -> Json:
         """Return what ``optimise.json`` holds."""
-        plan, found = self.plan, self.searched
+        plan, searched = self.plan, self.searched
         objective = plan.objective
         return {
             "format": 1,
@@ -169,17 +169,17 @@ class Optimum:
                 "after": self.after,
                 "relative": self.gain,
                 "in_search": finite(self.best.value),
-                "in_search_before": finite(found.trials[0].value),
+                "in_search_before": finite(searched.trials[0].value),
             },
             "variables": [self._variable(k) for k in range(len(plan.variables))],
             "constraints": [
                 {
-                    "name": one.measure.name,
-                    one.words.replace(" ", "_"): one.value,
-                    "value": one.measure.value(self.comparison.b),
-                    "holds": one not in self.breaches,
+                    "name": limit.measure.name,
+                    limit.words.replace(" ", "_"): limit.value,
+                    "value": limit.measure.value(self.comparison.b),
+                    "holds": limit not in self.breaches,
                 }
-                for one in plan.limits
+                for limit in plan.limits
             ],
             "starts": [
                 {
@@ -187,14 +187,14 @@ class Optimum:
                     "best": None if trial is None else finite(trial.value),
                     "values": None if trial is None else list(trial.values),
                     "same_place": self.agrees(trial),
-                    "spread": None if k >= len(found.spreads) else finite(found.spreads[k]),
+                    "spread": None if k >= len(searched.spreads) else finite(searched.spreads[k]),
                 }
                 for k, trial in enumerate(self.starts)
             ],
             "search": {
-                "evaluations": len(found.trials) - 1,
-                "ended": found.ended,
-                "elapsed_s": found.elapsed_s,
+                "evaluations": len(searched.trials) - 1,
+                "ended": searched.ended,
+                "elapsed_s": searched.elapsed_s,
                 "samples": plan.samples,
                 "region_stays": plan.region_stays,
                 "not_held": [{"reason": why, "designs": count} for why, count in self.reasons],
@@ -212,16 +212,16 @@ class Optimum:
         }
 
     def _variable(self, k: int) -> Json:
-        one, value = self.plan.variables[k], self.best.values[k]
+        variable, value = self.plan.variables[k], self.best.values[k]
         return {
-            "name": one.name,
-            "fields": list(one.fields),
-            "unit": one.unit,
-            "is_offset": one.is_offset,
-            "bounds": [one.low, one.high],
-            "before": one.given,
+            "name": variable.name,
+            "fields": list(variable.fields),
+            "unit": variable.unit,
+            "is_offset": variable.is_offset,
+            "bounds": [variable.low, variable.high],
+            "before": variable.given,
             "after": value,
-            "at_bound": one.bound_at(value) or None,
+            "at_bound": variable.bound_at(value) or None,
             "asks_for": self.demands[k] or None,
         }
 
@@ -229,9 +229,9 @@ class Optimum:
     def best_so_far(self) -> list[float]:
         """The objective of the best design that holds up to each one that was tried [SI]."""
         sign, best, values = self.plan.objective.sign, math.nan, []
-        for one in self.searched.trials:
-            if one.holds and not sign * one.value >= sign * best:
-                best = one.value
+        for trial in self.searched.trials:
+            if trial.holds and not sign * trial.value >= sign * best:
+                best = trial.value
             values.append(best)
         return values
 
@@ -243,10 +243,10 @@ class Optimum:
         """Return every design that was tried, one a row."""
         names = [f"{v.name} [{v.unit}]" if v.unit else v.name for v in self.plan.variables]
         rows: list[list[Any]] = [["start", "turn", *names, self.plan.objective.name, "reason"]]
-        for one in self.searched.trials:
-            value = "" if math.isnan(one.value) else f"{one.value:.10g}"
-            values = one.values or [""] * len(names)
-            rows.append([one.start, one.round, *values, value, one.reason])
+        for trial in self.searched.trials:
+            value = "" if math.isnan(trial.value) else f"{trial.value:.10g}"
+            values = trial.values or [""] * len(names)
+            rows.append([trial.start, trial.round, *values, value, trial.reason])
         return csv_text(rows)
 
 

@@ -94,10 +94,10 @@ class _Run:
         self.spreads: list[FloatArray] = []
         self.ended = "settled"
         self._known: dict[Values, float] = {}
-        first = self.trials[0]
-        self._unit = abs(first.value) if first.holds and first.value else 1.0
+        trial = self.trials[0]
+        self._unit = abs(trial.value) if trial.holds and trial.value else 1.0
         if plan.given is not None:
-            self._known[plan.given] = self._rated(first)
+            self._known[plan.given] = self._rated(trial)
         self._start, self._round, self._left = 1, 0, 0
 
     def all(self) -> None:
@@ -151,15 +151,16 @@ class _Run:
     def _best(self) -> Trial:
         within = self._plan.is_within
         return min(
-            (one for one in self.trials if one.values and within(one.values)), key=self._rated
+            (trial for trial in self.trials if trial.values and within(trial.values)),
+            key=self._rated,
         )
 
     def _scan(self) -> None:
         """Try each variable by itself over its range, about the best design."""
-        for k, one in enumerate(self._plan.variables):
+        for k, variable in enumerate(self._plan.variables):
             values = self._best().values
             for x in np.linspace(0.0, 1.0, LINE):
-                self._rate((*values[:k], one.at(float(x)), *values[k + 1 :]))
+                self._rate((*values[:k], variable.at(float(x)), *values[k + 1 :]))
 
     def _polish(self) -> float:
         """Search about the best design by a simplex that knows only values; returns its rating."""

@@ -75,7 +75,7 @@ class Examiner:
         figures = _Figures(self, study)
         value = figures.of(self.plan.objective)
         breaches = [(one.excess(figures.of(one.measure)), one) for one in self.plan.limits]
-        excess, limit = max(breaches, key=lambda each: each[0], default=(0.0, None))
+        excess, limit = max(breaches, key=lambda breach: breach[0], default=(0.0, None))
         if excess == 0.0 or limit is None:
             return value, 0.0, ""
         return value, excess / (1.0 + excess), broken(limit)

@@ -26,7 +26,7 @@ def variables_of(document: Document, study: Document, faults: list[Fault]) -> tu
     """Return the variables of a file; those that are wrong are left out, with a fault more."""
     root = document.root.child("variables")
     assert root is not None and isinstance(root.content, dict)
-    found: list[Variable] = []
+    variables: list[Variable] = []
     taken: dict[str, str] = {}
     for name, node in root.content.items():
         try:
@@ -40,8 +40,8 @@ def variables_of(document: Document, study: Document, faults: list[Fault]) -> tu
                 problem = f"{field} is set by '{taken[field]}' already"
                 faults.append(document.fault(("variables", name), problem, "each field once"))
             taken[field] = name
-        found.append(variable)
-    return tuple(found)
+        variables.append(variable)
+    return tuple(variables)
 
 
 class _WrongError(Exception):
@@ -70,9 +70,9 @@ def _variable(name: str, node: Node, study: Node) -> Variable:
 
 def _ends(node: Node) -> tuple[float, float, str]:
     """Return both ends of a range, and their unit."""
-    each = node.content if isinstance(node.content, tuple) else ()
-    ends = [part for part in (one.quantity() for one in each) if part is not None]
-    if len(each) != 2 or len(ends) != 2:
+    content = node.content if isinstance(node.content, tuple) else ()
+    ends = [part for part in (one.quantity() for one in content) if part is not None]
+    if len(content) != 2 or len(ends) != 2:
         raise _WrongError(f"{describe(node.data())} is no range")
     (low, unit), (high, other) = ends
     if unit != other:

@@ -60,8 +60,8 @@ class Verifier:
     def verify(self, ranked: Sequence[Trial], try_design: Callable[[Values], Trial]) -> None:
         """Find the best of designs that hold in the search, given the best of it first."""
         self._verify_by_rank(ranked)
-        while (left := self.unverified(ranked)) and self._left > _BETWEEN:
-            self._holds(max(left, key=self._distance))
+        while (trials := self.unverified(ranked)) and self._left > _BETWEEN:
+            self._holds(max(trials, key=self._distance))
         self._go_towards_better(try_design)
 
     @property

@@ -85,12 +85,12 @@ def find_plugins(with_plugins: bool = True) -> Plugins:
             continue
         found[name] = plugin
         strangers.append(Asked(entry, source, plugin.label))
-    for asked, answer in zip(strangers, examine(strangers), strict=True):
+    for stranger, answer in zip(strangers, examine(strangers), strict=True):
         problems += answer.problems
-        name = one_line(asked.entry.name)
+        name = one_line(stranger.entry.name)
         plugin = found.pop(name)
         if answer.items:
-            hooks = {hook: _hook(asked, hook, items) for hook, items in answer.items.items()}
+            hooks = {hook: _hook(stranger, hook, items) for hook, items in answer.items.items()}
             found[name] = Plugin(name, plugin.source, hooks)
     return Plugins(tuple(found.values()), tuple(problems), with_plugins)
 

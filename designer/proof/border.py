@@ -44,20 +44,20 @@ def border_m(cover: Cover, ones: Boxes, others: Boxes) -> FloatArray:
     return cover.places(found.reshape(-1, 3))[:, :3].reshape(-1, 3, 3)
 
 
-def _touching(ones: Boxes, others: Boxes, axis: int) -> Boxes:
+def _touching(ones: Boxes, boxes: Boxes, axis: int) -> Boxes:
     """Return the common faces across an axis, as boxes that are flat along it."""
     across = [k for k in range(3) if k != axis]
     found = []
     for side, facing in ((1, 0), (0, 1)):
-        at, planes = ones[side][:, axis], others[facing][:, axis]
+        at, planes = ones[side][:, axis], boxes[facing][:, axis]
         order = np.argsort(planes)
         first, last = (np.searchsorted(planes[order], at, end) for end in ("left", "right"))
         count = last - first
         one = np.repeat(np.arange(len(at)), count)
         nth = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
         other = order[first[one] + nth]
-        low = np.maximum(ones[0][one], others[0][other])
-        high = np.minimum(ones[1][one], others[1][other])
+        low = np.maximum(ones[0][one], boxes[0][other])
+        high = np.minimum(ones[1][one], boxes[1][other])
         low[:, axis] = high[:, axis] = at[one]
         some = (low < high)[:, across].all(axis=1)
         found.append((low[some], high[some]))

@@ -202,9 +202,9 @@ class Encloser:
             )
             poses = Poses.at(self.cover.places(coordinates[at]))
             statics = solve_sagging(robot, poses, self._cable, seeks_better=False)
-            found = _pulls_of(statics, self._cable)
-            solved[at] = statics.is_solved & np.isfinite(found).all(axis=1)
-            pull[at] = np.where(solved[at][:, None], found, 1.0)
+            pulls = _pulls_of(statics, self._cable)
+            solved[at] = statics.is_solved & np.isfinite(pulls).all(axis=1)
+            pull[at] = np.where(solved[at][:, None], pulls, 1.0)
         return pull, solved
 
 

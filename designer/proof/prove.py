@@ -83,7 +83,7 @@ def prove(
     robot: Robot,
     cable: Cable,
     space: Space,
-    found: float,
+    value: float,
     budget: Budget,
     *,
     within: float = WITHIN,
@@ -96,7 +96,7 @@ def prove(
     ----------
     robot, cable, space
         The robot, one cable for all its exit points, and where it shall be able to go.
-    found : float
+    value : float
         Largest over allowable tension that is known of.
     budget : Budget
         What it may take.
@@ -110,8 +110,8 @@ def prove(
     """
     reason = why_not(robot, space.region)
     if reason:
-        return Proof("off", found=found, reason=reason)
-    search = _Search(robot, cable, covers_of(space), found, within, enough)
+        return Proof("off", found=value, reason=reason)
+    search = _Search(robot, cable, covers_of(space), value, within, enough)
     search.step(1)  # compiles, which is not counted
     began = now = time.monotonic()
     while search.is_open and search.boxes < budget.boxes:
@@ -208,13 +208,13 @@ class _Search:
                 some = np.flatnonzero(cover == k)
                 self._add(int(k), a[some], b[some], bound[some], raised[some])
 
-    def _next(self, most: int) -> IntArray:
+    def _next(self, number: int) -> IntArray:
         """Return the boxes that are not known to hold, the largest first; else the worst."""
-        if len(self._bound) <= most:
+        if len(self._bound) <= number:
             return np.arange(len(self._bound))
         unknown = self._bound > self._enough
         key = np.where(unknown, 2.0 + self._volume / self._volume.max(), self._bound)
-        return np.argpartition(-key, most)[:most]
+        return np.argpartition(-key, number)[:number]
 
     def _keep(self, at: IntArray) -> None:
         for name in ("_low", "_high", "_cover", "_volume", "_bound", "_raise"):

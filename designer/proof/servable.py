@@ -78,7 +78,7 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
     covers[0].compile()  # which is not counted
     began, boxes = time.monotonic(), 0
     while boxes < budget.boxes and time.monotonic() - began < budget.seconds:
-        part = max(covers, key=lambda one: one.largest)
+        part = max(covers, key=lambda cover: cover.largest)
         if part.largest == 0.0:
             break
         boxes += part.step(int(min(_BATCH, budget.boxes - boxes)))
@@ -141,10 +141,10 @@ class _Part:
         self._volume = np.concatenate([self._volume[rest], more])
         return len(at)
 
-    def _is_impossible(self, low: FloatArray, high: FloatArray, asked: BoolArray) -> BoolArray:
+    def _is_impossible(self, low: FloatArray, high: FloatArray, mask: BoolArray) -> BoolArray:
         """Tell of which boxes (n, 3) it is proved that no rope holds any of their poses."""
         out = np.zeros(len(low), dtype=np.bool_)
-        for k in np.flatnonzero(asked):
+        for k in np.flatnonzero(mask):
             corners = np.where(_TWO_SIDES, high[k], low[k])
             out[k] = self._separates(self._cover.places(corners))
         return out

@@ -30,7 +30,7 @@ def markdown(computed: Computed) -> str:
 
 def _lines(computed: Computed) -> Iterator[str]:
     count = sum(len(figures) for _, figures in computed)
-    outside = sum(not one.holds for _, figures in computed for one in figures)
+    outside = sum(not figure.holds for _, figures in computed for figure in figures)
     yield "# Verification"
     yield ""
     yield (
@@ -42,13 +42,13 @@ def _lines(computed: Computed) -> Iterator[str]:
     yield from table(("source", "figures", "largest difference", "outside"), "lrrr")
     for case, figures in computed:
         # What is only shown, since theirs is wrong, is no difference of ours.
-        judged = [abs(one.difference) for one in figures if one.tolerance is not None]
-        failed = sum(not one.holds for one in figures)
+        judged = [abs(figure.difference) for figure in figures if figure.tolerance is not None]
+        failed = sum(not figure.holds for figure in figures)
         yield row((case.title, str(len(figures)), f"{max(judged):.1e}", str(failed)))
     for case, figures in computed:
         yield from ("", f"## {case.title}", "", f"{case.source}.", "", case.note, "")
         yield from table(("figure", *HEADINGS), "llrrrrl")
-        yield from (row(cells(one)) for one in figures)
+        yield from (row(cells(figure)) for figure in figures)
     yield from _converted()
 
 
@@ -81,7 +81,7 @@ def _converted() -> Iterator[str]:
     for robot in ROBOTS:
         answer = robot.reason if robot.verdict is None else robot.verdict.reason
         figures = (robot.diameter_mm, robot.tension_N)
-        shown = ("" if one is None else f"{one:.6g}" for one in figures)
+        shown = ("" if figure is None else f"{figure:.6g}" for figure in figures)
         left_out = ", ".join(robot.gaps)
         yield row((robot.name, robot.source, str(robot.n_cables), left_out, answer, *shown))
 

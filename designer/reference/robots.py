@@ -126,10 +126,10 @@ def _cogiro() -> Sequence[Figure]:
 
     cable = Material(7800.0, 100e9, 1e9).cable(0.004)
     start = Poses.at([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
-    found = solve_forward(COGIRO, cable, frozen_array(_COGIRO_LENGTHS_M), start)
-    tensions = zip(_COGIRO_TENSIONS_N, found.statics.exit_tension_N, strict=True)
-    place = zip("xyz", _COGIRO_POSITION_M, found.poses.position_m, strict=True)
-    about = Rotation.from_matrix(found.poses.rotation).as_euler("xyz")
+    forward_statics = solve_forward(COGIRO, cable, frozen_array(_COGIRO_LENGTHS_M), start)
+    tensions = zip(_COGIRO_TENSIONS_N, forward_statics.statics.exit_tension_N, strict=True)
+    place = zip("xyz", _COGIRO_POSITION_M, forward_statics.poses.position_m, strict=True)
+    about = Rotation.from_matrix(forward_statics.poses.rotation).as_euler("xyz")
     turns = zip("xyz", _COGIRO_TURNS_RAD, about, strict=True)
     return (
         *(Figure(f"platform, {axis}", "m", theirs, ours, 1e-5) for axis, theirs, ours in place),

@@ -71,17 +71,17 @@ def _upper_end_N(line: Line) -> tuple[float, float]:
 
 def _closed_form() -> Sequence[Figure]:
     return [
-        Figure(f"{name}, {end}", "N", known, ours, 1e-9)
+        Figure(f"{name}, {end}", "N", their, ours, 1e-9)
         for name, line, theirs, _ in LINES
-        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
+        for end, their, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
     ]
 
 
 def _moorpy() -> Sequence[Figure]:
     return [
-        Figure(f"{name}, {end}", "N", known, ours, None if name == WRONG_IN_MOORPY else 1e-9)
+        Figure(f"{name}, {end}", "N", their, ours, None if name == WRONG_IN_MOORPY else 1e-9)
         for name, line, _, theirs in LINES
-        for end, known, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
+        for end, their, ours in zip("HV", theirs, _upper_end_N(line), strict=True)
     ]
 
 

@@ -133,19 +133,19 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     multiplier = np.zeros(len(problem.load))
     while turns < max_turns and trust > 1e-10:
         turns += 1
-        found = _solve(problem, state, y, multiplier, trust)
-        if found is None:
+        solve = _solve(problem, state, y, multiplier, trust)
+        if solve is None:
             trust *= 0.25
             continue
-        if float(np.abs(found.y / y - 1.0).max()) + abs(found.c - c) < _STILL:
+        if float(np.abs(solve.y / y - 1.0).max()) + abs(solve.c - c) < _STILL:
             break
-        found = problem.corrected(found)
-        moved = problem.state(found.y)
-        better = problem.merit(moved, found.c)
+        solve = problem.corrected(solve)
+        moved = problem.state(solve.y)
+        better = problem.merit(moved, solve.c)
         if better > problem.merit(state, c) + _ROUNDING:
             trust *= 0.25
             continue
-        y, c, state, multiplier = found.y, found.c, moved, found.balance
+        y, c, state, multiplier = solve.y, solve.c, moved, solve.balance
         trust = min(2.0 * trust, _TRUST)
     return problem.answer(state, y, c, turns)
 

@@ -109,14 +109,16 @@ def settle(
     start = Poses(poses.position_m[at], rotation[at])
     left = robot if lost is None else robot.without_cable(lost)
     length = (1.0 + growth) * before.length_m[at][:, others]
-    found = solve_forward(left, cable, length, start)
-    rests, at = found.is_stable, at[found.is_stable]
+    forward_statics = solve_forward(left, cable, length, start)
+    rests, at = forward_statics.is_stable, at[forward_statics.is_stable]
     tension[at] = 0.0
-    tension[np.ix_(at, others)] = found.statics.cable_tension_N[rests]
-    position[at] = found.poses.position_m[rests]
+    tension[np.ix_(at, others)] = forward_statics.statics.cable_tension_N[rests]
+    position[at] = forward_statics.poses.position_m[rests]
     if not robot.is_point_mass:
-        rotation[at] = found.poses.rotation[rests]
+        rotation[at] = forward_statics.poses.rotation[rests]
     moved = np.linalg.norm(position - poses.position_m, axis=1)
     near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
     fate[at] = np.where(near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
-    return CableLoss(fate, before, tension, Poses(position, rotation), moved, found.statics)
+    return CableLoss(
+        fate, before, tension, Poses(position, rotation), moved, forward_statics.statics
+    )

@@ -131,13 +131,13 @@ class _Search:
             active = np.asarray(active & (self.left > 0) & (self.radius > 1e-14 * self.size))
 
     def _step(self, active: BoolArray) -> None:
-        here = Poses(self.position[active], self.rotation[active])
-        stiffness = scaled(self.robot, upright_stiffness(self.statics(active, here)))
+        poses = Poses(self.position[active], self.rotation[active])
+        stiffness = scaled(self.robot, upright_stiffness(self.statics(active, poses)))
         step, rounding = _newton_step(stiffness, self.push[active], self.size)
         length = np.linalg.norm(step, axis=-1)
         radius = self.radius[active]
         step = step * np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
-        trial = moved_poses(self.robot, here, step)
+        trial = moved_poses(self.robot, poses, step)
         push = _push(self.statics(active, trial))
         before, after = self.push[active], push
         rests = np.linalg.norm(before, axis=-1) <= rounding

@@ -318,15 +318,15 @@ def statics_with(
     cable: Cable,
     run: PulleyRun,
     verdict: VerdictArray,
-    found: FloatArray,
+    values: FloatArray,
     force_N: FloatArray | None,
 ) -> Statics:
     """Return the statics of poses (n_poses,) with one cable for all.
 
-    What was ``found`` is free lengths [m] and forces x and z at the platform [N],
+    What was ``values`` is free lengths [m] and forces x and z at the platform [N],
     (3, n_poses, n_cables); NaN unless solved.
     """
-    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], found, np.nan)
+    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], values, np.nan)
     ones = np.ones((len(verdict), 1))
     return Statics(
         robot=robot,

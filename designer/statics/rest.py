@@ -80,20 +80,20 @@ def resting_places(
         np.concatenate([pose.position_m[None], spread.position_m]),
         pose.rotation if robot.is_point_mass else np.concatenate([pose.rotation[None], rotation]),
     )
-    found = find_equilibria(robot, cable, length_m, starts)
-    own = found.which[0]
-    others = found.found.is_stable & (found.which != own)
-    away = np.linalg.norm(found.found.poses.position_m - pose.position_m, axis=-1)
+    equilibria = find_equilibria(robot, cable, length_m, starts)
+    own = equilibria.which[0]
+    others = equilibria.found.is_stable & (equilibria.which != own)
+    away = np.linalg.norm(equilibria.found.poses.position_m - pose.position_m, axis=-1)
     nearest = int(np.argmin(np.where(others, away, np.inf)))
     has_other = bool(others.any())
     turn = 0.0
     if not robot.is_point_mass:
-        turned = pose.rotation.T @ found.found.poses.rotation[nearest]
+        turned = pose.rotation.T @ equilibria.found.poses.rotation[nearest]
         turn = float(Rotation.from_matrix(turned).magnitude())
     return RestingPlaces(
         starts=len(others),
-        is_stable=bool(found.found.is_stable[0]),
-        others=int(np.unique(found.which[others]).size),
+        is_stable=bool(equilibria.found.is_stable[0]),
+        others=int(np.unique(equilibria.which[others]).size),
         nearest_m=float(away[nearest]) if has_other else float("nan"),
         nearest_turn_rad=turn if has_other else float("nan"),
     )
@@ -137,19 +137,19 @@ def find_equilibria(
     starts : Poses
         Poses (n_starts,), such as `spread_poses`, the same for all problems.
     """
-    found = solve_forward(robot, cable, np.asarray(length_m)[..., None, :], starts)
-    places = found.poses.position_m
+    forward_statics = solve_forward(robot, cable, np.asarray(length_m)[..., None, :], starts)
+    places = forward_statics.poses.position_m
     if not robot.is_point_mass:  # turned axes times reach, so that poses compare as points
-        axes = found.poses.rotation.reshape(*places.shape[:-1], 9)
+        axes = forward_statics.poses.rotation.reshape(*places.shape[:-1], 9)
         places = np.concatenate([places, reach_m(robot) * axes], axis=-1)
     shape = places.shape[:-2]
     flat = places.reshape(-1, *places.shape[-2:])
     size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0)))
     # So near to each other two balances are the same one.
     which = np.array([_group(one, 1e-6 * size) for one in flat]).reshape(*shape, -1)
-    stable = np.where(found.is_stable, which, -1).reshape(-1, places.shape[-2])
+    stable = np.where(forward_statics.is_stable, which, -1).reshape(-1, places.shape[-2])
     n_stable = np.array([len(set(row) - {-1}) for row in stable.tolist()]).reshape(shape)
-    return Equilibria(found, which, n_stable)
+    return Equilibria(forward_statics, which, n_stable)
 
 
 def spread_poses(robot: Robot, count: int, largest_turn_rad: float = 0.5) -> Poses:

@@ -57,7 +57,7 @@ def meet(
 
     checkpoint()
     counts = np.zeros((3, len(cables)), dtype=np.int64)
-    found = Meets(
+    meets = Meets(
         utilisation=np.full((len(cables), n_cells), -np.inf),
         pose=np.zeros((len(cables), n_cells), dtype=np.int64),
         longest_m=np.zeros((len(cables), robot.n_cables)),
@@ -68,8 +68,8 @@ def meet(
     )
     if not is_quick(robot):
         for row, cable in enumerate(cables):
-            add_slowly(found, row, robot, poses, cable, cells, leaves_out_hanging)
-        return found
+            add_slowly(meets, row, robot, poses, cable, cells, leaves_out_hanging)
+        return meets
     weight = np.array([cable.weight_N_per_m for cable in cables])
     stiffness = np.array([cable.axial_stiffness_N for cable in cables])
     allowable = np.array([cable.allowable_tension_N for cable in cables])
@@ -83,13 +83,13 @@ def meet(
         plain(allowable / weight),
         np.ascontiguousarray(cells, dtype=np.int64),
         leaves_out_hanging,
-        found,
+        meets,
     )
-    return found
+    return meets
 
 
 def add_slowly(
-    found: Meets,
+    meets: Meets,
     row: int,
     robot: Robot,
     poses: Poses,
@@ -115,22 +115,22 @@ def add_slowly(
     statics = solve_sagging(robot, some, cable, seeks_better=not is_quick(robot))
     if is_quick(robot) and (statics.largest_tension_N > cable.allowable_tension_N).any():
         statics = solve_sagging(robot, some, cable)
-    found.failed[row, at] = ~statics.is_solved
+    meets.failed[row, at] = ~statics.is_solved
     left_out = statics.hangs_below & statics.is_solved & leaves_out_hanging
     counts = statics.is_solved & ~left_out
     used = statics.largest_tension_N[counts] / cable.allowable_tension_N
-    found.left_out[row] += int(left_out.sum())
-    found.counted[row] += len(used)
-    found.overloaded[row] += int((used > 1.0).sum())
-    found.longest_m[row] = np.maximum(
-        found.longest_m[row], statics.length_m[counts].max(axis=0, initial=0.0)
+    meets.left_out[row] += int(left_out.sum())
+    meets.counted[row] += len(used)
+    meets.overloaded[row] += int((used > 1.0).sum())
+    meets.longest_m[row] = np.maximum(
+        meets.longest_m[row], statics.length_m[counts].max(axis=0, initial=0.0)
     )
     # In ascending order the last of each cell, which is its largest, is what stays.
     order = np.argsort(used, kind="stable")
-    best = np.full(found.utilisation.shape[1], -np.inf)
+    best = np.full(meets.utilisation.shape[1], -np.inf)
     where = np.zeros(len(best), dtype=np.int64)
     best[cells[at][counts][order]] = used[order]
     where[cells[at][counts][order]] = at[counts][order]
-    higher = best > found.utilisation[row]
-    found.utilisation[row, higher] = best[higher]
-    found.pose[row, higher] = where[higher]
+    higher = best > meets.utilisation[row]
+    meets.utilisation[row, higher] = best[higher]
+    meets.pose[row, higher] = where[higher]

@@ -160,8 +160,8 @@ def _multipliers(
     tops = int(active[0].sum())
     columns = [np.einsum("ndk,nk->nd", cables.wrench, cables.by_length) * per_reach(robot)]
     sizes = scale_N / allowable_N, -np.ones(n)
-    for one, is_active, size in zip(tensions, active[:2], sizes, strict=True):
-        growth = np.einsum("nk,nk->n", one.by_pull, cables.by_length) + one.by_length
+    for tension, is_active, size in zip(tensions, active[:2], sizes, strict=True):
+        growth = np.einsum("nk,nk->n", tension.by_pull, cables.by_length) + tension.by_length
         columns.append(np.diag(size * growth)[:, is_active])
     columns.append(np.diag(scale_N * cables.sag.by_length)[:, active[2]])
     if not np.isfinite(columns[0]).all():  # a cable that hangs folded
@@ -264,11 +264,11 @@ def _least_tension(cables: _Cables) -> _Tension:
     pull = np.where(is_exit[:, None], exit_pull, cables.pull)
     pull[hangs, 2] = 0.0
     value = np.linalg.norm(pull, axis=1)
-    found = _at_end(cables, pull / value[:, None], value, is_exit & ~hangs)
+    tension = _at_end(cables, pull / value[:, None], value, is_exit & ~hangs)
     # The lowest point moves as the load turns: T² = F² - (F · w / |w|)².
     leaning = cables.pull[:, 2] / cables.weight
-    found.by_load[hangs] = (leaning[:, None] * found.by_pull)[hangs]
-    return found
+    tension.by_load[hangs] = (leaning[:, None] * tension.by_pull)[hangs]
+    return tension
 
 
 def _at_end(

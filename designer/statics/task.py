@@ -269,16 +269,16 @@ def _try_other_branches(
     at = np.flatnonzero(among & (hard | (solution.potential > _WORTH_A_SEARCH)))
     if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
         return
-    some = part_of(flat, at)
+    poses = part_of(flat, at)
     again, its_run = _solve_over_pulleys(
-        robot, some, task.part(at), is_thorough=True, rates_branches=False
+        robot, poses, task.part(at), is_thorough=True, rates_branches=False
     )
     solved = again.verdict == Verdict.SOLVED
     if task.inverse_weight_m_per_N is None:
         burden, before = again.weight_N_per_m, solution.weight_N_per_m[at]
     else:
         burden, before = again.load_factor, solution.load_factor[at]
-    chord = cable_geometry(robot, some).chord_m
+    chord = cable_geometry(robot, poses).chord_m
     was_long, is_long = (
         (length > LONG * chord).any(axis=1) for length in (solution.length_m[at], again.length_m)
     )
@@ -309,8 +309,8 @@ def _let_hang(
     at = np.flatnonzero(hangs)
     if len(at) > 0:
         slack = replace(task.part(at), sag_max=None)
-        some = part_of(flat, at)
-        _replace(solution, run, at, *solve_task(robot, some, slack, seeks_better=seeks_better))
+        poses = part_of(flat, at)
+        _replace(solution, run, at, *solve_task(robot, poses, slack, seeks_better=seeks_better))
     return hangs
 
 
@@ -321,12 +321,12 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     left = np.flatnonzero(solution.verdict != Verdict.SOLVED)
     if len(left) == 0:
         return
-    some = part_of(flat, left)
-    points = straight_run(robot, some).exit_points_m
-    situation = upright_situation(robot, some, points, task.part(left).force_N)
+    poses = part_of(flat, left)
+    points = straight_run(robot, poses).exit_points_m
+    situation = upright_situation(robot, poses, points, task.part(left).force_N)
     near, least_N = np.zeros(len(left), dtype=np.bool_), robot.tension_min_N
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
-        level = level_geometry(robot, some)
+        level = level_geometry(robot, poses)
         near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
         if robot.cable_load_direction is not None:
             situation, least_N = _between_tangents(robot, level, situation), 0.0
@@ -404,9 +404,11 @@ def over_pulleys(
     share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
     for turn in range(turns):
         run = _run(robot, level, slope).unstrained(strain)
-        answer, found, strain = solve(run)
-        found = _slope_over_pulley_rad(robot, poses, level, run, found)
-        step = np.where(np.isfinite(found), found, straight) - slope
+        answer, slope_over_pulley_rad, strain = solve(run)
+        slope_over_pulley_rad = _slope_over_pulley_rad(
+            robot, poses, level, run, slope_over_pulley_rad
+        )
+        step = np.where(np.isfinite(slope_over_pulley_rad), slope_over_pulley_rad, straight) - slope
         before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
         if np.all(gap <= _STILL_RAD):
             break

@@ -122,15 +122,15 @@ def _solve(base: Base, changes: Sequence[Change]) -> tuple[list[Any], str]:
         result = base.result(base.study(changes))
     except Exception as error:  # whatever a plugin or a library may raise
         return [None] * len(base.keep), why_not(error)
-    kept: list[Any] = []
+    values: list[Any] = []
     reasons = [why_negative(result)]
     for name in base.keep:
         try:
-            kept.append(value_at(result, name))
+            values.append(value_at(result, name))
         except KeyError:  # such as the tension of a fourth cable where there are three
-            kept.append(None)
+            values.append(None)
             reasons.append(f"there is no {name} here")
-    return kept, "; ".join(filter(None, reasons))
+    return values, "; ".join(filter(None, reasons))
 
 
 def why_not(error: Exception) -> str:

@@ -169,9 +169,9 @@ def _faults_of_fields(
     """
     base.study()
     for name, one in varied.items():
-        first = one.node(one.low) if isinstance(one, Range) else one.nodes[0]
+        node = one.node(one.low) if isinstance(one, Range) else one.nodes[0]
         try:
-            base.study([(one.keys, first)])
+            base.study([(one.keys, node)])
         except KeyError:
             yield document.fault(("vary", name), "the study has no such field", "its path there")
         except InputError as error:

@@ -89,10 +89,10 @@ def _run_until_death(
                     running[executor.submit(solve_points, base, changes)] = waiting[0]
                 waiting.popleft()
             for future in wait(running, _ASKS_S, FIRST_COMPLETED).done:
-                found = _result(future)
+                result = _result(future)
                 points = running.pop(future)
                 deaths.pop(points, None)
-                store.write(points, found)
+                store.write(points, result)
                 advance(len(points))
     except BrokenProcessPool:
         for points in reversed(running.values()):

@@ -57,7 +57,7 @@ class Clearance:
 
     def each(self) -> Iterator[Any]:
         """Yield the four arrays."""
-        return (getattr(self, one.name) for one in fields(self))
+        return (getattr(self, field.name) for field in fields(self))
 
     def nearer(self, other: Clearance) -> Clearance:
         """Return in each pose the one of two whose distance is smaller."""
@@ -86,26 +86,26 @@ def smallest_clearance(statics: Statics) -> Clearance:
 
 
 def _in_chunks(
-    statics: Statics, near: Callable[[Statics, Curves], tuple[IntArray, Clearance] | None]
+    statics: Statics, function: Callable[[Statics, Curves], tuple[IntArray, Clearance] | None]
 ) -> Clearance:
     """Enter the smallest distance of each pose, of all that may be it in some of the poses."""
     shape = statics.verdict.shape
     n = int(np.prod(shape, dtype=np.int64))
     none = np.full(n, np.nan), np.full((n, 2), PLATFORM), np.full((n, 3), np.nan)
-    found = Clearance(*none, np.full(n, np.nan))
+    clearance = Clearance(*none, np.full(n, np.nan))
     solved = np.flatnonzero(statics.is_solved)
     for at in range(0, len(solved), _CHUNK):
         rows = solved[at : at + _CHUNK]
         some = _some(statics, rows)
-        part = near(some, Curves.of(some))
+        part = function(some, Curves.of(some))
         if part is None:
             break
         row, tried = part
         # In descending order the last entry of each pose, its smallest, is what stays.
         order = np.argsort(-tried.distance_m, kind="stable")
-        for all_of, values in zip(found.each(), tried.each(), strict=True):
+        for all_of, values in zip(clearance.each(), tried.each(), strict=True):
             all_of[rows[row[order]]] = values[order]
-    return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in found.each()))
+    return Clearance(*(all_of.reshape((*shape, *all_of.shape[1:])) for all_of in clearance.each()))
 
 
 def cable_pairs(robot: Robot) -> list[tuple[int, int]]:

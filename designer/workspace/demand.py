@@ -36,22 +36,22 @@ def size_worst(
     The places (n, n_coordinates) in that orientation [m, rad], and what is needed there.
     """
     space = workspace.space
-    some = space.places(positions_m)
-    sizing = size_poses(robot, Poses.at(some), material)
+    places = space.places(positions_m)
+    sizing = size_poses(robot, Poses.at(places), material)
     if space.orientations.count == 1:
-        return some, sizing
-    asked = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
-    some = in_worst_turn(space, some, asked)
-    return some, size_poses(robot, Poses.at(some), material)
+        return places, sizing
+    demand = demand_of(sizing.diameter_m, sizing.statics, workspace.hangs_below)
+    places = in_worst_turn(space, places, demand)
+    return places, size_poses(robot, Poses.at(places), material)
 
 
-def in_worst_turn(space: Space, places: FloatArray, asked: FloatArray) -> FloatArray:
+def in_worst_turn(space: Space, places: FloatArray, values: FloatArray) -> FloatArray:
     """Return of each position the place whose orientation asks for the most.
 
-    ``places`` (n, n_coordinates) are those of `Space.places`, ``asked`` (n,) is their demand.
+    ``places`` (n, n_coordinates) are those of `Space.places`, ``values`` (n,) is their demand.
     """
     count = space.orientations.count
-    worst = asked.reshape(-1, count).argmax(axis=1)
+    worst = values.reshape(-1, count).argmax(axis=1)
     return np.asarray(places[np.arange(len(worst)) * count + worst])
 
 
@@ -83,24 +83,24 @@ def rope_demand(
     return demand
 
 
-def settled_demand(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
+def settled_demand(loaded: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
     """Largest tension on kept lengths [N]; inf where the platform finds no rest.
 
     Which poses are left out is told by how the cables hang before it settles.
     """
 
     def demand(places: FloatArray) -> FloatArray:
-        found = settled(one, Poses.at(places), seeks_better=seeks_better)
-        left_out = is_left_out(found.before, hangs_below)
-        return np.where(left_out, -np.inf, found.largest_tension_N)
+        cable_loss = settled(loaded, Poses.at(places), seeks_better=seeks_better)
+        left_out = is_left_out(cable_loss.before, hangs_below)
+        return np.where(left_out, -np.inf, cable_loss.largest_tension_N)
 
     return demand
 
 
-def settled(one: Loaded, poses: Poses, *, seeks_better: bool = True) -> CableLoss:
+def settled(loaded: Loaded, poses: Poses, *, seeks_better: bool = True) -> CableLoss:
     """Return what becomes of poses (n_poses,) in a load case in which lengths are kept."""
-    kept = one.lost_cable, one.growth
-    return settle(one.robot, poses, one.cable, *kept, seeks_better=seeks_better)
+    kept = loaded.lost_cable, loaded.growth
+    return settle(loaded.robot, poses, loaded.cable, *kept, seeks_better=seeks_better)
 
 
 def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:

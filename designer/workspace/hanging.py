@@ -72,8 +72,8 @@ class HangingCables:
 
 
 def look_at(
-    found: HangingCables,
-    some: FloatArray,
+    hanging_cables: HangingCables,
+    values: FloatArray,
     statics: Statics,
     counts: BoolArray,
     floor_m: float | None,
@@ -82,21 +82,21 @@ def look_at(
 
     No cable may hang below ``floor_m``, upright frame [m].
     """
-    long = _add(found.long, some, statics.length_over_chord, counts, LONG, sign=1.0)
-    below = found.below_floor
+    long = _add(hanging_cables.long, values, statics.length_over_chord, counts, LONG, sign=1.0)
+    below = hanging_cables.below_floor
     if floor_m is not None:
-        below = _add(below, some, statics.lowest_m, counts, floor_m, sign=-1.0)
-    return HangingCables(found.samples + int(counts.sum()), long, below)
+        below = _add(below, values, statics.lowest_m, counts, floor_m, sign=-1.0)
+    return HangingCables(hanging_cables.samples + int(counts.sum()), long, below)
 
 
 def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
     """Return which samples of the workspace have such a cable, with these cables on the machine."""
-    found = HangingCables()
+    hanging_cables = HangingCables()
     for some in workspace.places():
         statics = solve_sagging(robot, Poses.at(some), cable)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-        found = look_at(found, some, statics, counts, workspace.floor_m)
-    return found
+        hanging_cables = look_at(hanging_cables, some, statics, counts, workspace.floor_m)
+    return hanging_cables
 
 
 def _add(
@@ -115,9 +115,9 @@ def _add(
         return before
     at, cable = np.unravel_index(np.where(beyond, excess, 0.0).argmax(), excess.shape)
     samples = int(beyond.any(axis=1).sum())
-    here = Hanging(samples, float(values[at, cable]), int(cable) + 1, tuple(some[at].tolist()))
+    hanging = Hanging(samples, float(values[at, cable]), int(cable) + 1, tuple(some[at].tolist()))
     if before is None:
-        return here
-    farthest = max(before, here, key=lambda one: sign * one.extreme)
+        return hanging
+    farthest = max(before, hanging, key=lambda one: sign * one.extreme)
     total = before.samples + samples
     return Hanging(total, farthest.extreme, farthest.cable, farthest.place)

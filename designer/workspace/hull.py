@@ -44,8 +44,8 @@ def platform_hull(robot: Robot) -> Hull | None:
     """
     if robot.is_point_mass:
         return None
-    given = robot.platform.hull_m
-    corners = robot.attachments_m if given is None else given
+    hull_m = robot.platform.hull_m
+    corners = robot.attachments_m if hull_m is None else hull_m
     middle = corners.mean(axis=0)
     _, spread, axes = np.linalg.svd(corners - middle)
     if spread[1] <= _FLAT * spread[0]:

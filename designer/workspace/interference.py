@@ -92,8 +92,8 @@ def survey(
     robot: Robot, workspace: Workspace, cable: Cable | Cables, clearance_m: float
 ) -> Interference:
     """Look for the smallest clearances in a workspace: `MOST_SAMPLES` first, then between them."""
-    some = workspace.thinned(MOST_SAMPLES)
-    statics = solve_sagging(robot, Poses.at(some), cable)
+    thinned = workspace.thinned(MOST_SAMPLES)
+    statics = solve_sagging(robot, Poses.at(thinned), cable)
     cables, platform = clearance_among_cables(statics), clearance_to_platform(statics)
 
     def nearest(among: Callable[[Statics], Clearance], sampled: Clearance) -> Nearest | None:
@@ -106,7 +106,7 @@ def survey(
 
         if np.isnan(sampled.distance_m).all():
             return None
-        (worst,) = refine_over_branches(workspace.space, nearness_with, some, LIGHT)
+        (worst,) = refine_over_branches(workspace.space, nearness_with, thinned, LIGHT)
         found = clearance(worst.place[None])
         first, second = (int(number) for number in found.pair[0])
         return Nearest(

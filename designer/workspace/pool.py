@@ -24,8 +24,8 @@ class Pool:
         """Take in places (n, n_coordinates) and what they ask for (n,)."""
         places = np.concatenate([self._places, places])
         values = np.concatenate([self._values, values])
-        kept = _best_of_cells(self._space, places, values)
-        self._places, self._values = places[kept], values[kept]
+        best_of_cells = _best_of_cells(self._space, places, values)
+        self._places, self._values = places[best_of_cells], values[best_of_cells]
 
     @property
     def places(self) -> FloatArray:
@@ -45,14 +45,14 @@ def _best_of_cells(space: Space, places: FloatArray, values: FloatArray) -> IntA
     return np.asarray(order[np.sort(first)])
 
 
-def local_maxima(space: Space, places: FloatArray, values: FloatArray, most: int) -> IntArray:
+def local_maxima(space: Space, places: FloatArray, values: FloatArray, number: int) -> IntArray:
     """Return the indices of places that none in the parts around theirs exceed, largest first."""
     from scipy.ndimage import maximum_filter
 
-    kept = _best_of_cells(space, places, values)
-    kept = kept[~np.isneginf(values[kept])]
-    x, y, z, turn = cell = space.cells(places[kept], CELLS_A_SIDE).T
+    best_of_cells = _best_of_cells(space, places, values)
+    best_of_cells = best_of_cells[~np.isneginf(values[best_of_cells])]
+    x, y, z, turn = cell = space.cells(places[best_of_cells], CELLS_A_SIDE).T
     highest = np.full((*[CELLS_A_SIDE] * 3, int(turn.max(initial=0)) + 1), -np.inf)
-    highest[*cell] = values[kept]
-    is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[kept]
-    return np.asarray(kept[is_top][:most])
+    highest[*cell] = values[best_of_cells]
+    is_top = maximum_filter(highest, size=(3, 3, 3, 1))[x, y, z, turn] == values[best_of_cells]
+    return np.asarray(best_of_cells[is_top][:number])

@@ -118,10 +118,10 @@ def refine_over_branches(
         return len(places) > 0 and not np.array_equal(plain(places), thorough(places))
 
     if not changes(starts):
-        found = refine(space, plain, starts, effort)
-        places = np.array([worst.place for worst in found])
+        worsts = refine(space, plain, starts, effort)
+        places = np.array([worst.place for worst in worsts])
         if not changes(places[np.isfinite(places).all(axis=1)]):
-            return found
+            return worsts
     return refine(space, thorough, starts, effort)
 
 
@@ -266,13 +266,13 @@ class _Search:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
         order = np.argsort(-climbs.value, kind="stable")
         size = np.where(self._size > 0.0, self._size, 1e-300)
-        kept: list[int] = []
+        values: list[int] = []
         for k in order:
-            rivals = [j for j in kept if climbs.extreme[j] == climbs.extreme[k]]
+            rivals = [j for j in values if climbs.extreme[j] == climbs.extreme[k]]
             apart = np.abs(climbs.at[rivals] - climbs.at[k]) / size
             if len(rivals) < self._effort.finalists and not (apart < 3e-3).all(axis=1).any():
-                kept.append(int(k))
-        return climbs[np.array(kept, dtype=np.int64)]
+                values.append(int(k))
+        return climbs[np.array(values, dtype=np.int64)]
 
     def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
@@ -281,27 +281,27 @@ class _Search:
             active = np.flatnonzero(climbs.radius > tolerance)
             if not len(active) or self._is_over:
                 break
-            some = climbs[active]
-            reach = some.radius[:, None, None] * self._size
-            trials = self._space.nearest(some.at[:, None] + self._directions(len(active)) * reach)
-            onward = self._space.nearest(some.at + 2.0 * some.step)[:, None]
+            climb = climbs[active]
+            reach = climb.radius[:, None, None] * self._size
+            trials = self._space.nearest(climb.at[:, None] + self._directions(len(active)) * reach)
+            onward = self._space.nearest(climb.at + 2.0 * climb.step)[:, None]
             trials = np.concatenate([trials, onward], axis=1)
             asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
-            own = np.take_along_axis(asked, some.extreme[:, None, None], axis=2)[..., 0]
-            rises = own.max(axis=1) > some.value
+            own = np.take_along_axis(asked, climb.extreme[:, None, None], axis=2)[..., 0]
+            rises = own.max(axis=1) > climb.value
             outside = np.isneginf(own)
             on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
-                slid = self._slide(some[on_border], trials[on_border], own[on_border])
+                slid = self._slide(climb[on_border], trials[on_border], own[on_border])
                 trials[on_border, -1], own[on_border, -1] = slid
             best = own.argmax(axis=1)
             rows = np.arange(len(active))
-            better = own[rows, best] > some.value
-            to = np.where(better[:, None], trials[rows, best], some.at)
-            climbs.step[active] = to - some.at
+            better = own[rows, best] > climb.value
+            to = np.where(better[:, None], trials[rows, best], climb.at)
+            climbs.step[active] = to - climb.at
             climbs.at[active] = to
-            climbs.value[active] = np.where(better, own[rows, best], some.value)
-            climbs.radius[active] = some.radius * np.where(better, 1.1, 0.5)
+            climbs.value[active] = np.where(better, own[rows, best], climb.value)
+            climbs.radius[active] = climb.radius * np.where(better, 1.1, 0.5)
 
     def _slide(
         self, climbs: _Climbs, trials: FloatArray, values: FloatArray

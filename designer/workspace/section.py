@@ -93,8 +93,8 @@ def section_of_pose(built: AsBuilt, pose: Poses, material: Material) -> float | 
     """
     if built.is_family(material):
         return None
-    found = section_at(built.robot, pose, lambda d: built.material(material, d))
-    return _THICKEST_M if math.isnan(found) else found
+    section = section_at(built.robot, pose, lambda d: built.material(material, d))
+    return _THICKEST_M if math.isnan(section) else section
 
 
 def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Material) -> float | None:
@@ -103,10 +103,10 @@ def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Materia
         return None
 
     def worst_of(family: Material) -> Worst:
-        found = map_workspace(built.robot, workspace, family)
-        if found.sagging is not None:
-            return Worst(found.sagging.place, found.sagging.diameter_m)
-        pose = found.infeasible_pose
+        workspace_map = map_workspace(built.robot, workspace, family)
+        if workspace_map.sagging is not None:
+            return Worst(workspace_map.sagging.place, workspace_map.sagging.diameter_m)
+        pose = workspace_map.infeasible_pose
         return Worst(np.full(6, np.nan) if pose is None else pose.place, math.inf)
 
     found = thinnest(built.robot, lambda d: built.material(material, d), worst_of)

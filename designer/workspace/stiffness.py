@@ -53,12 +53,12 @@ def survey_stiffness(
     The search starts from `MOST_SAMPLES` of the workspace's samples.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = workspace.thinned(MOST_SAMPLES)
-    asked = demand_with()(some)
+    thinned = workspace.thinned(MOST_SAMPLES)
+    asked = demand_with()(thinned)
     counts = ~np.isneginf(asked[:, 0])
     if np.isneginf(asked[:, 1]).all():
         return None
-    softest, stiffest = refine_over_branches(workspace.space, demand_with, some)
+    softest, stiffest = refine_over_branches(workspace.space, demand_with, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
         unstable=int(np.isposinf(asked[:, 0]).sum()),
@@ -80,17 +80,17 @@ def smallest_stiffness_N_per_m(
     `designer.statics.stiffness`.
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
-    some = workspace.thinned(FEW_SAMPLES)
+    thinned = workspace.thinned(FEW_SAMPLES)
 
     def softness_with(**how: bool) -> Demand:
         demand = demand_with(**how)
         return lambda places: demand(places)[:, 0]
 
     if searched:
-        (worst,) = refine_over_branches(workspace.space, softness_with, some, LIGHT)
+        (worst,) = refine_over_branches(workspace.space, softness_with, thinned, LIGHT)
         softest = worst.demand
     else:
-        softest = float(softness_with()(some).max(initial=-np.inf))
+        softest = float(softness_with()(thinned).max(initial=-np.inf))
     return float("nan") if np.isneginf(softest) else 1.0 / softest
 
 

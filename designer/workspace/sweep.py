@@ -94,8 +94,8 @@ class _Gathered:
         straight = massless_demand_of(sizing, self._workspace.hangs_below)
         self.massless_starts.add(some, straight)
         at = int(np.argmax(diameter))
-        most = -np.inf if self.sampled is None else self.sampled.diameter_m
-        if diameter[at] > most:
+        diameter_m = -np.inf if self.sampled is None else self.sampled.diameter_m
+        if diameter[at] > diameter_m:
             tension = float(statics.largest_tension_N[at])
             self.sampled = Extreme.at(some[at], float(diameter[at]), tension)
         served = statics.is_solved | left_out

@@ -182,8 +182,14 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
 def _orientations(section: WorkspaceSection) -> Orientations:
     if section.orientation_range is not None:
         return Orientations.within(*section.orientation_range.bounds_rad)
-    each = section.orientations or (() if section.orientation is None else (section.orientation,))
-    return Orientations(frozen_array([one.turn_rad for one in each])) if each else Orientations()
+    orientations = section.orientations or (
+        () if section.orientation is None else (section.orientation,)
+    )
+    return (
+        Orientations(frozen_array([orientation.turn_rad for orientation in orientations]))
+        if orientations
+        else Orientations()
+    )
 
 
 def _region(section: RegionSection, robot: Robot) -> Region:
@@ -234,7 +240,8 @@ def _measurements(section: MeasurementsSection | None, folder: Path) -> Measurem
         diameter_m=section.cable.diameter,
         minimum_breaking_load_N=section.cable.minimum_breaking_load,
         columns=tuple(
-            LogColumn(name, one.to, *one.conversion()) for name, one in section.columns.items()
+            LogColumn(name, column.to, *column.conversion())
+            for name, column in section.columns.items()
         ),
         settled=section.settled,
         unknown=section.unknown,

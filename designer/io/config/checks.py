@@ -195,10 +195,10 @@ def limit_has_groups(parts: Parts) -> Iterator[Fault]:
 
 def effects_are_known(parts: Parts) -> Iterator[Fault]:
     """Each effect has an id, parameters and a cable that there are, and leaves a platform."""
-    found, mass_kg = parts.declared, parts.read("robot.platform.mass")
-    for refusal in found.refusals:
+    declared, mass_kg = parts.declared, parts.read("robot.platform.mass")
+    for refusal in declared.refusals:
         yield parts.document.fault(refusal.place, refusal.problem, refusal.expected)
-    for place, effect in found.effects:
+    for place, effect in declared.effects:
         if effect.id != "platform_mass" or mass_kg is None:
             continue
         if mass_kg + effect.parameters.get("offset_kg", 0.0) <= 0:
@@ -263,8 +263,8 @@ def unknown_poses_can_be_told(parts: Parts) -> Iterator[Fault]:
 
 def _texts(parts: Parts, path: str) -> Iterator[tuple[int, str]]:
     """Yield the texts of a list, each with its place."""
-    given = parts.raw(path)
-    for index, text in enumerate(given if isinstance(given, list) else ()):
+    data = parts.raw(path)
+    for index, text in enumerate(data if isinstance(data, list) else ()):
         if isinstance(text, str):
             yield index, text
 

@@ -35,11 +35,11 @@ class ColumnSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_name(cls, given: object) -> object:
-        if not isinstance(given, str | dict):
+    def _from_name(cls, value: object) -> object:
+        if not isinstance(value, str | dict):
             expected = f"{_TARGET}, or {{to: …, unit: …}}"
-            raise refusal(f"{describe(given)} is not a name", expected)
-        return {"to": given} if isinstance(given, str) else given
+            raise refusal(f"{describe(value)} is not a name", expected)
+        return {"to": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
     def _check_conversion(self) -> ColumnSection:

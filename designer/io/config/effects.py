@@ -80,14 +80,14 @@ def effect_entries(
             yield Entry(path_text(at), as_given(node.at(at[1:])), shown)
 
 
-def _read_all(found: Found, effect: Effect, given: Data) -> None:
+def _read_all(found: Found, effect: Effect, data: Data) -> None:
     place: Place = (_SECTION, effect.id)
-    if not effect.takes_cable or not isinstance(given, list):
-        _read_one(found, effect, place, given)
+    if not effect.takes_cable or not isinstance(data, list):
+        _read_one(found, effect, place, data)
         return
-    if not given:
+    if not data:
         found.refuse(place, "an empty list", "one mapping for each cable that has this effect")
-    for index, item in enumerate(given):
+    for index, item in enumerate(data):
         _read_one(found, effect, (*place, index), item)
     seen: set[int] = set()
     for each, declared in found.effects:
@@ -98,15 +98,15 @@ def _read_all(found: Found, effect: Effect, given: Data) -> None:
             seen.add(declared.cable)
 
 
-def _read_one(found: Found, effect: Effect, place: Place, given: Data) -> None:
+def _read_one(found: Found, effect: Effect, place: Place, data: Data) -> None:
     parameters = effect.parameters_for(found.n_cables)
-    keys = ["cable"] * effect.takes_cable + [one.name for one in parameters]
-    if not isinstance(given, dict) or not given:
-        problem = f"{'an empty mapping' if given == {} else describe(given)} is not a mapping"
+    keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
+    if not isinstance(data, dict) or not data:
+        problem = f"{'an empty mapping' if data == {} else describe(data)} is not a mapping"
         found.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
         return
     misspelt = set()  # what was probably meant by names that are no parameters
-    for key in given:
+    for key in data:
         if key not in keys:
             problem = f"unknown parameter '{printable(key)}'"
             expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
@@ -115,15 +115,15 @@ def _read_one(found: Found, effect: Effect, place: Place, given: Data) -> None:
     cable = None
     if effect.takes_cable and "cable" not in misspelt:
         at = (*place, "cable")
-        if "cable" in given:
-            number = found.read(at, WholeNumber(1, found.n_cables), given["cable"])
+        if "cable" in data:
+            number = found.read(at, WholeNumber(1, found.n_cables), data["cable"])
             cable = None if number is None else int(number)
         else:
             found.refuse(at, "is missing", f"the number of the cable, 1 to {found.n_cables}")
     values = {
-        one.name: _value(found, (*place, one.name), given, one)
-        for one in parameters
-        if one.name not in misspelt
+        parameter.name: _value(found, (*place, parameter.name), data, parameter)
+        for parameter in parameters
+        if parameter.name not in misspelt
     }
     found.effects.append((place, DeclaredEffect(effect.id, cable, values)))
 

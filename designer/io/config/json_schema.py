@@ -88,13 +88,13 @@ def _or_nothing(schema: JsonSchema) -> JsonSchema:
     if not inside:
         return outside
     kinds = inside["anyOf"] if set(inside) <= {"anyOf", "x-unit"} else [inside]
-    return {"anyOf": [*(one for one in kinds if one != nothing), nothing], **outside}
+    return {"anyOf": [*(kind for kind in kinds if kind != nothing), nothing], **outside}
 
 
 def _effect(effect: Effect) -> JsonSchema:
-    single = [one for one in effect.parameters if "{cable}" not in one.name]
-    each_cable = [one for one in effect.parameters if "{cable}" in one.name]
-    one: JsonSchema = {
+    single = [parameter for parameter in effect.parameters if "{cable}" not in parameter.name]
+    each_cable = [parameter for parameter in effect.parameters if "{cable}" in parameter.name]
+    json_schema: JsonSchema = {
         "type": "object",
         "minProperties": 1,
         "properties": {parameter.name: field_of(parameter).json_schema() for parameter in single},
@@ -108,10 +108,10 @@ def _effect(effect: Effect) -> JsonSchema:
     summary = effect.summary.format(cable="…")
     words = {"title": summary, "description": f"{effect.law} ({effect.source})"}
     if not effect.takes_cable:
-        return one | words
-    one["properties"]["cable"] = WholeNumber(1, MOST_CABLES).json_schema()
-    one["required"].append("cable")
-    return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], **words}
+        return json_schema | words
+    json_schema["properties"]["cable"] = WholeNumber(1, MOST_CABLES).json_schema()
+    json_schema["required"].append("cable")
+    return {"anyOf": [json_schema, {"type": "array", "items": json_schema, "minItems": 1}], **words}
 
 
 def _explain(node: JsonSchema, path: str) -> None:

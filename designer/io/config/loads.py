@@ -42,8 +42,8 @@ class WindSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _one_kind_of_direction(cls, given: object) -> object:
-        return only_one_of(given, ("directions", "direction"), "the wind")
+    def _one_kind_of_direction(cls, value: object) -> object:
+        return only_one_of(value, ("directions", "direction"), "the wind")
 
 
 class IceSection(Section):

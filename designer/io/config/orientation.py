@@ -28,20 +28,20 @@ def _of_unit_length(parts: tuple[float, float, float, float]) -> tuple[float, ..
     return parts
 
 
-def _convention(given: object) -> str:
+def _convention(value: object) -> str:
     axes = r"(?!.*(.)\1)(?:[XYZ]{3}|[xyz]{3})"
-    if not isinstance(given, str) or not re.fullmatch(axes, given):
-        raise refusal(f"{describe(given)} is no order of axes", _AXES)
-    return given
+    if not isinstance(value, str) or not re.fullmatch(axes, value):
+        raise refusal(f"{describe(value)} is no order of axes", _AXES)
+    return value
 
 
-def only_one_of(given: object, names: tuple[str, ...] = FORMS, owner: str = "the pose") -> object:
+def only_one_of(value: object, names: tuple[str, ...] = FORMS, owner: str = "the pose") -> object:
     """Return a mapping unchanged, or refuse it if it has several of these fields."""
-    if isinstance(given, dict):
-        found = [name for name in names if given.get(name) is not None]
+    if isinstance(value, dict):
+        found = [name for name in names if value.get(name) is not None]
         if len(found) > 1:
             raise refusal(f"{owner} has {' and '.join(found)}", f"one of {', '.join(names)}")
-    return given
+    return value
 
 
 _Number = Annotated[float, bounded("part of a quaternion")]

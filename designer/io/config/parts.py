@@ -37,10 +37,10 @@ class Parts:
 
     def raw(self, path: str) -> Data:
         """Return what the file holds at a path, None for nothing."""
-        found = self.data
+        data = self.data
         for key in path.split("."):
-            found = found.get(key) if isinstance(found, dict) else None
-        return found
+            data = data.get(key) if isinstance(data, dict) else None
+        return data
 
     def read(self, path: str) -> Any:
         """Return the value at a path, checked by the schema; None if it is absent or faulty."""
@@ -89,10 +89,10 @@ class Parts:
         return np.asarray((points_m @ vertical_frame(self.down).T)[:, :2])
 
 
-def valid(reader: TypeAdapter[Any], given: Data) -> Any:
+def valid(reader: TypeAdapter[Any], data: Data) -> Any:
     """Return what a reader makes of a value; None where it refuses it."""
     try:
-        return reader.validate_python(given)
+        return reader.validate_python(data)
     except ValidationError:
         return None
 

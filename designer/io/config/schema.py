@@ -92,8 +92,8 @@ CableNumbers = Annotated[
 Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
 
-def _word_or_list(given: object) -> str:
-    return "a word" if isinstance(given, str) else "a list"
+def _word_or_list(value: object) -> str:
+    return "a word" if isinstance(value, str) else "a list"
 
 
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
@@ -165,8 +165,8 @@ class GradeCableSection(Section):
     thermal_expansion: fields.Expansion | None = None
 
 
-def _cable_tag(given: object) -> str:
-    names_grade = isinstance(given, dict | GradeCableSection) and "grade" in dict(given)
+def _cable_tag(value: object) -> str:
+    names_grade = isinstance(value, dict | GradeCableSection) and "grade" in dict(value)
     return "grade of a cable" if names_grade else "figures of a cable"
 
 
@@ -237,14 +237,14 @@ def _kinds_named(region: dict[str, object]) -> list[str]:
     return [kind for kind in REGION_KINDS if kind in names] or nearest
 
 
-def _of_one_kind(given: object) -> object:
-    if not isinstance(given, dict):
-        raise refusal(f"{describe(given)} is not a mapping", f"one of {_KINDS} in it")
-    kinds = _kinds_named(given)
+def _of_one_kind(value: object) -> object:
+    if not isinstance(value, dict):
+        raise refusal(f"{describe(value)} is not a mapping", f"one of {_KINDS} in it")
+    kinds = _kinds_named(value)
     if len(kinds) != 1:
         found = " and ".join(kinds) or "none of the kinds"
         raise refusal(f"the region has {found}", f"exactly one of {_KINDS}")
-    return given
+    return value
 
 
 Region = Annotated[
@@ -275,8 +275,8 @@ class WorkspaceSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _one_kind_of_orientation(cls, given: object) -> object:
-        return only_one_of(given, ORIENTATION_KINDS, "the workspace")
+    def _one_kind_of_orientation(cls, value: object) -> object:
+        return only_one_of(value, ORIENTATION_KINDS, "the workspace")
 
 
 class LimitsSection(Section):

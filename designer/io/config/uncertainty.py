@@ -20,8 +20,8 @@ def _rising(ends: tuple[float, float]) -> tuple[float, float]:
     return ends
 
 
-def _tag(given: object) -> str:
-    return "ends" if isinstance(given, list | tuple) else "a half width"
+def _tag(value: object) -> str:
+    return "ends" if isinstance(value, list | tuple) else "a half width"
 
 
 Ends = Annotated[
