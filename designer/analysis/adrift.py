@@ -7,7 +7,8 @@ says nothing about a design.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,17 @@ from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
+from designer.model.space import named_place
 from designer.statics.inverse import solve_massless
 from designer.study import Workspace
 
 _MOST_SAMPLES, _FEW_SAMPLES = 512, 32
 """Poses of each direction; the few for robots with spare cables, of which each is a programme."""
+
+
+def _named_loads(loaded: Loaded) -> dict[str, Any]:
+    directions = {"wind_direction": loaded.wind, "inertia_direction": loaded.inertia}
+    return {"load_case": loaded.case.name, **directions}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,10 +45,10 @@ class Adrift:
         Force on the platform beside its weight and what acts on it at rest [N].
     """
 
-    loaded: Loaded
+    loaded: Loaded = field(metadata={"json": _named_loads})
     share: float
-    place: FloatArray
-    push_N: float
+    place: FloatArray = field(metadata={"json": named_place})
+    push_N: float = field(metadata={"json": "force_N"})
 
 
 def adrift_in(

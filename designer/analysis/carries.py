@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from designer.analysis.first_failures import FirstFailure, first_failures
 from designer.analysis.reserve import Reserve, payload_reserve, region_reserve
@@ -12,6 +12,11 @@ from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseFound
 from designer.selection.result import SelectionResult
 from designer.study import Study
+
+
+def _named_size(candidate: Candidate) -> dict[str, object]:
+    names = {"grade": candidate.grade.id, "size_id": candidate.size.id}
+    return {**names, "total_mass_kg": candidate.total_mass_kg}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +35,7 @@ class SizeBeside:
         What is left of the breaking load over that tension.
     """
 
-    candidate: Candidate
+    candidate: Candidate = field(metadata={"json": _named_size})
     load_case: str
     max_tension_N: float
     utilisation: float

@@ -7,8 +7,8 @@ cable below the platform count, or not? How wide is the strip that cannot be ser
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -37,6 +37,26 @@ _CHUNK = 2**18
 _THIN_M = 1e-3
 
 
+def _named_product(candidate: Candidate) -> dict[str, Any]:
+    return {"grade": candidate.grade.id, "size_id": candidate.size.id}
+
+
+def _named_use(verification: Verification) -> dict[str, Any]:
+    names = ("max_tension_N", "utilisation")
+    return {name: getattr(verification, name) for name in names}
+
+
+def _named_worst(survey: WorkspaceMap) -> dict[str, Any]:
+    worst, samples = survey.sagging, survey.census.samples
+    return {
+        "samples": samples,
+        "feasible": survey.is_feasible,
+        "diameter_m": worst and worst.diameter_m,
+        "max_tension_N": worst and worst.max_tension_N,
+        "pose": worst and worst.position_m,
+    }
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class MasslessChoice:
     """The size of the chosen grade that a design without sag would have picked.
@@ -45,8 +65,10 @@ class MasslessChoice:
     it really meets in the workspace.
     """
 
-    candidate: Candidate
-    verification: Verification
+    candidate: Candidate = field(metadata={"json": _named_product})
+    verification: Verification = field(metadata={"json": _named_use})
+
+    also_in_files: ClassVar = ("safety_factor",)
 
     @property
     def size(self) -> Size:
@@ -67,8 +89,8 @@ class OtherPolicy:
     From at most 20 000 samples and the search between them.
     """
 
-    hangs_below: HangsBelow
-    map: WorkspaceMap
+    hangs_below: HangsBelow = field(metadata={"json": "policy"})
+    map: WorkspaceMap = field(metadata={"json": _named_worst})
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,14 +139,16 @@ class Findings:
         Load cases that carry the platform away somewhere.
     """
 
-    chosen_outcome: GradeOutcome | None = None
+    chosen_outcome: GradeOutcome | None = field(default=None, metadata={"json": None})
     chosen_limit_ratio: float | None = None
-    massless_choice: MasslessChoice | None = None
+    massless_choice: MasslessChoice | None = field(
+        default=None, metadata={"json": "without_cable_weight"}
+    )
     modulus_utilisation: tuple[float, float] | None = None
-    other_policy: OtherPolicy | None = None
-    hanging: float | None = None
+    other_policy: OtherPolicy | None = field(default=None, metadata={"json": "other_hangs_below"})
+    hanging: float | None = field(default=None, metadata={"json": "hanging_share"})
     unserved: Unserved | None = None
-    adrift: tuple[Adrift, ...] = ()
+    adrift: tuple[Adrift, ...] = field(default=(), metadata={"json": "not_in_equilibrium"})
 
 
 def find(analysis: Analysis) -> Findings:

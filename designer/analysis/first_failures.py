@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -44,9 +44,9 @@ class FirstFailure:
     name: str
     direction: FloatArray
     distance_m: float
-    position_m: FloatArray
+    position_m: FloatArray = field(metadata={"json": "pose"})
     why: str
-    reach_m: float
+    reach_m: float = field(metadata={"json": "looked_m"})
 
 
 def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:

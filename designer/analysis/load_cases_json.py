@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
-from designer.documents.plain import finite
-from designer.model.requirement import Requirement
-from designer.model.space import turn_of
+from designer.model.space import named_place
 from designer.selection.cases import CaseFound
 from designer.statics.cable_loss import Fate
 
@@ -19,10 +16,10 @@ Json = dict[str, Any]
 def load_cases_dict(analysis: Analysis) -> Json:
     """Return each load case, each requirement, and the governing pose, None where no rope is."""
     study, chosen = analysis.study, analysis.chosen
-    checks = [_check(requirement) for requirement in analysis.requirements]
+    checks = analysis.requirements
     if chosen is None or study.selection is None:
         needs = [
-            _case(one.found) | finite({"diameter_m": one.diameter_m, "holds": one.is_held})
+            _case(one.found) | {"diameter_m": one.diameter_m, "holds": one.is_held}
             for one in analysis.needs
         ]
         return {"load_cases": needs, "checks": checks, "governing": None}
@@ -34,41 +31,21 @@ def load_cases_dict(analysis: Analysis) -> Json:
     }
 
 
-def _check(requirement: Requirement) -> Json:
-    names = ("id", "load_case", "cable", "demand", "capacity", "unit", "utilisation", "holds")
-    values = {name: getattr(requirement, name) for name in (*names, "formula", "source", "remark")}
-    place = requirement.place
-    plain: Json = finite(
-        values
-        | {
-            "state": requirement.state.value,
-            "direction": requirement.direction or None,
-            "pose": None if place is None else place[:3],
-            "rotation_vector": None if place is None else turn_of(place),
-        }
-    )
-    return plain
-
-
 def _governing(pose: GoverningPose) -> Json:
     found = pose.found
     place = found.verification.worst_place
-    plain: Json = finite(
-        {
-            "load_case": found.case.name,
-            "cable": found.most_used,
-            "lost_cable": found.loaded.lost_cable,
-            "pose": place[:3],
-            "rotation_vector": turn_of(place),
-            "at_m": pose.statics.poses.position_m[0],
-            "cables": [asdict(one) for one in pose.cables],
-            "loads": [{"name": name, "force_N": force} for name, force in pose.loads],
-            "force_sum_N": pose.left_N,
-            "closure_residual_m": pose.closure_residual_m,
-            "balance_residual": pose.balance_residual,
-        }
-    )
-    return plain
+    return {
+        "load_case": found.case.name,
+        "cable": found.most_used,
+        "lost_cable": found.loaded.lost_cable,
+        **named_place(place),
+        "at_m": pose.statics.poses.position_m[0],
+        "cables": pose.cables,
+        "loads": [{"name": name, "force_N": force} for name, force in pose.loads],
+        "force_sum_N": pose.left_N,
+        "closure_residual_m": pose.closure_residual_m,
+        "balance_residual": pose.balance_residual,
+    }
 
 
 def _case(found: CaseFound) -> Json:
@@ -87,13 +64,11 @@ def _case(found: CaseFound) -> Json:
         "allowable_tension_N": loaded.cable.allowable_tension_N,
         "axial_stiffness_N": loaded.cable.axial_stiffness_N,
         "cable": found.most_used,
-        "pose": place[:3],
-        "rotation_vector": turn_of(place),
+        **named_place(place),
         "lost_cable": loaded.lost_cable,
         "temperature_change_K": found.case.temperature_change_K,
         "wind_direction": loaded.wind,
         "inertia_direction": loaded.inertia,
         "refined": met.is_refined,
     }
-    plain: Json = finite(asked | after)
-    return plain
+    return asked | after

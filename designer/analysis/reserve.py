@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from designer.analysis.sensitivities import with_payload
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.region import Region
+from designer.model.space import named_position
 from designer.selection.cases import CaseFound
 from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import rope_demand, settled_demand
@@ -53,8 +54,8 @@ class Reserve:
     value: float
     utilisation: float
     load_case: str
-    place: FloatArray
-    is_held: bool = True
+    place: FloatArray = field(metadata={"json": named_position})
+    is_held: bool = field(default=True, metadata={"json": "held"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -11,24 +10,21 @@ import numpy as np
 from designer import __version__
 from designer.analysis.analyse import Analysis
 from designer.analysis.carries_json import carries_dict
-from designer.analysis.findings_json import findings_dict
 from designer.analysis.load_cases_json import load_cases_dict
 from designer.analysis.pose import PoseAnalysis
 from designer.analysis.selection_json import groups_dict, selection_dict
 from designer.analysis.uncertainty_json import uncertainty_dict
 from designer.arrays import FloatArray
 from designer.documents.formats import RESULT_FORMAT
+from designer.documents.plain import plain, record
 from designer.model.space import turn_of
 from designer.model.verdict import Verdict
 from designer.proof.prove import Proof
-from designer.proof.servable import Servable
 from designer.selection.qualities import Qualities
-from designer.statics.rest import RestingPlaces
 from designer.study import Study
 from designer.workspace.hanging import Hanging, HangingCables
 from designer.workspace.interference import Interference
 from designer.workspace.result import Extreme, WorkspaceMap
-from designer.workspace.stiffness import StiffnessSurvey
 
 Json = dict[str, Any]
 IsRead = Callable[[str], bool]
@@ -50,41 +46,37 @@ def result_dict(analysis: Analysis, is_read: IsRead = _everything) -> Json:
     """
     study = analysis.study
     carries = any(map(is_read, _OF_CARRIES))
-    return {
-        "format": RESULT_FORMAT,
-        "name": study.name,
-        "positive": analysis.is_positive,
-        "answer": _answer(analysis),
-        "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
-        "pose": _pose(analysis, is_read),
-        "workspace": _workspace(analysis, is_read),
-        "selection": None if analysis.selection is None else _selection(analysis),
-        **load_cases_dict(analysis),
-        **carries_dict(
-            analysis.carries if carries else None, analysis.group_slopes if carries else ()
-        ),
-        "uncertainty": uncertainty_dict(analysis.uncertainty if is_read("uncertainty") else None),
-        "findings": findings_dict(analysis.findings) if is_read("findings") else None,
-        "proof": _proof(analysis),
-        "verification": _verification(analysis) if is_read("verification") else [],
-        "provenance": {
-            **_origin(study),
-            "catalogues": [
-                {
-                    "name": source.name,
-                    "source": source.source,
-                    "grades": source.n_grades,
-                    "sha256": source.sha256,
-                }
-                for source in analysis.catalogue.sources
-            ],
-            "problems": list(analysis.left_out),
-            "libraries": dict(analysis.provenance.libraries),
-            "system": analysis.provenance.system,
-            "created": analysis.provenance.created.isoformat(timespec="seconds"),
-            "seed": None if study.workspace is None else study.workspace.seed,
-        },
-    }
+    return plain(
+        {
+            "format": RESULT_FORMAT,
+            "name": study.name,
+            "positive": analysis.is_positive,
+            "answer": _answer(analysis),
+            "inputs": {entry.field: entry.value_SI for entry in study.source.entries},
+            "pose": _pose(analysis, is_read),
+            "workspace": _workspace(analysis, is_read),
+            "selection": None if analysis.selection is None else _selection(analysis),
+            **load_cases_dict(analysis),
+            **carries_dict(
+                analysis.carries if carries else None, analysis.group_slopes if carries else ()
+            ),
+            "uncertainty": uncertainty_dict(
+                analysis.uncertainty if is_read("uncertainty") else None
+            ),
+            "findings": analysis.findings if is_read("findings") else None,
+            "proof": _proof(analysis),
+            "verification": analysis.verification if is_read("verification") else [],
+            "provenance": {
+                **_origin(study),
+                "catalogues": analysis.catalogue.sources,
+                "problems": analysis.left_out,
+                "libraries": dict(analysis.provenance.libraries),
+                "system": analysis.provenance.system,
+                "created": analysis.provenance.created.isoformat(timespec="seconds"),
+                "seed": None if study.workspace is None else study.workspace.seed,
+            },
+        }
+    )
 
 
 def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
@@ -101,7 +93,7 @@ def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
         part["pose"] = _pose(analysis, is_read)
     if is_read("workspace"):
         part["workspace"] = _workspace(analysis, is_read)
-    return part
+    return plain(part)
 
 
 def _reader(paths: Iterable[str]) -> IsRead:
@@ -124,7 +116,7 @@ def size_dict(study: Study, pose: PoseAnalysis, keep: Iterable[str] | None = Non
     """
     is_read = _everything if keep is None else _reader(keep)
     pose_alone = {"pose": _pose_dict(study, pose, is_read), "provenance": _origin(study)}
-    return {"format": RESULT_FORMAT, "name": study.name, **pose_alone}
+    return plain({"format": RESULT_FORMAT, "name": study.name, **pose_alone})
 
 
 def _origin(study: Study) -> Json:
@@ -146,13 +138,13 @@ def _products(analysis: Analysis) -> Json:
     products = [
         {
             "name": group.name or None,
-            "cables": list(group.cables),
+            "cables": group.cables,
             "grade": rope.grade.id,
             "size_id": rope.size.id,
         }
         for group, rope in zip(assignment.groups, assignment.ropes, strict=True)
     ]
-    return {"products": products, "total_mass_kg": _number(assignment.total_mass_kg)}
+    return {"products": products, "total_mass_kg": assignment.total_mass_kg}
 
 
 def _pose(analysis: Analysis, is_read: IsRead) -> Json | None:
@@ -161,29 +153,29 @@ def _pose(analysis: Analysis, is_read: IsRead) -> Json | None:
 
 def _pose_dict(study: Study, pose: PoseAnalysis, is_read: IsRead) -> Json:
     statics, sizing = pose.sizing.statics, pose.sizing
-    diameter, is_solved = _number(sizing.diameter_m), bool(statics.is_solved)
+    diameter, is_solved = sizing.diameter_m, bool(statics.is_solved)
     how_surely = "proved" if sizing.is_thinnest else "found"  # that no thinner cable holds it
     return {
-        "position_m": _numbers(statics.poses.position_m),
+        "position_m": statics.poses.position_m,
         "in_workspace": None if study.workspace is None else not study.pose_outside,
-        "limit_ratio": _number(pose.limit_ratio),
+        "limit_ratio": pose.limit_ratio,
         "sagging": {
             "diameter_m": diameter,
-            "max_tension_N": _number(statics.largest_tension_N),
-            "lengths_m": _numbers(statics.length_m),
-            "tensions_N": _numbers(statics.exit_tension_N),
-            "platform_tensions_N": _numbers(statics.platform_tension_N),
-            "forces_x_N": _numbers(statics.force_x_N),
-            "forces_z_N": _numbers(statics.force_z_N),
+            "max_tension_N": statics.largest_tension_N,
+            "lengths_m": statics.length_m,
+            "tensions_N": statics.exit_tension_N,
+            "platform_tensions_N": statics.platform_tension_N,
+            "forces_x_N": statics.force_x_N,
+            "forces_z_N": statics.force_z_N,
             "hangs_below": bool(statics.hangs_below) if is_solved else None,
-            "closure_residual_m": _number(statics.closure_residual_m().max()),
-            "equilibrium_residual_N": _number(abs(statics.equilibrium_residual_N()).max()),
+            "closure_residual_m": statics.closure_residual_m().max(),
+            "equilibrium_residual_N": abs(statics.equilibrium_residual_N()).max(),
             "status": Verdict(int(statics.verdict)).label,
             "thinnest": how_surely if is_solved else None,
         },
         "massless": {
-            "diameter_m": _number(sizing.massless_diameter_m),
-            "max_tension_N": _number(pose.massless.largest_tension_N),
+            "diameter_m": sizing.massless_diameter_m,
+            "max_tension_N": pose.massless.largest_tension_N,
         },
         "loop": {
             "converged": pose.loop.has_converged,
@@ -194,19 +186,7 @@ def _pose_dict(study: Study, pose: PoseAnalysis, is_read: IsRead) -> Json:
             ],
         },
         "optimum": {"diameter_m": diameter},
-        "rest": _rest(pose.rest) if is_read("pose.rest") else None,
-    }
-
-
-def _rest(rest: RestingPlaces | None) -> Json | None:
-    if rest is None:
-        return None
-    return {
-        "stable": rest.is_stable,
-        "starts": rest.starts,
-        "other_places": rest.others,
-        "nearest_m": _number(rest.nearest_m),
-        "nearest_turn_rad": _number(rest.nearest_turn_rad),
+        "rest": pose.rest if is_read("pose.rest") else None,
     }
 
 
@@ -218,13 +198,13 @@ def _workspace(analysis: Analysis, is_read: IsRead) -> Json | None:
         **_map(analysis.workspace),
         "orientations": _orientations(analysis.study),
         "section_m": analysis.section_m,
-        "servable": _servable(analysis.servable) if is_read("workspace.servable") else None,
+        "servable": analysis.servable if is_read("workspace.servable") else None,
         **_qualities(analysis.qualities if of_the_choice else None),
     }
 
 
 def _map(found: WorkspaceMap) -> Json:
-    example, census = found.infeasible_example_m, found.census
+    census = found.census
     return {
         "samples": census.samples,
         "feasible": found.is_feasible,
@@ -234,9 +214,9 @@ def _map(found: WorkspaceMap) -> Json:
         "excluded": census.excluded,
         **_hanging(census.hanging),
         "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
-        "infeasible_example_m": None if example is None else _numbers(example),
+        "infeasible_example_m": found.infeasible_example_m,
         **_turn(found.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
-        "limit_ratio": _number(found.limit_ratio),
+        "limit_ratio": found.limit_ratio,
         "sagging": _extreme(found.sagging),
         "sampled": _extreme(found.sampled),
         "massless": _extreme(found.massless),
@@ -257,9 +237,9 @@ def _worst_hanging(found: Hanging | None, name: str) -> Json:
     place = np.array(found.place)
     return {
         "samples": found.samples,
-        name: _number(found.extreme),
+        name: found.extreme,
         "cable": found.cable,
-        "pose": _numbers(place[:3]),
+        "pose": place[:3],
         **_turn(turn_of(place)),
     }
 
@@ -269,30 +249,19 @@ def _orientations(study: Study) -> Json | None:
     if study.workspace is None or study.robot.is_point_mass:
         return None
     asked = study.workspace.orientations
-    ends = asked.range_rad
     return {
-        "rotation_vectors": [_numbers(turn) for turn in asked.turns_rad],
-        "range": None if ends is None else [_numbers(end) for end in ends],
+        "rotation_vectors": asked.turns_rad,
+        "range": asked.range_rad,
     }
 
 
 def _qualities(found: Qualities | None) -> Json:
     """Return stiffness and clearances; None where they were not looked at."""
-    stiffness = None if found is None else found.stiffness
     interference = None if found is None else found.interference
     return {
-        "stiffness": None if stiffness is None else _stiffness(stiffness),
+        "stiffness": None if found is None else found.stiffness,
         "interference": None if interference is None else _interference(interference),
         "hanging": None if found is None else _hanging(found.hanging),
-    }
-
-
-def _stiffness(found: StiffnessSurvey) -> Json:
-    return {
-        "samples": found.samples,
-        "unstable": found.unstable,
-        "largest_displacement_m_per_N": _number(found.softest_m_per_N),
-        "pose": _numbers(found.softest_place[:3]),
     }
 
 
@@ -300,10 +269,10 @@ def _interference(found: Interference) -> Json:
     worst = found.worst
     return {
         "clearance_m": found.clearance_m,
-        "min_distance_m": None if worst is None else _number(worst.distance_m),
-        "error_m": None if worst is None else _number(worst.error_m),
-        "pair": None if worst is None else list(worst.names),
-        "pose": None if worst is None else _numbers(worst.place[:3]),
+        "min_distance_m": None if worst is None else worst.distance_m,
+        "error_m": None if worst is None else worst.error_m,
+        "pair": None if worst is None else worst.names,
+        "pose": None if worst is None else worst.place[:3],
         "samples": found.samples,
         "violating": found.violating,
         "violated": found.is_violated,
@@ -325,50 +294,20 @@ def _selection(analysis: Analysis) -> Json:
     return {**selection_dict(analysis.selection), **groups_dict(analysis.groups)}
 
 
-def _servable(found: Servable | None) -> Json | None:
-    """Return which shares of the volume are proved to be served by no rope, and by some."""
-    if found is None:
-        return None
-    return {"impossible": found.impossible, "possible": found.possible, "boxes": found.boxes}
-
-
-def _verification(analysis: Analysis) -> list[Json]:
-    return [
-        {
-            "method": answer.method,
-            "quantity": answer.quantity,
-            "unit": answer.unit,
-            "ours": _number(answer.ours),
-            "theirs": _number(answer.theirs),
-            "difference": _number(answer.difference),
-            "remark": answer.remark,
-        }
-        for answer in analysis.verification
-    ]
-
-
 def _proof(analysis: Analysis) -> Json:
     """Return what is proved of the chosen rope; off where nothing was to be."""
     case = None if analysis.selection is None else analysis.selection.proof
-    found = Proof("off") if case is None else case.found
-    return {
-        "status": found.status,
-        "utilisation_bound": _number(found.bound),
-        "utilisation_found": _number(found.found),
-        "fraction_proved": found.fraction,
-        "boxes": found.boxes,
-        "load_case": case.load_case if case is not None and case.load_case else None,
-        "reason": found.reason or None,
-    }
+    proof = Proof("off") if case is None else case.found
+    return {**record(proof), "load_case": None if case is None else case.load_case or None}
 
 
 def _extreme(extreme: Extreme | None) -> Json | None:
     if extreme is None:
         return None
     return {
-        "diameter_m": _number(extreme.diameter_m),
-        "max_tension_N": _number(extreme.max_tension_N),
-        "pose": _numbers(extreme.position_m),
+        "diameter_m": extreme.diameter_m,
+        "max_tension_N": extreme.max_tension_N,
+        "pose": extreme.position_m,
         **_turn(extreme.rotation_vector_rad),
     }
 
@@ -377,13 +316,4 @@ def _turn(rotation_vector_rad: FloatArray | None, name: str = "rotation_vector")
     """Return the orientation; nothing where the platform is not turned."""
     if rotation_vector_rad is None or not rotation_vector_rad.any():
         return {}
-    return {name: _numbers(rotation_vector_rad)}
-
-
-def _number(value: Any) -> float | None:
-    number = float(value)
-    return number if math.isfinite(number) else None
-
-
-def _numbers(values: Iterable[Any]) -> list[float | None]:
-    return [_number(value) for value in values]
+    return {name: rotation_vector_rad}

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from designer.analysis.uncertainty.uncertainty import CONFIDENCE, SizeOdds, UncertaintyAnalysis
-from designer.documents.plain import finite
 from designer.model.uncertainty import Input, Normal
 
 Json = dict[str, Any]
@@ -19,39 +18,23 @@ def uncertainty_dict(found: UncertaintyAnalysis | None) -> Json | None:
     """Return probability, utilisation, sizes and shares; None where no input is uncertain."""
     if found is None:
         return None
-    plain: Json = finite(
-        {
-            "asked": found.is_asked,
-            "requirements": ["breaking_load"],  # of all that the study asks for, these are drawn
-            "probability": found.chosen.probability,
-            "confidence": _confidence(found.chosen),
-            "not_held": found.chosen.not_held,
-            "utilisation": _utilisation(found),
-            "inputs": [_input(found, name) for name in found.spreads],
-            "shares": [
-                {
-                    "input": one.input,
-                    "first_order": one.first_order,
-                    "first_order_confidence": one.first_order_95,
-                    "total_order": one.total_order,
-                    "total_order_confidence": one.total_order_95,
-                }
-                for one in found.shares
-            ],
-            "shares_reason": found.why_no_shares or None,
-            "sizes": [_size(one) for one in found.sizes],
-            "samples": found.samples,
-            "share_points": found.points,
-            "seed": found.seed,
-            "poses": found.poses,
-            "searched": {
-                "draws": found.checked.draws,
-                "rounds": found.checked.rounds,
-                "missed": found.checked.missed,
-            },
-        }
-    )
-    return plain
+    return {
+        "asked": found.is_asked,
+        "requirements": ["breaking_load"],  # of all that the study asks for, these are drawn
+        "probability": found.chosen.probability,
+        "confidence": _confidence(found.chosen),
+        "not_held": found.chosen.not_held,
+        "utilisation": _utilisation(found),
+        "inputs": [_input(found, name) for name in found.spreads],
+        "shares": found.shares,
+        "shares_reason": found.why_no_shares or None,
+        "sizes": [_size(one) for one in found.sizes],
+        "samples": found.samples,
+        "share_points": found.points,
+        "seed": found.seed,
+        "poses": found.poses,
+        "searched": found.checked,
+    }
 
 
 def _confidence(one: SizeOdds) -> Json:

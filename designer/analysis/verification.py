@@ -5,8 +5,8 @@ They have in common where cables begin and end, and the straight cables that the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -52,9 +52,11 @@ class SecondAnswer:
     unit: str
     ours: float
     theirs: float
-    tolerance: float
+    tolerance: float = field(metadata={"json": None})
     remark: str = ""
-    may_be_more: bool = False
+    may_be_more: bool = field(default=False, metadata={"json": None})
+
+    also_in_files: ClassVar = ("difference",)
 
     @property
     def difference(self) -> float:

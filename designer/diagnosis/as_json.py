@@ -18,7 +18,7 @@ from designer.study import DeclaredEffect, Study
 if TYPE_CHECKING:
     from designer.diagnosis.check import Check, Left, Model
     from designer.diagnosis.foretell import Foretold
-    from designer.diagnosis.result import Diagnosis, Finding, Use, Withdrawn
+    from designer.diagnosis.result import Diagnosis, Finding, Use
     from designer.diagnosis.structure import Structure
 
 Json = dict[str, Any]
@@ -37,7 +37,7 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
             **_rows(diagnosis.outliers, diagnosis.measured),
         },
         "effects": [_finding(finding) for finding in diagnosis.findings],
-        "withdrawn": [_withdrawn(one) for one in diagnosis.withdrawn],
+        "withdrawn": diagnosis.withdrawn,
         "left_out": diagnosis.study.known_effects.problems,
         "skipped": _reasons(diagnosis.skipped),
         "unknown": [
@@ -54,18 +54,10 @@ def diagnosis_dict(diagnosis: Diagnosis) -> Json:
         **_errors(diagnosis),
         "search": {"is_complete": not diagnosis.not_tried, "not_tried": diagnosis.not_tried},
         "balance": _balance(diagnosis),
-        "proposals": [
-            {
-                "found": proposal.found,
-                "rival": proposal.rival,
-                "poses": proposal.positions_m.tolist(),
-                "separation": proposal.separation.tolist(),
-            }
-            for proposal in diagnosis.proposals
-        ],
+        "proposals": diagnosis.proposals,
         "design": {
-            "before": diagnosis.design_before and asdict(diagnosis.design_before),
-            "after": diagnosis.design_after and asdict(diagnosis.design_after),
+            "before": diagnosis.design_before,
+            "after": diagnosis.design_after,
             "kept": _use(diagnosis.kept),
             "mounted": {
                 "before": _use(diagnosis.mounted_before),
@@ -129,12 +121,8 @@ def _by_model(
 
 
 def _rows(outliers: tuple[Outlier, ...], measured: Measured) -> Json:
-    told = [
-        {"row": outlier.row, "reading": outlier.channel, "size": outlier.size}
-        for outlier in outliers
-    ]
     poses = "measured" if measured.has_poses else "estimated"
-    return {"outliers": told, "notes": measured.notes, "poses": poses}
+    return {"outliers": outliers, "notes": measured.notes, "poses": poses}
 
 
 def _reasons(effects: tuple[tuple[str, str], ...]) -> list[Json]:
@@ -163,18 +151,6 @@ def _balance(diagnosis: Diagnosis) -> Json | None:
         "left_median": float(np.median(held)) if held.size else None,
         "left_largest": float(held.max()) if held.size else None,
         "rows_not_held": int(imbalance.size - held.size),
-    }
-
-
-def _withdrawn(withdrawn: Withdrawn) -> Json:
-    return {
-        "id": withdrawn.effect,
-        "reason": withdrawn.reason.name.lower(),
-        "detail": withdrawn.detail,
-        "covariate": withdrawn.covariate or None,
-        "variation": withdrawn.variation,
-        "heldout_gain": withdrawn.gain,
-        "heldout_gain_std": withdrawn.gain_std,
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -69,7 +69,7 @@ class Outlier:
     """A reading that no model here explains; shown, and given little weight."""
 
     row: int
-    channel: str
+    channel: str = field(metadata={"json": "reading"})
     size: float
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Proposal:
 
     found: str
     rival: str
-    positions_m: FloatArray
+    positions_m: FloatArray = field(metadata={"json": "poses"})
     separation: FloatArray
 
 

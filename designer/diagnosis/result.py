@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
@@ -93,13 +93,15 @@ class Withdrawn:
         not tried.
     """
 
-    effect: str
-    covariate: str = ""
+    effect: str = field(metadata={"json": "id"})
+    covariate: str = field(default="", metadata={"json": lambda name: {"covariate": name or None}})
     variation: float = float("nan")
-    reason: Reason = Reason.DRIFTS
+    reason: Reason = field(
+        default=Reason.DRIFTS, metadata={"json": lambda reason: {"reason": reason.name.lower()}}
+    )
     detail: str = ""
-    gain: float = float("nan")
-    gain_std: float = float("nan")
+    gain: float = field(default=float("nan"), metadata={"json": "heldout_gain"})
+    gain_std: float = field(default=float("nan"), metadata={"json": "heldout_gain_std"})
 
 
 class Verdict(Enum):

@@ -36,7 +36,7 @@ class CatalogueSource:
 
     name: str
     source: str
-    n_grades: int
+    n_grades: int = field(metadata={"json": "grades"})
     sha256: str = field(default="", compare=False)
 
 

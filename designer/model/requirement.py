@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import ClassVar
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
+from designer.model.space import named_place
 
 
 class State(StrEnum):
@@ -25,6 +27,11 @@ class Answer(StrEnum):
     YES = "yes"
     NO = "no"
     OPEN = "open"
+
+
+def _direction(loaded: Loaded | None) -> dict[str, str | None]:
+    """Return the direction of wind and inertia force as files of results name it."""
+    return {"direction": (None if loaded is None else loaded.words) or None}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +65,7 @@ class Requirement:
     """
 
     id: str
-    title: str
+    title: str = field(metadata={"json": None})
     formula: str
     source: str
     state: State
@@ -68,9 +75,11 @@ class Requirement:
     unit: str = ""
     utilisation: float = math.nan
     cable: int | None = None
-    place: FloatArray | None = None
-    loaded: Loaded | None = None
+    place: FloatArray | None = field(default=None, metadata={"json": named_place})
+    loaded: Loaded | None = field(default=None, metadata={"json": _direction})
     remark: str = ""
+
+    also_in_files: ClassVar = ("holds",)
 
     @property
     def holds(self) -> bool:

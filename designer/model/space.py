@@ -78,6 +78,17 @@ def turn_of(place: FloatArray) -> FloatArray:
     return place[3:] if len(place) > 3 else np.zeros(3)
 
 
+def named_position(place: FloatArray) -> dict[str, FloatArray]:
+    """Return a place (n_coordinates,) as files of results name its position."""
+    return {"pose": place[:3]}
+
+
+def named_place(place: FloatArray | None) -> dict[str, FloatArray | None]:
+    """Return a place (n_coordinates,) as files of results name it, with its orientation."""
+    turn = None if place is None else turn_of(place)
+    return {"pose": None if place is None else place[:3], "rotation_vector": turn}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Space:
     """All places: positions of a region in every orientation."""

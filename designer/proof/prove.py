@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -70,13 +70,13 @@ class Proof:
     """
 
     status: Status
-    bound: float = np.inf
-    found: float = np.nan
-    worst: FloatArray | None = None
-    fraction: float = 0.0
+    bound: float = field(default=np.inf, metadata={"json": "utilisation_bound"})
+    found: float = field(default=np.nan, metadata={"json": "utilisation_found"})
+    worst: FloatArray | None = field(default=None, metadata={"json": None})
+    fraction: float = field(default=0.0, metadata={"json": "fraction_proved"})
     boxes: int = 0
-    seconds: float = 0.0
-    reason: str = ""
+    seconds: float = field(default=0.0, metadata={"json": None})
+    reason: str = field(default="", metadata={"json": lambda reason: {"reason": reason or None}})
 
 
 def prove(

@@ -17,7 +17,7 @@ That a box can be served is proved with a rope that weighs next to nothing and b
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -60,7 +60,7 @@ class Servable:
     impossible: float
     possible: float
     boxes: int
-    border_m: FloatArray
+    border_m: FloatArray = field(metadata={"json": None})
 
 
 def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -34,8 +34,8 @@ class RestingPlaces:
     """
 
     starts: int
-    is_stable: bool
-    others: int
+    is_stable: bool = field(metadata={"json": "stable"})
+    others: int = field(metadata={"json": "other_places"})
     nearest_m: float
     nearest_turn_rad: float
 

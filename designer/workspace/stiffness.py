@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.space import named_position
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
 from designer.study import Workspace
@@ -39,10 +40,10 @@ class StiffnessSurvey:
 
     samples: int
     unstable: int
-    softest_m_per_N: float
-    stiffest_m_per_N: float
-    softest_place: FloatArray
-    stiffest_place: FloatArray
+    softest_m_per_N: float = field(metadata={"json": "largest_displacement_m_per_N"})
+    stiffest_m_per_N: float = field(metadata={"json": None})
+    softest_place: FloatArray = field(metadata={"json": named_position})
+    stiffest_place: FloatArray = field(metadata={"json": None})
 
 
 def survey_stiffness(

@@ -27,7 +27,7 @@ input i of the second,
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -56,9 +56,9 @@ class Share:
 
     input: str
     first_order: float
-    first_order_95: tuple[float, float]
+    first_order_95: tuple[float, float] = field(metadata={"json": "first_order_confidence"})
     total_order: float
-    total_order_95: tuple[float, float]
+    total_order_95: tuple[float, float] = field(metadata={"json": "total_order_confidence"})
 
 
 def shares_of(
