@@ -33,7 +33,7 @@ from designer.proof.prove import Budget
 from designer.proof.servable import Servable, servable
 from designer.selection.assignment import Assignment, for_all
 from designer.selection.candidate import Candidate
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.selection.family_need import CaseNeed, family_needs, most_needed
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.groups.result import GroupChoice
@@ -244,11 +244,11 @@ class Analysis:
         return requirements_of(self)
 
     @cached_property
-    def cases(self) -> tuple[CaseFound, ...]:
+    def cases(self) -> tuple[CaseResult, ...]:
         """What the chosen rope, or the configured family where none is asked for, meets."""
         if self.chosen is not None:
             return self.chosen.cases
-        return tuple(need.found for need in self.needs)
+        return tuple(need.governing for need in self.needs)
 
     @cached_property
     def governing(self) -> GoverningPose | None:

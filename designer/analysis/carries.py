@@ -9,7 +9,7 @@ from designer.analysis.first_failures import FirstFailure, first_failures
 from designer.analysis.reserve import Reserve, payload_reserve, region_reserve
 from designer.analysis.sensitivities import Sensitivities, sensitivities
 from designer.selection.candidate import Candidate
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.selection.result import SelectionResult
 from designer.study import Study
 
@@ -48,7 +48,7 @@ class Carries:
 
     Parameters
     ----------
-    governing : CaseFound
+    governing : CaseResult
         The load case that governs.
     sensitivities : Sensitivities
         At its worst pose.
@@ -60,7 +60,7 @@ class Carries:
         The first pose that is not held, in each direction out of the region.
     """
 
-    governing: CaseFound
+    governing: CaseResult
     sensitivities: Sensitivities
     payload: Reserve | None
     region: Reserve | None

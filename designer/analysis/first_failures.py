@@ -11,7 +11,7 @@ from designer.model.load_case import Loaded
 from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.inverse import solve_sagging
 
 _PER_EDGE, _PER_FACE = 2, 6
@@ -49,7 +49,7 @@ class FirstFailure:
     reach_m: float = field(metadata={"json": "looked_m"})
 
 
-def first_failures(found: CaseFound) -> tuple[FirstFailure, ...]:
+def first_failures(found: CaseResult) -> tuple[FirstFailure, ...]:
     """Return the first failure in each direction, in a load case, as turned at its worst pose.
 
     Ways lead from corners, edges and sides of the region straight outward. Empty for a list of

@@ -10,7 +10,7 @@ from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses
 from designer.selection.candidate import Candidate
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.inverse import Statics
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
 from designer.statics.task import PulleyRun
@@ -60,7 +60,7 @@ class GoverningPose:
 
     Parameters
     ----------
-    found : CaseFound
+    found : CaseResult
         The load case that governs.
     statics : Statics
         The equilibrium (1,).
@@ -70,7 +70,7 @@ class GoverningPose:
         What else acts on the platform, world frame (3,) [N].
     """
 
-    found: CaseFound
+    found: CaseResult
     statics: Statics
     cables: tuple[CableThere, ...]
     loads: tuple[tuple[str, FloatArray], ...]

@@ -53,7 +53,7 @@ class GroupSlopes:
 
     def of(self, name: str) -> Sensitivity:
         """Return one of them by its name."""
-        return next(one for one in self.each if one.input == name)
+        return next(sensitivity for sensitivity in self.each if sensitivity.input == name)
 
 
 def group_slopes(
@@ -71,28 +71,30 @@ def _slopes(robot: Robot, workspace: Workspace, assignment: Assignment, g: int) 
     members = [np.array(group.cables) - 1 for group in assignment.groups]
     statics = solve_sagging(robot, Poses.at(place[None]), cables)
     used = statics.cable_tension_N[0] / cables.allowable_tension_N
-    most = int(members[g][used[members[g]].argmax()])
-    slopes = utilisation_slopes(statics, cables.allowable_tension_N, most + 1)
-    nothing = np.full((robot.n_cables, 3), np.nan)
+    cable = int(members[g][used[members[g]].argmax()])
+    slopes = utilisation_slopes(statics, cables.allowable_tension_N, cable + 1)
+    no_slopes = np.full((robot.n_cables, 3), np.nan)
     if not slopes:
         why = (
             "Cables of other groups are used more there, or the internal forces that are best "
             "leave a choice, so that the utilisation has no slope."
         )
-        none = np.full(len(members), np.nan)
-        own = _named(assignment, g, (math.nan, math.nan), (none, none))
-        return GroupSlopes(group, most + 1, float(used[most]), tuple(own), nothing, why)
-    (one,) = slopes
+        unknown = np.full(len(members), np.nan)
+        sensitivities = _named(assignment, g, (math.nan, math.nan), (unknown, unknown))
+        return GroupSlopes(
+            group, cable + 1, float(used[cable]), tuple(sensitivities), no_slopes, why
+        )
+    (slope,) = slopes
     body = robot.platform
     twice = replace(body, mass_kg=2.0 * body.mass_kg, wrench_N=2.0 * body.wrench_N)
     heavier = load_wrench_N(replace(robot, platform=twice), statics.poses)[0]
-    payload = float(one.load @ (heavier - load_wrench_N(robot, statics.poses)[0]))
-    region = float(one.position_per_m @ workspace.region.outward(place[:3]))
-    mass = one.cable_load_m_per_N @ -robot.upright[2] * cables.weight_N_per_m
-    of_ropes = (_sums(one.stiffness, members), _sums(mass, members))
-    own = _named(assignment, g, (payload, region), of_ropes, float(used[most]))
-    exits = one.exit_points_per_m
-    return GroupSlopes(group, most + 1, float(used[most]), tuple(own), exits)
+    payload = float(slope.load @ (heavier - load_wrench_N(robot, statics.poses)[0]))
+    region = float(slope.position_per_m @ workspace.region.outward(place[:3]))
+    mass = slope.cable_load_m_per_N @ -robot.upright[2] * cables.weight_N_per_m
+    of_ropes = (_sums(slope.stiffness, members), _sums(mass, members))
+    sensitivities = _named(assignment, g, (payload, region), of_ropes, float(used[cable]))
+    exits = slope.exit_points_per_m
+    return GroupSlopes(group, cable + 1, float(used[cable]), tuple(sensitivities), exits)
 
 
 def _sums(of_cables: FloatArray, members: list[IntArray]) -> FloatArray:
@@ -115,9 +117,9 @@ def _named(
     yield relative("payload", 1.0, "", payload_and_region[0])
     yield relative("breaking_load", rope.size.minimum_breaking_load_N, "N", -used)
     yield relative("efficiency", rope.efficiency, "", -used)
-    for k, (group, other) in enumerate(zip(assignment.groups, assignment.ropes, strict=True)):
+    for k, (group, other_rope) in enumerate(zip(assignment.groups, assignment.ropes, strict=True)):
         stiffness, mass = (float(slopes[k]) for slopes in of_ropes)
-        density = other.cable.linear_density_kg_per_m
-        yield relative(f"modulus_{group.name}", other.cable.axial_stiffness_N, "N", stiffness)
+        density = other_rope.cable.linear_density_kg_per_m
+        yield relative(f"modulus_{group.name}", other_rope.cable.axial_stiffness_N, "N", stiffness)
         yield relative(f"linear_mass_{group.name}", density, "kg/m", mass)
     yield Sensitivity("region", 0.0, "m", payload_and_region[1], math.nan)

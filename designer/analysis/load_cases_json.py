@@ -7,7 +7,7 @@ from typing import Any
 from designer.analysis.analyse import Analysis
 from designer.analysis.governing import GoverningPose
 from designer.model.space import named_place
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.cable_loss import Fate
 
 Json = dict[str, Any]
@@ -19,7 +19,7 @@ def load_cases_dict(analysis: Analysis) -> Json:
     checks = analysis.requirements
     if chosen is None or study.selection is None:
         needs = [
-            _case(one.found) | {"diameter_m": one.diameter_m, "holds": one.is_held}
+            _case(one.governing) | {"diameter_m": one.diameter_m, "holds": one.is_held}
             for one in analysis.needs
         ]
         return {"load_cases": needs, "checks": checks, "governing": None}
@@ -48,7 +48,7 @@ def _governing(pose: GoverningPose) -> Json:
     }
 
 
-def _case(found: CaseFound) -> Json:
+def _case(found: CaseResult) -> Json:
     met, loaded, loss = found.verification, found.loaded, found.loss
     place = met.worst_place
     after = {

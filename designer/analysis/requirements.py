@@ -115,7 +115,7 @@ def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> 
 
 
 def _need(need: CaseNeed) -> Requirement:
-    found = need.found
+    found = need.governing
     state, remark = State.HOLDS, ""
     if not need.is_held:
         held = equilibrium_of(found)

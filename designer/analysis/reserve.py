@@ -18,7 +18,7 @@ from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.region import Region
 from designer.model.space import named_position
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import rope_demand, settled_demand
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
@@ -62,7 +62,7 @@ class Reserve:
 class _Carried:
     """A load case, and a pose of it that moves with the quantity."""
 
-    case: CaseFound
+    case: CaseResult
     place: FloatArray
     at: float
     way: FloatArray
@@ -71,22 +71,22 @@ class _Carried:
         return np.asarray(self.place + (value - self.at) * self.way)
 
 
-_Changed = Callable[[CaseFound, float], tuple[Loaded, Workspace]]
+_Changed = Callable[[CaseResult, float], tuple[Loaded, Workspace]]
 
 
-def payload_reserve(cases: Sequence[CaseFound]) -> Reserve | None:
+def payload_reserve(cases: Sequence[CaseResult]) -> Reserve | None:
     """Return by which factor weight and loads of the platform may grow; None where none was found.
 
     Wind on the platform stays.
     """
 
-    def heavier(case: CaseFound, factor: float) -> tuple[Loaded, Workspace]:
+    def heavier(case: CaseResult, factor: float) -> tuple[Loaded, Workspace]:
         return with_payload(case.loaded, factor), case.workspace
 
     return _end(cases, heavier, (1.0, _MOST_PAYLOAD, 0.1), is_moving=False)
 
 
-def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None:
+def region_reserve(cases: Sequence[CaseResult], region: Region) -> Reserve | None:
     """Return by how much the sides of the region may move outward; None where none was found.
 
     Heights stay. Load cases with a region of their own do not count; only some regions have sides.
@@ -95,7 +95,7 @@ def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None
     if not region.has_sides or not moving:
         return None
 
-    def wider(case: CaseFound, margin_m: float) -> tuple[Loaded, Workspace]:
+    def wider(case: CaseResult, margin_m: float) -> tuple[Loaded, Workspace]:
         return case.loaded, replace(case.workspace, region=region.grown(margin_m))
 
     size = float(np.ptp(moving[0].loaded.robot.exit_points_m, axis=0).max())
@@ -103,7 +103,7 @@ def region_reserve(cases: Sequence[CaseFound], region: Region) -> Reserve | None
 
 
 def _end(
-    cases: Sequence[CaseFound],
+    cases: Sequence[CaseResult],
     change: _Changed,
     span: tuple[float, float, float],
     *,
@@ -111,7 +111,7 @@ def _end(
 ) -> Reserve | None:
     """Find where the worst of the cases is used to 100 %: from, to, and first step of a bracket."""
 
-    def carried(case: CaseFound, place: FloatArray, at: float) -> _Carried:
+    def carried(case: CaseResult, place: FloatArray, at: float) -> _Carried:
         way = np.zeros_like(place)
         if is_moving:
             way[:3] = change(case, at)[1].region.outward(place[:3])
@@ -167,7 +167,7 @@ def _root(of: Callable[[float], float], start: float, most: float, step: float) 
 
 
 def _searched(
-    case: CaseFound, change: _Changed, value: float, known: Sequence[_Carried]
+    case: CaseResult, change: _Changed, value: float, known: Sequence[_Carried]
 ) -> tuple[FloatArray, float]:
     """Return the worst pose of a case that a search from the known ones finds, with the value."""
     loaded, workspace = change(case, value)

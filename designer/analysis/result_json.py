@@ -297,7 +297,7 @@ def _selection(analysis: Analysis) -> Json:
 def _proof(analysis: Analysis) -> Json:
     """Return what is proved of the chosen rope; off where nothing was to be."""
     case = None if analysis.selection is None else analysis.selection.proof
-    proof = Proof("off") if case is None else case.found
+    proof = Proof("off") if case is None else case.proof
     return {**record(proof), "load_case": None if case is None else case.load_case or None}
 
 

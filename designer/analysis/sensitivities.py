@@ -17,7 +17,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.geometry import load_wrench_N
 from designer.statics.slopes import Slopes, utilisation_slopes
 
@@ -77,7 +77,7 @@ class Sensitivities:
         return next(one for one in self.each if one.input == name)
 
 
-def sensitivities(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
+def sensitivities(found: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
     """Return the slopes at the worst pose of a load case, of a rope with these figures."""
     if found.loaded.keeps_lengths:
         return _by_differences(found, efficiency, breaking_load_N)
@@ -107,7 +107,7 @@ def sensitivities(found: CaseFound, efficiency: float, breaking_load_N: float) -
     return Sensitivities(each, np.where(same, exits[0], np.nan), "adjoint", why)
 
 
-def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
+def _adjoint(found: CaseResult, slopes: Slopes) -> dict[str, float]:
     """Return slopes in the logarithms of payload, modulus and mass, and in the region [1/m]."""
     one = found.loaded
     heavier = load_wrench_N(with_payload(one, 2.0).robot, found.pose)[0]
@@ -122,7 +122,7 @@ def _adjoint(found: CaseFound, slopes: Slopes) -> dict[str, float]:
     }
 
 
-def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float) -> Sensitivities:
+def _by_differences(found: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
     one, place = found.loaded, found.verification.worst_place
     side = np.zeros_like(place)
     side[:3] = found.workspace.region.outward(place[:3])
@@ -151,7 +151,7 @@ def _by_differences(found: CaseFound, efficiency: float, breaking_load_N: float)
 
 
 def _named(
-    found: CaseFound, efficiency: float, breaking_load_N: float, own: dict[str, float]
+    found: CaseResult, efficiency: float, breaking_load_N: float, own: dict[str, float]
 ) -> tuple[Sensitivity, ...]:
     used, cable = found.utilisation, found.loaded.bare[1]
 

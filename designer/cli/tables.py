@@ -66,13 +66,13 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
     if analysis.workspace is not None:
         yield from _summary_of_workspace(analysis.workspace)
     for need in analysis.needs:
-        verification = need.found.verification
+        verification = need.governing.verification
         text = (
             _extreme(need.diameter_m, verification.max_tension_N)
             if need.is_held
             else bad("no cable")
         )
-        yield f"  {escape(need.found.case.name)}", text
+        yield f"  {escape(need.governing.case.name)}", text
     if analysis.groups is not None:
         yield from _summary_of_groups(analysis.groups)
     for label, text in analysis.hanging.notes():

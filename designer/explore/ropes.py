@@ -181,20 +181,22 @@ def quick_ropes(question: Question) -> Ropes | None:
         return None
     few = replace(workspace, samples=min(workspace.samples, _QUICK_SAMPLES))
     grades, load_cases = question.catalogue.grades, question.study.load_cases
-    entries = at_samples(few, selection, grades, question.built, load_cases)
-    known = [o for o in selection.objectives if o != "stiffness"]
+    candidates = at_samples(few, selection, grades, question.built, load_cases)
+    objectives = [o for o in selection.objectives if o != "stiffness"]
     best = None
-    for entry in entries:
-        entry.rejected_by = _failed_by_table(entry, selection)
-    holding = [e for e in entries if e.verification.holds and e.rejected_by is None]
-    if known and selection.objectives[0] != "stiffness":
-        comparable = [e for e in holding if np.isfinite(e.figures.burden(known[0]))]
-        best = min(comparable, key=lambda e: e.key(known), default=None)
-        is_in = is_undominated(burdens(holding, known))
+    for candidate in candidates:
+        candidate.rejected_by = _failed_by_table(candidate, selection)
+    holding = [e for e in candidates if e.verification.holds and e.rejected_by is None]
+    if objectives and selection.objectives[0] != "stiffness":
+        comparable = [e for e in holding if np.isfinite(e.figures.burden(objectives[0]))]
+        best = min(comparable, key=lambda e: e.key(objectives), default=None)
+        is_in = is_undominated(burdens(holding, objectives))
         front = {id(e) for e, wins in zip(holding, is_in, strict=True) if wins}
     else:
         front = {id(e) for e in holding}
-    rows = tuple(_quick_row(entry, entry is best, id(entry) in front) for entry in entries)
+    rows = tuple(
+        _quick_row(candidate, candidate is best, id(candidate) in front) for candidate in candidates
+    )
     reason = "" if best else "none holds at the samples" if not holding else "needs the full search"
     chosen = None if best is None else Rope(best.grade.id, best.size.id)
     return Ropes(
@@ -208,41 +210,41 @@ def quick_ropes(question: Question) -> Ropes | None:
     )
 
 
-def _failed_by_table(entry: Candidate, selection: Selection) -> Requirement | None:
+def _failed_by_table(candidate: Candidate, selection: Selection) -> Requirement | None:
     """Return what the sheave alone decides against a rope; None for nothing."""
-    ratios = sheave_ratio_of(entry.grade, entry.size, selection)
-    return next((each for each in ratios if not each.holds), None)
+    ratios = sheave_ratio_of(candidate.grade, candidate.size, selection)
+    return next((ratio for ratio in ratios if not ratio.holds), None)
 
 
-def _quick_row(entry: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:
-    met = entry.verification
+def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:
+    verification = candidate.verification
     if is_best:
         standing, reason = "chosen", "best at the samples"
-    elif np.isinf(met.utilisation):
+    elif np.isinf(verification.utilisation):
         standing, reason = "not_held", "no equilibrium was found at some sample"
-    elif not met.holds:
+    elif not verification.holds:
         standing, reason = "too_thin", "beyond its allowable tension at some sample"
-    elif entry.rejected_by is not None:
-        standing, reason = "rejected", failure_words(entry.rejected_by)
+    elif candidate.rejected_by is not None:
+        standing, reason = "rejected", failure_words(candidate.rejected_by)
     elif is_in_front:
         standing, reason = "undominated", "holds at the samples, and no other beats it there"
     else:
         standing, reason = "dominated", "holds at the samples, and another one beats it there"
     return replace(
-        _sold(entry.grade, entry.size),
-        allowable_tension_N=entry.cable.allowable_tension_N,
-        **_figures(entry),
+        _sold(candidate.grade, candidate.size),
+        allowable_tension_N=candidate.cable.allowable_tension_N,
+        **_figures(candidate),
         standing=standing,
         reason=reason,
-        place=_place(met),
+        place=_place(verification),
     )
 
 
-def _figures(one: Candidate | Candidate) -> dict[str, Any]:
-    met, figures = one.verification, one.figures
+def _figures(candidate: Candidate) -> dict[str, Any]:
+    verification, figures = candidate.verification, candidate.figures
     return {
-        "utilisation": met.utilisation,
-        "max_tension_N": met.max_tension_N,
+        "utilisation": verification.utilisation,
+        "max_tension_N": verification.max_tension_N,
         "total_mass_kg": figures.mass_kg,
         "cost": figures.cost,
         "drum_diameter_m": figures.drum_diameter_m,
@@ -250,8 +252,8 @@ def _figures(one: Candidate | Candidate) -> dict[str, Any]:
     }
 
 
-def _place(met: Verification) -> FloatArray | None:
-    place = met.worst_place
+def _place(verification: Verification) -> FloatArray | None:
+    place = verification.worst_place
     return np.pad(place, (0, 6 - len(place))) if np.isfinite(place).all() else None
 
 
@@ -292,30 +294,30 @@ def full_ropes(question: Question, reporter: Reporter = SILENT) -> Ropes:
     )
 
 
-def ropes_of(found: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
+def ropes_of(selection: SelectionResult, groups: GroupChoice | None = None) -> Ropes:
     """Return the rows of a selection that was made in full."""
-    chosen = found.chosen
-    rows = [_full_row(candidate) for candidate in found.candidates]
+    chosen = selection.chosen
+    rows = [_full_row(candidate) for candidate in selection.candidates]
     rows += [
-        replace(_sold(one.grade, size), reason=one.reason)
-        for one in found.not_tried
-        for size in (one.grade.sizes if one.size is None else (one.size,))
+        replace(_sold(omitted.grade, size), reason=omitted.reason)
+        for omitted in selection.not_tried
+        for size in (omitted.grade.sizes if omitted.size is None else (omitted.size,))
     ]
     return Ropes(
         rows=tuple(rows),
         best=None if chosen is None else Rope(chosen.grade.id, chosen.size.id),
-        reason=found.reason or "",
-        objectives=found.objectives,
-        currency=found.currency or "",
+        reason=selection.reason or "",
+        objectives=selection.objectives,
+        currency=selection.currency or "",
         is_final=True,
         groups=None if groups is None else _groups(groups),
-        csv=candidates_csv(found),
-        proof=found.proof,
+        csv=candidates_csv(selection),
+        proof=selection.proof,
     )
 
 
 def _full_row(candidate: Candidate) -> RopeRow:
-    fails = any(each.state is State.FAILS for each in candidate.requirements)
+    fails = any(requirement.state is State.FAILS for requirement in candidate.requirements)
     return replace(
         _sold(candidate.grade, candidate.size),
         allowable_tension_N=candidate.cable.allowable_tension_N,

@@ -187,7 +187,7 @@ class Prism(Region):
         return Prism.over(self.polygon_m, -margin_m, self.z_m)
 
     def outline_m(self, plane: list[int]) -> FloatArray:
-        return self.polygon_m if plane == [0, 1] else super().outline_m(plane)
+        return self.polygon_m if plane == [0, 1] else Region.outline_m(self, plane)
 
     def section_m(self, share: float = 1.0, rings: int = RINGS, spokes: int = SPOKES) -> FloatArray:
         outline = outline_m(self.polygon_m, spokes)

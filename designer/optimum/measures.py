@@ -145,21 +145,21 @@ class Quick:
         criteria = criteria_of(self._built.robot, self.workspace, self.selection)
         screen = Screen(criteria, self.selection, SILENT)
         screen.reject_by_table(ranked)
-        for entry in ranked:
-            if entry.rejected_by is None and self._holds(entry):
-                screen.rejects_any(entry, (), ranked)
-                if entry.rejected_by is None:
-                    return entry
+        for candidate in ranked:
+            if candidate.rejected_by is None and self._holds(candidate):
+                screen.rejects_any(candidate, (), ranked)
+                if candidate.rejected_by is None:
+                    return candidate
         raise _nearest_to_holding(screen, ranked)
 
-    def _holds(self, entry: Candidate) -> bool:
-        allowable = governing(entry.cases).loaded.cable.allowable_tension_N
-        is_far = entry.verification.utilisation < _CLOSE
-        return is_far or self._tension_N(entry) <= allowable
+    def _holds(self, candidate: Candidate) -> bool:
+        allowable = governing(candidate.cases).loaded.cable.allowable_tension_N
+        is_far = candidate.verification.utilisation < _CLOSE
+        return is_far or self._tension_N(candidate) <= allowable
 
-    def _tension_N(self, entry: Candidate) -> float:
+    def _tension_N(self, candidate: Candidate) -> float:
         """Return what a rope meets in the case that governs, about its worst sample as well."""
-        found = governing(entry.cases)
+        found = governing(candidate.cases)
         one, hangs_below = found.loaded, self.evenly.hangs_below
         if one.lost_cable is not None:
             return found.verification.max_tension_N
@@ -262,7 +262,11 @@ def _violated(unmet: Iterable[Requirement]) -> NotHeldError:
 
 def _nearest_to_holding(screen: Screen, strong: Sequence[Candidate]) -> NotHeldError:
     """Return what the rope fails that is nearest to meeting all requirements."""
-    rejected = [(entry, entry.rejected_by) for entry in strong if entry.rejected_by is not None]
+    rejected = [
+        (candidate, candidate.rejected_by)
+        for candidate in strong
+        if candidate.rejected_by is not None
+    ]
     if not rejected:
         return NotHeldError(_HARDLY, "no rope is strong enough")
     nearest, by = min(rejected, key=lambda each: _shortfall(each[1]))

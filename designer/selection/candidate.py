@@ -14,7 +14,7 @@ from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.load_case import STATIC
 from designer.model.requirement import Requirement
-from designer.selection.cases import CaseFound, governing
+from designer.selection.cases import CaseResult, governing
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import UNKNOWN, Figures
 from designer.selection.verify import NOT_TRIED, Sampled, Verification
@@ -45,7 +45,7 @@ class Candidate:
         Optimum in the grade's continuous family [m]; NaN where the family has none.
     verification : Verification
         What it meets in the load case that governs.
-    cases : tuple of CaseFound
+    cases : tuple of CaseResult
         What it meets in each direction of each load case, of each case in the worst one where its
         standing is known; up to the first that it does not hold.
     figures : Figures
@@ -66,7 +66,7 @@ class Candidate:
     efficiency: float = 1.0
     continuous_diameter_m: float = math.nan
     verification: Verification = NOT_TRIED
-    cases: tuple[CaseFound, ...] = ()
+    cases: tuple[CaseResult, ...] = ()
     figures: Figures = UNKNOWN
     rejected_by: Requirement | None = None
     standing: Standing | Literal[""] = ""
@@ -94,7 +94,7 @@ class Candidate:
         return self.verification.holds and self.verification.is_refined
 
     @property
-    def governing(self) -> CaseFound:
+    def governing(self) -> CaseResult:
         """The load case that asks for most."""
         return governing(self.cases)
 

@@ -35,14 +35,16 @@ _MOST_SAMPLES = 256
 """Poses in which lengths are kept, for the chosen one."""
 FEW_AT_FIRST = 300
 """Samples that candidates are tried at first where all of them take long."""
-_NEAR = 0.95
+_CLOSE = 0.95
 """Of the utilisation that governs: from where on other cases and directions are searched, too."""
 _MOST_ROUNDS = 6
+"""Of turning the loads and searching the pose again, so that it ends."""
 _SAME = 1e-9
+"""Relative gain in utilisation that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
-class CaseFound:
+class CaseResult:
     """What a cable meets in one load case, or in one direction of it.
 
     Parameters
@@ -68,12 +70,12 @@ class CaseFound:
     is_full: bool = False
     is_whole: bool = True
 
-    def whole(self) -> CaseFound:
+    def whole(self) -> CaseResult:
         """Return what is met over all samples."""
         if self.is_whole or not self.verification.holds:
             return self
-        ((one, sampled),) = sampled_at_tension([self.loaded], self.workspace)
-        return CaseFound(self.workspace, one, sampled, sampled.verification(one.cable))
+        ((loaded, sampled),) = sampled_at_tension([self.loaded], self.workspace)
+        return CaseResult(self.workspace, loaded, sampled, sampled.verification(loaded.cable))
 
     @property
     def case(self) -> LoadCase:
@@ -90,15 +92,15 @@ class CaseFound:
         """Where (1,)."""
         return Poses.at(self.verification.worst_place[None])
 
-    def tension_N(self, other: Loaded, hangs_below: HangsBelow = "include") -> float:
+    def tension_N(self, loaded: Loaded, hangs_below: HangsBelow = "include") -> float:
         """Return the largest tension at that pose with another robot or cable [N].
 
         Minus infinity where the pose is left out for a cable that hangs below the platform.
         """
         place = self.verification.worst_place[None]
-        if other.keeps_lengths:
-            return float(settled_demand(other, hangs_below)(place)[0])
-        return float(rope_demand(other.robot, other.cable, hangs_below)(place)[0, 0])
+        if loaded.keeps_lengths:
+            return float(settled_demand(loaded, hangs_below)(place)[0])
+        return float(rope_demand(loaded.robot, loaded.cable, hangs_below)(place)[0, 0])
 
     @cached_property
     def loss(self) -> CableLoss | None:
@@ -118,8 +120,8 @@ class CaseFound:
     @property
     def cables(self) -> IntArray:
         """Numbers of the cables that are left, from 1."""
-        every = np.arange(1, self.loaded.robot.n_cables + 1)
-        return np.asarray(every[every != self.loaded.lost_cable])
+        numbers = np.arange(1, self.loaded.robot.n_cables + 1)
+        return np.asarray(numbers[numbers != self.loaded.lost_cable])
 
     @cached_property
     def most_used(self) -> int | None:
@@ -146,7 +148,7 @@ class Cases:
         """Return the same, with few samples at first where all would take hours.
 
         That is on robots that are slow to solve, where there is more than the static case: all
-        samples are left for candidates that are searched, see `CaseFound.whole`.
+        samples are left for candidates that are searched, see `CaseResult.whole`.
         """
         is_long = len(self.each) > 1 and not is_quick(self.robot)
         return replace(self, few=FEW_AT_FIRST) if is_long else self
@@ -167,7 +169,7 @@ class Cases:
 
     def sampled(
         self, cables: Sequence[Sequence[Cable]], progress: Advance
-    ) -> list[tuple[CaseFound, ...]]:
+    ) -> list[tuple[CaseResult, ...]]:
         """Solve every sample with every candidate in every direction of every case.
 
         Parameters
@@ -179,189 +181,198 @@ class Cases:
 
         Returns
         -------
-        list of tuple of CaseFound
+        list of tuple of CaseResult
             For each candidate, each direction of each case; up to the first that settles that it
             does not hold.
         """
-        found: list[list[CaseFound]] = [[] for _ in cables[0]]
-        for case, those in zip(self.each, cables, strict=True):
-            turns = zip(*(case.on(self.robot, cable) for cable in those), strict=True)
-            for loaded in turns:
-                holds = [all(one.verification.holds for one in before) for before in found]
-                alive = [k for k in range(len(found)) if holds[k]]
-                tried = self._try(case, [loaded[k] for k in alive], progress)
-                for k, one in zip(alive, tried, strict=True):
-                    found[k].append(one)
-        return [tuple(each) for each in found]
+        results: list[list[CaseResult]] = [[] for _ in cables[0]]
+        for case, of_case in zip(self.each, cables, strict=True):
+            directions = zip(*(case.on(self.robot, cable) for cable in of_case), strict=True)
+            for loaded in directions:
+                alive = [
+                    k
+                    for k, so_far in enumerate(results)
+                    if all(result.verification.holds for result in so_far)
+                ]
+                in_direction = self._try(case, [loaded[k] for k in alive], progress)
+                for k, result in zip(alive, in_direction, strict=True):
+                    results[k].append(result)
+        return [tuple(of_candidate) for of_candidate in results]
 
     def _try(
         self, case: LoadCase, loaded: Sequence[Loaded], progress: Advance
-    ) -> Iterator[CaseFound]:
-        workspace = whole = self.workspace.of_case(case)
-        keeps = any(one.keeps_lengths for one in loaded)
+    ) -> Iterator[CaseResult]:
+        workspace = whole_workspace = self.workspace.of_case(case)
+        keeps = any(candidate.keeps_lengths for candidate in loaded)
         if self.few is not None and not keeps:
             workspace = replace(workspace, samples=min(self.few, workspace.samples))
         shares = bool(loaded) and not case.changes_robot and not keeps
-        each = sampled_at_tension(loaded, workspace, progress)
+        solved = sampled_at_tension(loaded, workspace, progress)
         if not shares:
             progress(self.sample_count)
-        is_whole = workspace.samples == whole.samples
-        for one, sampled in each:
-            known = sampled.verification(one.cable)
-            yield CaseFound(whole, one, sampled, known, is_whole=is_whole)
+        is_whole = workspace.samples == whole_workspace.samples
+        for candidate, sampled in solved:
+            verification = sampled.verification(candidate.cable)
+            yield CaseResult(whole_workspace, candidate, sampled, verification, is_whole=is_whole)
 
 
-def resettled(found: CaseFound) -> CaseFound:
+def resettled(result: CaseResult) -> CaseResult:
     """Return a case, after another worst pose, with the stiffness at the tension there."""
 
-    def search(one: CaseFound) -> CaseFound:
-        return one if one.verification.is_refined else _search_once(one, is_light=False)
+    def search(result: CaseResult) -> CaseResult:
+        is_searched = result.verification.is_refined
+        return result if is_searched else _search_once(result, is_light=False)
 
-    return _at_its_tension(found, search)
+    return _at_its_tension(result, search)
 
 
-def as_stiff_as(cable: Cable, found: CaseFound) -> Cable:
+def as_stiff_as(cable: Cable, result: CaseResult) -> Cable:
     """Return a cable with the stiffness that it has in a load case."""
     if cable.stiffening is None:
         return cable
-    return replace(cable, axial_stiffness_N=found.loaded.cable.axial_stiffness_N)
+    return replace(cable, axial_stiffness_N=result.loaded.cable.axial_stiffness_N)
 
 
-def _at_its_tension(found: CaseFound, search: Callable[[CaseFound], CaseFound]) -> CaseFound:
+def _at_its_tension(result: CaseResult, search: Callable[[CaseResult], CaseResult]) -> CaseResult:
     """Search until the cable has the stiffness that it has at the largest tension found.
 
     With another stiffness all samples are solved again, and the search starts from the worst pose
     found before as well.
     """
-    stiffness, found = StiffnessSearch(), search(found)
+    stiffness, result = StiffnessSearch(), search(result)
     while True:
-        met = found.verification
-        other = stiffness.next_of(found.loaded, met.max_tension_N)
-        if other is None:
-            return found
-        (again,) = over_samples([other], found.workspace)
-        places = np.concatenate([met.worst_place[None], again.worst_places])
-        known = again.verification(other.cable)
-        again = replace(again, worst_places=places)
-        found = search(CaseFound(found.workspace, other, again, known))
+        worst = result.verification
+        loaded = stiffness.next_of(result.loaded, worst.max_tension_N)
+        if loaded is None:
+            return result
+        (sampled,) = over_samples([loaded], result.workspace)
+        places = np.concatenate([worst.worst_place[None], sampled.worst_places])
+        verification = sampled.verification(loaded.cable)
+        sampled = replace(sampled, worst_places=places)
+        result = search(CaseResult(result.workspace, loaded, sampled, verification))
 
 
-def governing(found: Sequence[CaseFound]) -> CaseFound:
+def governing(results: Sequence[CaseResult]) -> CaseResult:
     """Return the case, and direction, that asks for most; the first of equal ones."""
-    return max(found, key=lambda one: one.utilisation)
+    return max(results, key=lambda result: result.utilisation)
 
 
-def worst_of_each(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+def worst_of_each(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     """Return of each case the direction that asks for most, in the order of the study."""
-    cases = {id(one.case): one.case for one in found}
-    return tuple(governing([o for o in found if o.case is case]) for case in cases.values())
+    cases = {id(result.case): result.case for result in results}
+    return tuple(governing([r for r in results if r.case is case]) for case in cases.values())
 
 
-def together(found: Sequence[CaseFound]) -> Verification:
+def together(results: Sequence[CaseResult]) -> Verification:
     """Return what governs, with the longest and shortest lengths of all cases."""
-    most = governing(found).verification
-    longest = np.maximum.reduce([one.verification.longest_m for one in found])
-    shortest = np.fmin.reduce([one.verification.shortest_m for one in found])
-    return replace(most, longest_m=longest, shortest_m=shortest)
+    longest = np.maximum.reduce([result.verification.longest_m for result in results])
+    shortest = np.fmin.reduce([result.verification.shortest_m for result in results])
+    return replace(governing(results).verification, longest_m=longest, shortest_m=shortest)
 
 
-def searched(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+def searched(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     """Search between the samples: what governs in full, other cases near it lightly."""
-    found = _with(found, {id(o): o.whole() for o in _near(worst_of_each(found))})
-    most = governing(found)
-    near = _near(worst_of_each(found))
-    return _with(found, {id(o): _search(o, is_light=o is not most) for o in near})
+    results = _with(results, {id(r): r.whole() for r in _close(worst_of_each(results))})
+    worst = governing(results)
+    close = _close(worst_of_each(results))
+    return _with(results, {id(r): _search(r, is_light=r is not worst) for r in close})
 
 
-def _near(found: Sequence[CaseFound]) -> list[CaseFound]:
+def _close(results: Sequence[CaseResult]) -> list[CaseResult]:
     """Those that ask for most, or nearly."""
-    most = governing(found)
-    return [one for one in found if one.utilisation > _NEAR * most.utilisation]
+    least = _CLOSE * governing(results).utilisation
+    return [result for result in results if result.utilisation > least]
 
 
-def searched_all(found: Sequence[CaseFound]) -> tuple[CaseFound, ...]:
+def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     """Search between the samples in every case: its worst direction in full, those near it lightly.
 
     Wind from all directions and inertia forces are then turned and the pose searched again by
     turns until neither gains. What is found is the largest that these searches met, from the worst
     of the first directions on; that there is none larger is not proved.
     """
-    found = tuple(one.whole() for one in found)
-    done: dict[int, CaseFound] = {}
-    for most in worst_of_each(found):
-        near = _near([o for o in found if o.case is most.case])
-        done |= {id(o): _search(o, is_light=o is not most) for o in near}
-    return tuple(_turned(one) for one in _with(found, done))
+    results = tuple(result.whole() for result in results)
+    replaced: dict[int, CaseResult] = {}
+    for worst in worst_of_each(results):
+        close = _close([result for result in results if result.case is worst.case])
+        replaced |= {id(r): _search(r, is_light=r is not worst) for r in close}
+    return tuple(_turned(result) for result in _with(results, replaced))
 
 
-def _with(found: Sequence[CaseFound], done: dict[int, CaseFound]) -> tuple[CaseFound, ...]:
-    return tuple(done.get(id(one), one) for one in found)
+def _with(results: Sequence[CaseResult], replaced: dict[int, CaseResult]) -> tuple[CaseResult, ...]:
+    return tuple(replaced.get(id(result), result) for result in results)
 
 
-def _search(found: CaseFound, *, is_light: bool) -> CaseFound:
-    return _at_its_tension(found, partial(_search_once, is_light=is_light))
+def _search(result: CaseResult, *, is_light: bool) -> CaseResult:
+    return _at_its_tension(result, partial(_search_once, is_light=is_light))
 
 
-def _search_once(found: CaseFound, *, is_light: bool) -> CaseFound:
-    one, workspace = found.loaded, found.workspace
-    if not np.isfinite(found.utilisation) or found.is_full:
-        return found
-    if not one.keeps_lengths:
+def _search_once(result: CaseResult, *, is_light: bool) -> CaseResult:
+    loaded, workspace = result.loaded, result.workspace
+    if not np.isfinite(result.utilisation) or result.is_full:
+        return result
+    if not loaded.keeps_lengths:
         effort = LIGHT if is_light else None
-        met = refined(one.robot, workspace, one.cable, found.sampled, effort)
-        return replace(found, verification=met, is_full=not is_light)
+        verification = refined(loaded.robot, workspace, loaded.cable, result.sampled, effort)
+        return replace(result, verification=verification, is_full=not is_light)
     if is_light:
-        return found
-    more = over_kept_lengths(one, workspace, _MOST_SAMPLES)
-    demand_with = partial(settled_demand, one, workspace.hangs_below)
-    starts = np.concatenate([found.sampled.worst_places, more.worst_places])
+        return result
+    sampled = over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
+    demand_with = partial(settled_demand, loaded, workspace.hangs_below)
+    starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
     (worst,) = refine_over_branches(workspace.space, demand_with, starts, LIGHT)
-    used = worst.demand / one.cable.allowable_tension_N
     # Lengths are those before it settles.
-    lengths = refined(one.robot, workspace, one.cable, more, LIGHT)
-    met = replace(lengths, worst_place=worst.place, max_tension_N=worst.demand, utilisation=used)
-    return replace(found, verification=met, is_full=True)
+    lengths = refined(loaded.robot, workspace, loaded.cable, sampled, LIGHT)
+    verification = replace(
+        lengths,
+        worst_place=worst.place,
+        max_tension_N=worst.demand,
+        utilisation=worst.demand / loaded.cable.allowable_tension_N,
+    )
+    return replace(result, verification=verification, is_full=True)
 
 
-def _turned(found: CaseFound) -> CaseFound:
+def _turned(result: CaseResult) -> CaseResult:
     """Turn wind and inertia force to where they are worst, with the pose that goes with them."""
-    if not found.loaded.is_turned or not found.verification.is_refined:
-        return found
-    return _at_its_tension(found, _turned_once)
+    if not result.loaded.is_turned or not result.verification.is_refined:
+        return result
+    return _at_its_tension(result, _turned_once)
 
 
-def _turned_once(found: CaseFound) -> CaseFound:
-    if not found.verification.is_refined:  # with another stiffness than before
-        found = _search_once(found, is_light=True)
+def _turned_once(result: CaseResult) -> CaseResult:
+    if not result.verification.is_refined:  # with another stiffness than before
+        result = _search_once(result, is_light=True)
     for _ in range(_MOST_ROUNDS):
-        before = found.utilisation
-        turned = _steepest(found)
-        if found.loaded.keeps_lengths:  # a search for the pose takes long
-            found = governing([found, turned])
+        before = result.utilisation
+        steeper = _steepest(result)
+        if result.loaded.keeps_lengths:  # a search for the pose takes long
+            result = governing([result, steeper])
             break
-        met = refined(
-            turned.loaded.robot, turned.workspace, turned.loaded.cable,
-            replace(turned.sampled, worst_places=turned.verification.worst_place[None]), LIGHT,
-        )  # fmt: skip
-        if met.utilisation > turned.utilisation:
-            turned = replace(turned, verification=met)
-        found = turned if turned.utilisation > before else found
-        if not np.isfinite(found.utilisation) or found.utilisation <= before * (1.0 + _SAME):
+        loaded, place = steeper.loaded, steeper.verification.worst_place
+        start = replace(steeper.sampled, worst_places=place[None])
+        moved = refined(loaded.robot, steeper.workspace, loaded.cable, start, LIGHT)
+        if moved.utilisation > steeper.utilisation:
+            steeper = replace(steeper, verification=moved)
+        result = steeper if steeper.utilisation > before else result
+        if not np.isfinite(result.utilisation) or result.utilisation <= before * (1.0 + _SAME):
             break
-    return found
+    return result
 
 
-def _steepest(found: CaseFound) -> CaseFound:
+def _steepest(result: CaseResult) -> CaseResult:
     """Turn wind and inertia force at one pose while it gets worse."""
 
-    def utilisation(loaded: Loaded) -> float:
-        tension_N = found.tension_N(loaded, found.workspace.hangs_below)
+    def utilisation_of(loaded: Loaded) -> float:
+        tension_N = result.tension_N(loaded, result.workspace.hangs_below)
         return tension_N / loaded.cable.allowable_tension_N
 
-    loaded, used = steepest(found.loaded, found.utilisation, utilisation)
-    tension_N = used * loaded.cable.allowable_tension_N
-    met = replace(found.verification, max_tension_N=tension_N, utilisation=used)
-    return replace(found, loaded=loaded, verification=met)
+    loaded, utilisation = steepest(result.loaded, result.utilisation, utilisation_of)
+    verification = replace(
+        result.verification,
+        max_tension_N=utilisation * loaded.cable.allowable_tension_N,
+        utilisation=utilisation,
+    )
+    return replace(result, loaded=loaded, verification=verification)
 
 
 def steepest(

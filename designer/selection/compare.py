@@ -70,14 +70,14 @@ def is_undominated(burdens: FloatArray) -> BoolArray:
     return np.array([dominator_of(row, burdens) is None for row in burdens], dtype=np.bool_)
 
 
-def dominator_of(row: FloatArray, others: FloatArray) -> int | None:
-    """Return the row of ``others`` (n, n_objectives) that dominates, None where none does.
+def dominator_of(row: FloatArray, rivals: FloatArray) -> int | None:
+    """Return the row of ``rivals`` (n, n_objectives) that dominates, None where none does.
 
     Of several, the one that is best in the first objective.
     """
-    dominates = np.all(others <= row, axis=1) & np.any(others < row, axis=1)
+    dominates = np.all(rivals <= row, axis=1) & np.any(rivals < row, axis=1)
     at = np.flatnonzero(dominates)
-    return int(at[np.argmin(others[at, 0])]) if len(at) else None
+    return int(at[np.argmin(rivals[at, 0])]) if len(at) else None
 
 
 def standing_of(

@@ -82,8 +82,8 @@ def continuous_optimum(
         best = _member(grade, allowance, built, family_at, worst_with)
     else:
         diameter = thinnest(built.robot, family_at, worst_with)
-        shown = diameter if math.isfinite(diameter) else grade.thickest.diameter_m
-        best = ContinuousOptimum(family_at(shown), diameter)
+        shown_m = diameter if math.isfinite(diameter) else grade.thickest.diameter_m
+        best = ContinuousOptimum(family_at(shown_m), diameter)
     is_allowed = not math.isnan(allowance.efficiency(grade, best.diameter_m))
     return best if is_allowed else replace(best, diameter_m=math.nan)
 

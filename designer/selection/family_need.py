@@ -19,7 +19,7 @@ from designer.errors import DesignerError
 from designer.model.cable import Cable, Material
 from designer.model.load_case import LoadCase
 from designer.progress import Reporter
-from designer.selection.cases import CaseFound, Cases, governing, searched_all
+from designer.selection.cases import CaseResult, Cases, governing, searched_all
 from designer.study import Study, Workspace
 from designer.workspace.section import FIRST_TRIED_M, thinnest_that
 
@@ -36,12 +36,12 @@ class CaseNeed:
     diameter_m : float
         The thinnest diameter found that holds every pose in every direction of the case [m]; NaN
         where none does.
-    found : CaseFound
+    governing : CaseResult
         What it meets where the case asks for most; where none holds, a cable that fails, and where.
     """
 
     diameter_m: float
-    found: CaseFound
+    governing: CaseResult
 
     @property
     def is_held(self) -> bool:
@@ -51,8 +51,7 @@ class CaseNeed:
 
 def most_needed(needs: Sequence[CaseNeed]) -> CaseNeed | None:
     """Return the case that needs the thickest cable, or one that none holds; None of none."""
-    thickest = {id(one): one.diameter_m if one.is_held else math.inf for one in needs}
-    return max(needs, key=lambda one: thickest[id(one)], default=None)
+    return max(needs, key=lambda need: need.diameter_m if need.is_held else math.inf, default=None)
 
 
 def family_needs(study: Study, built: AsBuilt, reporter: Reporter) -> tuple[CaseNeed, ...]:
@@ -84,30 +83,30 @@ def family_need(
 
     section_m, diameter_m = 0.0, FIRST_TRIED_M
     for _ in range(_MOST_TURNS):
-        (tried,) = cases.sampled([[cable(diameter_m)]], lambda _: None)
-        most = governing(tried)
-        if most.verification.holds:
-            most = governing(searched_all(tried))
+        (results,) = cases.sampled([[cable(diameter_m)]], lambda _: None)
+        worst = governing(results)
+        if worst.verification.holds:
+            worst = governing(searched_all(results))
         # Of the first trial the pose counts, whether it holds there or not.
-        if section_m > 0.0 and most.utilisation <= 1.0 + _SAME:
-            return CaseNeed(section_m, most)
-        needed_m = _thinnest(most, cable)
+        if section_m > 0.0 and worst.utilisation <= 1.0 + _SAME:
+            return CaseNeed(section_m, worst)
+        needed_m = _thinnest(worst, cable)
         if math.isnan(needed_m) or needed_m <= section_m * (1.0 + _STILL):
-            return CaseNeed(math.nan, most)
+            return CaseNeed(math.nan, worst)
         section_m = diameter_m = needed_m
     raise DesignerError(
         f"no diameter was found that serves the load case '{case.name}': each asks for another one"
     )
 
 
-def _thinnest(found: CaseFound, cable: Callable[[float], Cable]) -> float:
+def _thinnest(worst: CaseResult, cable: Callable[[float], Cable]) -> float:
     """Return the thinnest diameter that serves the pose found, in its direction [m]; or NaN."""
-    robot = found.loaded.bare[0]
-    if not np.isfinite(found.pose.position_m).all():  # every pose is left out
+    robot = worst.loaded.bare[0]
+    if not np.isfinite(worst.pose.position_m).all():  # every pose is left out
         return math.nan
 
     def serves(diameter_m: float) -> bool:
-        one = found.loaded.on(robot, cable(diameter_m))
-        return found.tension_N(one) <= one.cable.allowable_tension_N
+        loaded = worst.loaded.on(robot, cable(diameter_m))
+        return worst.tension_N(loaded) <= loaded.cable.allowable_tension_N
 
     return thinnest_that(serves)

@@ -11,7 +11,7 @@ import numpy as np
 from designer.model.load_case import STATIC
 from designer.progress import Advance
 from designer.proof.prove import Budget, Proof, prove
-from designer.selection.cases import CaseFound, governing
+from designer.selection.cases import CaseResult, governing
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 
@@ -22,19 +22,19 @@ class CaseProof:
 
     Parameters
     ----------
-    found : Proof
+    proof : Proof
         The proof.
     load_case : str
         In which load case, with its direction; empty where the study has none.
     """
 
-    found: Proof
+    proof: Proof
     load_case: str
 
 
 def prove_governing(
-    cases: Sequence[CaseFound], budget: Budget, progress: Advance
-) -> tuple[CaseProof, tuple[CaseFound, ...]]:
+    cases: Sequence[CaseResult], budget: Budget, progress: Advance
+) -> tuple[CaseProof, tuple[CaseResult, ...]]:
     """Prove that a cable holds in all poses, in the case and direction that ask for most.
 
     A pose that is worse than the one found before takes its place, after a search from there.
@@ -43,53 +43,52 @@ def prove_governing(
     -------
     proof : CaseProof
         What is proved.
-    cases : tuple of CaseFound
+    cases : tuple of CaseResult
         The cases, with that pose.
     """
-    most = governing(cases)
-    one = most.loaded
-    case = "" if one.case is STATIC else ", ".join(filter(None, (one.case.name, one.words)))
-    reason = _why_not(most)
+    worst = governing(cases)
+    loaded, workspace = worst.loaded, worst.workspace
+    words = (loaded.case.name, loaded.words)
+    name = "" if loaded.case is STATIC else ", ".join(filter(None, words))
+    reason = _why_not(worst)
     if reason:
-        off = Proof("off", found=most.utilisation, reason=reason)
-        return CaseProof(off, case), tuple(cases)
-    told = 0
+        return CaseProof(Proof("off", found=worst.utilisation, reason=reason), name), tuple(cases)
+    percent = 0
 
-    def tell(share: float) -> None:
-        nonlocal told
-        progress(int(100.0 * share) - told)
-        told = int(100.0 * share)
+    def advance_to(share: float) -> None:
+        nonlocal percent
+        progress(int(100.0 * share) - percent)
+        percent = int(100.0 * share)
 
-    space = most.workspace.space
-    proof = prove(one.robot, one.cable, space, most.utilisation, budget, progress=tell)
+    space, cable = workspace.space, loaded.cable
+    proof = prove(loaded.robot, cable, space, worst.utilisation, budget, progress=advance_to)
     if proof.worst is None:
-        return CaseProof(proof, case), tuple(cases)
-    place = proof.worst[: space.n_coordinates]
-    used = proof.found
-    if np.isfinite(used):
-        demand_with = partial(rope_demand, one.robot, one.cable, most.workspace.hangs_below)
-        worst = refine_over_branches(space, demand_with, place[None], LIGHT)[0]
-        if worst.demand > used * one.cable.allowable_tension_N:
-            place, used = worst.place, worst.demand / one.cable.allowable_tension_N
-    met = replace(
-        most.verification,
+        return CaseProof(proof, name), tuple(cases)
+    place, utilisation = proof.worst[: space.n_coordinates], proof.found
+    if np.isfinite(utilisation):
+        demand_with = partial(rope_demand, loaded.robot, cable, workspace.hangs_below)
+        refined = refine_over_branches(space, demand_with, place[None], LIGHT)[0]
+        if refined.demand > utilisation * cable.allowable_tension_N:
+            place, utilisation = refined.place, refined.demand / cable.allowable_tension_N
+    verification = replace(
+        worst.verification,
         worst_place=place,
-        max_tension_N=used * one.cable.allowable_tension_N,
-        utilisation=used,
+        max_tension_N=utilisation * cable.allowable_tension_N,
+        utilisation=utilisation,
     )
-    better = replace(most, verification=met)
-    proof = replace(proof, found=used, bound=max(proof.bound, used))
-    return CaseProof(proof, case), tuple(better if o is most else o for o in cases)
+    worse = replace(worst, verification=verification)
+    proof = replace(proof, found=utilisation, bound=max(proof.bound, utilisation))
+    return CaseProof(proof, name), tuple(worse if case is worst else case for case in cases)
 
 
-def _why_not(most: CaseFound) -> str:
+def _why_not(result: CaseResult) -> str:
     """Return why nothing can be proved of a case; empty where something can."""
-    if most.loaded.lost_cable is not None:
+    if result.loaded.lost_cable is not None:
         return "what becomes of a platform that loses a cable is not enclosed"
-    if most.loaded.keeps_lengths:
+    if result.loaded.keeps_lengths:
         return "what becomes of a platform on lengths that grow is not enclosed"
-    if most.workspace.hangs_below == "exclude":
+    if result.workspace.hangs_below == "exclude":
         return "poses are left out, and which ones depends on the rope"
-    if not np.isfinite(most.utilisation):
+    if not np.isfinite(result.utilisation):
         return "the rope does not hold"
     return ""

@@ -71,7 +71,7 @@ class Qualities:
 
 
 def design_cable(
-    found: WorkspaceMap,
+    family_map: WorkspaceMap,
     assignment: Assignment,
     family: Material,
     needs: Sequence[CaseNeed],
@@ -82,9 +82,9 @@ def design_cable(
     """
     if assignment.is_found:
         return DesignCable(assignment.cable, assignment.name, assignment.by_cable)
-    diameter_m = np.nan if found.sagging is None else found.sagging.diameter_m
+    diameter_m = np.nan if family_map.sagging is None else family_map.sagging.diameter_m
     if needs:
-        diameter_m = float(np.max([one.diameter_m for one in needs]))
+        diameter_m = float(np.max([need.diameter_m for need in needs]))
     if np.isnan(diameter_m):
         return None
     name = f"{1e3 * diameter_m:.1f} mm of the configured family"
@@ -93,7 +93,7 @@ def design_cable(
 
 def qualities_of(
     workspace: Workspace,
-    found: WorkspaceMap,
+    family_map: WorkspaceMap,
     assignment: Assignment,
     built: AsBuilt,
     material: Material,
@@ -103,7 +103,7 @@ def qualities_of(
 
     ``needs`` is what load cases need of the configured family.
     """
-    cable = design_cable(found, assignment, built.material(material), needs)
+    cable = design_cable(family_map, assignment, built.material(material), needs)
     if cable is None:
         return None
     interference = None

@@ -23,7 +23,7 @@ from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import OPEN, Verdict
 from designer.progress import Advance
-from designer.selection.cases import CaseFound, steepest, worst_of_each
+from designer.selection.cases import CaseResult, steepest, worst_of_each
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
 from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
@@ -75,14 +75,15 @@ class Evaluation:
         return _at_place(self.criterion, loaded, self.loads.workspace, self.requirement.place)
 
 
-def loads_of(cases: Sequence[CaseFound]) -> list[CaseLoads]:
+def loads_of(cases: Sequence[CaseResult]) -> list[CaseLoads]:
     """Return the load cases of what a cable meets, each in all directions that were tried."""
-    each = {id(found.case): found for found in cases}.values()
+    of_cases = {id(result.case): result for result in cases}.values()
     return [
         CaseLoads(
-            found.workspace, tuple(other.loaded for other in cases if other.case is found.case)
+            result.workspace,
+            tuple(direction.loaded for direction in cases if direction.case is result.case),
         )
-        for found in each
+        for result in of_cases
     ]
 
 
@@ -115,8 +116,8 @@ def _at_place(
 def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[Evaluation]:
     keeps = loads.keeps_lengths
     lost = any(loaded.lost_cable for loaded in loads.directions)
-    asked = [each for each in criteria if each.at_rest_after_loss or not lost]
-    if not asked:
+    of_case = [criterion for criterion in criteria if criterion.at_rest_after_loss or not lost]
+    if not of_case:
         return
     workspace, count = loads.workspace, len(loads.directions)
     robot = loads.directions[0].robot
@@ -126,12 +127,12 @@ def _evaluate_case(loads: CaseLoads, criteria: Sequence[Criterion]) -> Iterator[
         [space.landmarks(), workspace.thinned(max(samples // count, FEWEST_SAMPLES))]
     )
     severities = np.stack(
-        [_severity(loaded, workspace, asked)(places).max(axis=0) for loaded in loads.directions]
+        [_severity(loaded, workspace, of_case)(places).max(axis=0) for loaded in loads.directions]
     )
     worst = severities.argmax(axis=0)
     for number in np.unique(worst):
         loaded = loads.directions[number]
-        columns = [asked[k] for k in np.flatnonzero(worst == number)]
+        columns = [of_case[k] for k in np.flatnonzero(worst == number)]
         demand_with = partial(_severity, loaded, workspace, columns)
         extremes = refine_over_branches(space, demand_with, places, LIGHT)
         for criterion, extreme in zip(columns, extremes, strict=True):
@@ -264,16 +265,16 @@ def extreme_lengths_m(loads: CaseLoads) -> tuple[FloatArray, FloatArray]:
     return lengths[0], -lengths[1]
 
 
-def strength_of(cases: Sequence[CaseFound], selection: Selection) -> Iterator[Requirement]:
+def strength_of(cases: Sequence[CaseResult], selection: Selection) -> Iterator[Requirement]:
     """Yield whether every pose is in equilibrium, and the breaking load, in each load case."""
-    for found in worst_of_each(cases):
-        yield equilibrium_of(found)
-        if math.isfinite(found.utilisation):
-            yield _breaking_load(found, selection)
+    for result in worst_of_each(cases):
+        yield equilibrium_of(result)
+        if math.isfinite(result.utilisation):
+            yield _breaking_load(result, selection)
 
 
-def _breaking_load(found: CaseFound, selection: Selection) -> Requirement:
-    factor, verification = selection.under(found.case).safety_factor, found.verification
+def _breaking_load(result: CaseResult, selection: Selection) -> Requirement:
+    factor, verification = selection.under(result.case).safety_factor, result.verification
     is_known = verification.is_refined or not verification.holds
     return Requirement(
         id="breaking_load",
@@ -281,45 +282,45 @@ def _breaking_load(found: CaseFound, selection: Selection) -> Requirement:
         formula=f"T ≤ η F / S; η the smaller of end fitting and bending, S = {factor:g}",
         source="Noble Denton 0027/ND, 7.6 to 7.8; S as the study gives it",
         state=State.OPEN if not is_known else State.HOLDS if verification.holds else State.FAILS,
-        load_case=found.case.name,
+        load_case=result.case.name,
         demand=verification.max_tension_N,
-        capacity=found.loaded.cable.allowable_tension_N,
+        capacity=result.loaded.cable.allowable_tension_N,
         unit="N",
         utilisation=verification.utilisation,
-        cable=found.most_used,
+        cable=result.most_used,
         place=verification.worst_place,
-        loaded=found.loaded,
+        loaded=result.loaded,
     )
 
 
-def equilibrium_of(found: CaseFound) -> Requirement:
+def equilibrium_of(result: CaseResult) -> Requirement:
     """Return whether every pose of a load case that counts is in equilibrium with a cable."""
-    place = found.verification.worst_place
+    place = result.verification.worst_place
     is_somewhere = bool(np.isfinite(place).all())
     state, remark = State.HOLDS, ""
     if not is_somewhere:
         state, remark = State.FAILS, "every pose is left out"
-    elif not math.isfinite(found.utilisation):
-        state, remark = _why_not_held(found)
+    elif not math.isfinite(result.utilisation):
+        state, remark = _why_not_held(result)
     return Requirement(
         id="equilibrium",
         title="Equilibrium",
         formula="the cables hold the platform in every pose that counts",
         source=f"forces and moments on the platform; {WHERE}",
         state=state,
-        load_case=found.case.name,
+        load_case=result.case.name,
         place=place if is_somewhere else None,
-        loaded=found.loaded,
+        loaded=result.loaded,
         remark=remark,
     )
 
 
-def _why_not_held(found: CaseFound) -> tuple[State, str]:
-    loss = found.loss
+def _why_not_held(result: CaseResult) -> tuple[State, str]:
+    loss = result.loss
     if loss is not None and Fate(int(loss.fate[0])) is not Fate.NOT_HELD:
         return State.OPEN, Fate(int(loss.fate[0])).words
-    loaded = found.loaded
-    verdict = Verdict(int(solve_sagging(loaded.robot, found.pose, loaded.cable).verdict[0]))
+    loaded = result.loaded
+    verdict = Verdict(int(solve_sagging(loaded.robot, result.pose, loaded.cable).verdict[0]))
     return state_of(verdict), verdict.clause
 
 
@@ -335,17 +336,17 @@ def sheave_ratio_of(grade: Grade, size: Size, selection: Selection) -> Iterator[
     ratio = grade.sheave_ratio
     if selection.sheave_diameter_m is None or ratio is None or ratio.minimum is None:
         return
-    there = selection.sheave_diameter_m / size.diameter_m
+    bending_ratio = selection.sheave_diameter_m / size.diameter_m
     yield Requirement(
         id="sheave_ratio",
         title="Sheave",
         formula="D / d ≥ the least ratio of the construction",
         source=f"table of {grade.id}",
-        state=State.HOLDS if there >= ratio.minimum else State.FAILS,
+        state=State.HOLDS if bending_ratio >= ratio.minimum else State.FAILS,
         load_case="all",
         demand=ratio.minimum,
-        capacity=there,
-        utilisation=ratio.minimum / there,
+        capacity=bending_ratio,
+        utilisation=ratio.minimum / bending_ratio,
     )
 
 

@@ -139,13 +139,13 @@ class SelectionResult:
     def front(self) -> tuple[Candidate, ...]:
         """The verified candidates that no other dominates, the chosen one first."""
         members = [c for c in self.candidates if c.standing in ("chosen", "undominated")]
-        first = self.objectives[0]
-        rank = [(c.standing != "chosen", c.figures.burden(first)) for c in members]
+        decides = self.objectives[0]
+        rank = [(c.standing != "chosen", c.figures.burden(decides)) for c in members]
         return tuple(members[k] for k in sorted(range(len(members)), key=rank.__getitem__))
 
-    def beside(self, one: Candidate) -> list[Candidate]:
+    def beside(self, candidate: Candidate) -> list[Candidate]:
         """Return a size with those beside it in its grade, if any, the thinnest first."""
-        of_grade = next(o.candidates for o in self.outcomes if o.grade is one.grade)
-        each = sorted(of_grade, key=lambda other: other.size.diameter_m)
-        at = each.index(one)
-        return each[max(at - 1, 0) : at + 2]
+        of_grade = next(o.candidates for o in self.outcomes if o.grade is candidate.grade)
+        by_diameter = sorted(of_grade, key=lambda size_of_grade: size_of_grade.size.diameter_m)
+        at = by_diameter.index(candidate)
+        return by_diameter[max(at - 1, 0) : at + 2]

@@ -24,22 +24,22 @@ def sampled_at_tension(
     loaded: Sequence[Loaded], workspace: Workspace, progress: Advance = lambda _: None
 ) -> list[tuple[Loaded, Sampled]]:
     """Solve the samples with each of the cables, as stiff as at the tension that it meets there."""
-    found = list(zip(loaded, over_samples(loaded, workspace, progress), strict=True))
-    searches = [StiffnessSearch() for _ in found]
-    unsettled: Sequence[int] = range(len(found))
+    solved = list(zip(loaded, over_samples(loaded, workspace, progress), strict=True))
+    searches = [StiffnessSearch() for _ in solved]
+    unsettled: Sequence[int] = range(len(solved))
     while unsettled:
-        tried: dict[int, Loaded] = {}
+        trials: dict[int, Loaded] = {}
         for k in unsettled:
-            one, sampled = found[k]
-            other = searches[k].next_of(one, sampled.verification(one.cable).max_tension_N)
-            if other is not None:
-                tried[k] = other
-        others = list(tried.values())
-        again = over_samples(others, workspace)
-        for k, one, sampled in zip(tried, others, again, strict=True):
-            found[k] = one, sampled
-        unsettled = list(tried)
-    return found
+            candidate, sampled = solved[k]
+            tension_N = sampled.verification(candidate.cable).max_tension_N
+            trial = searches[k].next_of(candidate, tension_N)
+            if trial is not None:
+                trials[k] = trial
+        again = over_samples(list(trials.values()), workspace)
+        for (k, trial), sampled in zip(trials.items(), again, strict=True):
+            solved[k] = trial, sampled
+        unsettled = list(trials)
+    return solved
 
 
 def over_samples(
@@ -48,41 +48,43 @@ def over_samples(
     """Solve the samples with each of the cables, all in one direction of one case."""
     if not loaded:
         return []
-    if any(one.keeps_lengths for one in loaded):
-        return [over_kept_lengths(one, workspace, FEW_SAMPLES) for one in loaded]
+    if any(candidate.keeps_lengths for candidate in loaded):
+        return [over_kept_lengths(candidate, workspace, FEW_SAMPLES) for candidate in loaded]
     if _leans(loaded[0], workspace):
-        return [_one_by_one(one, workspace) for one in loaded]
+        return [_one_by_one(candidate, workspace) for candidate in loaded]
     if loaded[0].case.changes_robot:
-        return [verify_sizes(one.robot, workspace, [one.cable])[0] for one in loaded]
-    cables = [one.cable for one in loaded]
+        return [
+            verify_sizes(candidate.robot, workspace, [candidate.cable])[0] for candidate in loaded
+        ]
+    cables = [candidate.cable for candidate in loaded]
     return verify_sizes(loaded[0].robot, workspace, cables, progress=progress)
 
 
-def over_kept_lengths(one: Loaded, workspace: Workspace, samples: int) -> Sampled:
+def over_kept_lengths(loaded: Loaded, workspace: Workspace, samples: int) -> Sampled:
     """Return what a cable meets on kept lengths, over some samples."""
     places = np.concatenate([workspace.space.landmarks(), workspace.thinned(samples)])
-    loss = settled(one, Poses.at(places))
+    loss = settled(loaded, Poses.at(places))
     counts = ~is_left_out(loss.before, workspace.hangs_below)
     tension = np.where(counts, loss.largest_tension_N, -np.inf)
     longest = np.nan_to_num(loss.before.length_m[counts]).max(axis=0, initial=0.0)
-    return _sampled(one.cable, places, tension, longest)
+    return _sampled(loaded.cable, places, tension, longest)
 
 
-def _leans(one: Loaded, workspace: Workspace) -> bool:
+def _leans(loaded: Loaded, workspace: Workspace) -> bool:
     """Tell whether poses are left out that the compiled sweep cannot tell: its down is the load."""
-    return workspace.hangs_below == "exclude" and one.robot.cable_load_direction is not None
+    return workspace.hangs_below == "exclude" and loaded.robot.cable_load_direction is not None
 
 
-def _one_by_one(one: Loaded, workspace: Workspace) -> Sampled:
+def _one_by_one(loaded: Loaded, workspace: Workspace) -> Sampled:
     """Return what a cable meets over the samples, which poses count told by the true vertical."""
-    demand = rope_demand(one.robot, one.cable, workspace.hangs_below)
-    each = (workspace.space.landmarks(), *workspace.places())
-    parts = [some for some in each if len(some)]  # a list of points has no landmarks
+    demand = rope_demand(loaded.robot, loaded.cable, workspace.hangs_below)
+    every = (workspace.space.landmarks(), *workspace.places())
+    batches = [batch for batch in every if len(batch)]  # a list of points has no landmarks
     tension, lengths, _ = np.split(
-        np.concatenate([demand(some) for some in parts]), [1, 1 + one.robot.n_cables], axis=1
+        np.concatenate([demand(batch) for batch in batches]), [1, 1 + loaded.robot.n_cables], axis=1
     )
     longest = np.maximum(lengths, 0.0).max(axis=0)
-    return _sampled(one.cable, np.concatenate(parts), tension[:, 0], longest)
+    return _sampled(loaded.cable, np.concatenate(batches), tension[:, 0], longest)
 
 
 def _sampled(

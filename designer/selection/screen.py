@@ -37,38 +37,42 @@ class Screen:
         """Reject what the sheave alone decides."""
         for candidate in candidates:
             ratios = sheave_ratio_of(candidate.grade, candidate.size, self.selection)
-            candidate.rejected_by = next((each for each in ratios if not each.holds), None)
+            candidate.rejected_by = next((ratio for ratio in ratios if not ratio.holds), None)
 
     def rejects_any(
-        self, best: Candidate, front: Sequence[Candidate], others: Sequence[Candidate]
+        self, best: Candidate, front: Sequence[Candidate], meeting: Sequence[Candidate]
     ) -> bool:
         """Evaluate the best candidate in full, and others where it comes nearest to failing.
 
-        All ``others`` at the places where it fails; where it fails nowhere, those of the ``front``
+        All ``meeting`` at the places where it fails; where it fails nowhere, those of the ``front``
         at all places. Tells whether any was rejected.
         """
         requirements = self.evaluated(best)
-        best.rejected_by = next((each for each in requirements if not each.holds), None)
+        best.rejected_by = next((r for r in requirements if not r.holds), None)
         evaluations = self._evaluations[id(best.size)]
-        failing = [each for each in evaluations if each.requirement.state is State.FAILS]
-        tried = others if best.rejected_by is not None else front
-        for candidate in tried:
+        failing = [e for e in evaluations if e.requirement.state is State.FAILS]
+        evaluated_at = meeting if best.rejected_by is not None else front
+        for candidate in evaluated_at:
             if candidate.rejected_by is None and candidate.verification.holds:
                 which = failing if best.rejected_by is not None else evaluations
                 candidate.rejected_by = next(self._failures(candidate, which), None)
-        return any(candidate.rejected_by is not None for candidate in (best, *tried))
+        return any(candidate.rejected_by is not None for candidate in (best, *evaluated_at))
 
-    def _failures(self, candidate: Candidate, where: Sequence[Evaluation]) -> Iterator[Requirement]:
+    def _failures(
+        self, candidate: Candidate, evaluations: Sequence[Evaluation]
+    ) -> Iterator[Requirement]:
         verification = candidate.verification
-        for each in drum_of(verification.longest_m, verification.shortest_m, self.selection):
-            if not each.holds:
-                yield each
-        for evaluation in where:
+        for drum in drum_of(verification.longest_m, verification.shortest_m, self.selection):
+            if not drum.holds:
+                yield drum
+        for evaluation in evaluations:
             case = evaluation.loads.case
-            other = next((found.loaded for found in candidate.cases if found.case is case), None)
-            there = None if other is None else evaluation.on(*other.bare)
-            if there is not None and there.state is State.FAILS:
-                yield there
+            loaded = next(
+                (result.loaded for result in candidate.cases if result.case is case), None
+            )
+            at_place = None if loaded is None else evaluation.on(*loaded.bare)
+            if at_place is not None and at_place.state is State.FAILS:
+                yield at_place
 
     def evaluated(self, candidate: Candidate) -> tuple[Requirement, ...]:
         """Return what a candidate comes to beside strength and sheave, evaluated in full once."""
@@ -79,7 +83,7 @@ class Screen:
         lengths = candidate.verification.longest_m, candidate.verification.shortest_m
         evaluations = self._evaluations[id(candidate.size)]
         return (
-            *(each.requirement for each in evaluations),
+            *(evaluation.requirement for evaluation in evaluations),
             *drum_of(*lengths, self.selection),
         )
 

@@ -27,7 +27,7 @@ from designer.selection.candidate import (
     is_allowed,
 )
 from designer.selection.cases import (
-    CaseFound,
+    CaseResult,
     Cases,
     as_stiff_as,
     governing,
@@ -84,8 +84,8 @@ def select(
     chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
     alternatives: list[GradeOutcome] = []
     if chosen is None:
-        others = [g for g in grades if g not in allowed and not g.why_only_by_name]
-        alternatives = trial.outcomes(others, only_fitting=True)[0] if others else []
+        not_allowed = [g for g in grades if g not in allowed and not g.why_only_by_name]
+        alternatives = trial.outcomes(not_allowed, only_fitting=True)[0] if not_allowed else []
     return SelectionResult(
         outcomes=tuple(outcomes),
         chosen=chosen,
@@ -164,20 +164,20 @@ class _Trial:
     ) -> tuple[list[GradeOutcome], list[NotTried]]:
         """Try all sizes of these grades; what became of them, or of those with one that holds."""
         candidates = self.sampled(grades)
-        tried = {id(candidate.size) for candidate in candidates}
+        solved = {id(candidate.size) for candidate in candidates}
         why = "the sheave is thinner than the rope, or than a fibre rope may be bent over"
         not_tried = [
-            NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in tried
+            NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in solved
         ]
         front, allowed = self.choose(candidates)
         outcomes = []
         with self.reporter.task("grades", len(grades)) as advance:
             for grade in grades:
-                own = [c for c in candidates if c.grade is grade]
-                fitting = [c for c in own if id(c) in allowed]
+                of_grade = [c for c in candidates if c.grade is grade]
+                fitting = [c for c in of_grade if id(c) in allowed]
                 its_best = best_of(fitting, self.selection.objectives, _nothing_left)
-                if its_best is not None or (own and not only_fitting):
-                    outcomes.append(self._outcome(grade, own, front, its_best))
+                if its_best is not None or (of_grade and not only_fitting):
+                    outcomes.append(self._outcome(grade, of_grade, front, its_best))
                 advance(1)
         return outcomes, not_tried
 
@@ -230,7 +230,7 @@ class _Trial:
         candidate.verification = together(candidate.cases)
         tension_N = candidate.verification.max_tension_N
         candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
-        return proof.found.worst is not None
+        return proof.proof.worst is not None
 
     def searched(self, candidate: Candidate, *, in_all: bool = False) -> Verification:
         """Search for the extremes of a candidate between the samples.
@@ -263,19 +263,21 @@ class _Trial:
                     advance(1)
         return candidates
 
-    def _meets(self, candidate: Candidate, cases: tuple[CaseFound, ...]) -> None:
+    def _meets(self, candidate: Candidate, cases: tuple[CaseResult, ...]) -> None:
         """Note what a candidate meets over the samples, and what it is compared by."""
-        met = together(cases)
-        if not math.isfinite(met.utilisation):  # lengths of other poses mean nothing
-            met = replace(met, longest_m=np.full_like(met.longest_m, np.nan))
-        length_m, ratio = float(met.longest_m.sum()), candidate.grade.sheave_ratio
-        candidate.cases, candidate.verification = cases, met
+        verification = together(cases)
+        if not math.isfinite(verification.utilisation):  # lengths of other poses mean nothing
+            verification = replace(
+                verification, longest_m=np.full_like(verification.longest_m, np.nan)
+            )
+        length_m, ratio = float(verification.longest_m.sum()), candidate.grade.sheave_ratio
+        candidate.cases, candidate.verification = cases, verification
         candidate.cable = as_stiff_as(candidate.cable, governing(cases))
         candidate.figures = Figures(
             mass_kg=candidate.cable.linear_density_kg_per_m * length_m,
             cost=cost(candidate, length_m, self.currency),
             drum_diameter_m=ratio.suggested * candidate.size.diameter_m if ratio else math.nan,
-            max_tension_N=met.max_tension_N,
+            max_tension_N=verification.max_tension_N,
             stiffness_N_per_m=math.nan,
         )
 
@@ -346,20 +348,20 @@ def _usable(
 
     The latter at a few poses only where each takes long.
     """
-    shown = [o for o in outcomes if o.candidates]
+    sized = [o for o in outcomes if o.candidates]
     if chosen is not None:
-        shown = [o for o in shown if o.grade is chosen.grade]
-    if not shown:
+        sized = [o for o in sized if o.grade is chosen.grade]
+    if not sized:
         return None
-    few = workspace.thinned(_FEW)
+    places = workspace.thinned(_FEW)
 
     def most_served(outcome: GradeOutcome) -> float:
         cables = [c.cable for c in outcome.candidates]
         if not is_quick(robot):
-            return max(float(serves(robot, workspace, c, few).mean()) for c in cables)
+            return max(float(serves(robot, workspace, c, places).mean()) for c in cables)
         return max(s.served for s in verify_sizes(robot, workspace, cables, gives_up=False))
 
-    outcome = shown[0] if len(shown) == 1 else max(shown, key=most_served)
+    outcome = sized[0] if len(sized) == 1 else max(sized, key=most_served)
     sizes = [(candidate.size, candidate.cable) for candidate in outcome.candidates]
     return usable(robot, workspace, outcome.grade, sizes)
 

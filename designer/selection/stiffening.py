@@ -58,21 +58,21 @@ class StiffnessSearch:
         next_N = min(max(here_N + step_N, min(allowed_N)), max(allowed_N))
         return None if next_N == here_N else replace(cable, axial_stiffness_N=next_N)
 
-    def next_of(self, one: Loaded, max_tension_N: float) -> Loaded | None:
+    def next_of(self, loaded: Loaded, max_tension_N: float) -> Loaded | None:
         """Return the same for a cable in a load case, with the load on it."""
-        cable = self.next(one.cable, max_tension_N)
+        cable = self.next(loaded.cable, max_tension_N)
         if cable is None:
             return None
-        robot, bare = one.bare
-        return one.on(robot, replace(bare, axial_stiffness_N=cable.axial_stiffness_N))
+        robot, bare = loaded.bare
+        return loaded.on(robot, replace(bare, axial_stiffness_N=cable.axial_stiffness_N))
 
 
 def as_it_meets(cable: Cable, max_tension_N: Callable[[Cable], float]) -> Cable:
     """Return a cable as stiff as at the largest tension [N] that a function finds it to meet."""
-    search, tried = StiffnessSearch(), cable
+    search, trial = StiffnessSearch(), cable
     while cable.stiffening is not None:
-        other = search.next(tried, max_tension_N(tried))
-        if other is None:
+        stiffer = search.next(trial, max_tension_N(trial))
+        if stiffer is None:
             break
-        tried = other
-    return tried
+        trial = stiffer
+    return trial

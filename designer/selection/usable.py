@@ -56,19 +56,19 @@ class Usable:
     @property
     def differs(self) -> bool:
         """Whether some sizes serve more than others."""
-        return len({one.fraction for one in self.sizes}) > 1
+        return len({size.fraction for size in self.sizes}) > 1
 
     @property
     def is_nested(self) -> bool:
         """Whether each size serves all that thinner ones serve."""
-        return all(one.lost_fraction == 0.0 for one in self.sizes)
+        return all(size.lost_fraction == 0.0 for size in self.sizes)
 
     @property
     def first_for_good(self) -> int | None:
         """Index of the size from which on all serve everything; None where the last does not."""
-        partly = [k for k, one in enumerate(self.sizes) if one.fraction < 1.0]
-        first = partly[-1] + 1 if partly else 0
-        return first if first < len(self.sizes) else None
+        partly = [k for k, size in enumerate(self.sizes) if size.fraction < 1.0]
+        index = partly[-1] + 1 if partly else 0
+        return index if index < len(self.sizes) else None
 
 
 def serves(robot: Robot, workspace: Workspace, cable: Cable, places: FloatArray) -> BoolArray:

@@ -130,19 +130,19 @@ def refined(
     """Search for the extremes of a cable between the samples, from the worst of them."""
     demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
     worst = refine_over_branches(workspace.space, demand_with, sampled.worst_places, effort)
-    found = _verification(cable, worst)
-    return replace(found, longest_m=np.maximum(found.longest_m, sampled.longest_m))
+    verification = _verification(cable, worst)
+    return replace(verification, longest_m=np.maximum(verification.longest_m, sampled.longest_m))
 
 
 def _verification(cable: Cable, worst: list[Worst]) -> Verification:
     """Put together what `rope_demand` was largest in."""
     tension, *lengths = worst
-    most = np.inf if np.isneginf(tension.demand) else tension.demand
-    length = np.array([one.demand for one in lengths]).reshape(2, -1)
+    tension_N = np.inf if np.isneginf(tension.demand) else tension.demand
+    length = np.array([extreme.demand for extreme in lengths]).reshape(2, -1)
     return Verification(
         worst_place=tension.place,
-        max_tension_N=most,
-        utilisation=most / cable.allowable_tension_N,
+        max_tension_N=tension_N,
+        utilisation=tension_N / cable.allowable_tension_N,
         longest_m=np.maximum(length[0], 0.0),
         shortest_m=np.where(np.isneginf(length[1]), np.nan, -length[1]),
     )
@@ -169,30 +169,30 @@ def verify_sizes(
     order = sorted(range(len(cables)), key=lambda k: -cables[k].weight_N_per_m)
     space, is_slow = workspace.space, not is_quick(robot)
     totals = _Totals(len(cables), robot.n_cables, space.n_coordinates)
-    samples = ((some, True) for some in workspace.places())
-    most = 2**9 if is_slow else 2**13
+    samples = ((places, True) for places in workspace.places())
+    chunk_size = 2**9 if is_slow else 2**13
     for chunk, counts in chain([(space.landmarks(), False)], samples):
-        for start in range(0, len(chunk), most):
-            some = chunk[start : start + most]
+        for start in range(0, len(chunk), chunk_size):
+            places = chunk[start : start + chunk_size]
             settled = (totals.not_held > 0) | (is_slow & (totals.utilisation.max(axis=1) > 1.0))
             alive = [k for k in order if not (gives_up and settled[k])]
-            x, y, z, turn = space.cells(some, _CELLS_A_SIDE).T
+            x, y, z, turn = space.cells(places, _CELLS_A_SIDE).T
             cells = ((x * _CELLS_A_SIDE + y) * _CELLS_A_SIDE + z) * _TURNS + turn % _TURNS
-            totals.samples += len(some) * counts
+            totals.samples += len(places) * counts
             while alive:
                 # Of a slow robot one by one: what refutes a cable refutes most of the others.
                 now, alive = (alive[:1], alive[1:]) if is_slow and gives_up else (alive, [])
-                met = _meet(robot, workspace, some, [cables[k] for k in now], cells, gives_up)
-                totals.add(now, some, met, counts)
-                if alive and _refutes(met):
+                meets = _meet(robot, workspace, places, [cables[k] for k in now], cells, gives_up)
+                totals.add(now, places, meets, counts)
+                if alive and _refutes(meets):
                     place = totals.of(now[0]).worst_places[:1]
                     alive = _survivors(robot, workspace, cables, alive, place, totals)
-            progress(len(some) if counts else 0)
+            progress(len(places) if counts else 0)
     return [totals.of(k) for k in range(len(cables))]
 
 
-def _refutes(met: Meets) -> bool:
-    return bool(met.failed.any() or (met.utilisation > 1.0).any())
+def _refutes(meets: Meets) -> bool:
+    return bool(meets.failed.any() or (meets.utilisation > 1.0).any())
 
 
 def _survivors(
@@ -204,14 +204,14 @@ def _survivors(
     totals: _Totals,
 ) -> list[int]:
     """Return which of the cables one place (1, n_coordinates) does not refute; note the others."""
-    left = []
+    survivors = []
     for k in alive:
-        met = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
-        if _refutes(met):
-            totals.add([k], place, met, counts=False)
+        meets = _meet(robot, workspace, place, [cables[k]], np.zeros(1, dtype=np.int64), True)
+        if _refutes(meets):
+            totals.add([k], place, meets, counts=False)
         else:
-            left.append(k)
-    return left
+            survivors.append(k)
+    return survivors
 
 
 def _meet(
@@ -223,18 +223,18 @@ def _meet(
     gives_up: bool,
 ) -> Meets:
     poses, exclude = Poses.at(positions), workspace.hangs_below == "exclude"
-    found = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
+    meets = meet(robot, poses, cables, cells, _CELLS, leaves_out_hanging=exclude)
     if not is_quick(robot):
-        return found
-    for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
-        hard = np.flatnonzero(found.failed[row])
+        return meets
+    for row in np.flatnonzero(meets.failed.any(axis=1)).tolist():
+        hard = np.flatnonzero(meets.failed[row])
         # After 16 hard poses, and each 256, a look whether the cable has failed.
         edges = [0, 16, *range(256, len(hard) + 256, 256)]
-        for some in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
-            add_slowly(found, row, robot, poses, cables[row], cells, exclude, some)
-            if gives_up and found.failed[row, some].any():
+        for batch in (hard[a:b] for a, b in pairwise(edges) if a < len(hard)):
+            add_slowly(meets, row, robot, poses, cables[row], cells, exclude, batch)
+            if gives_up and meets.failed[row, batch].any():
                 break
-    return found
+    return meets
 
 
 class _Totals:
@@ -249,30 +249,33 @@ class _Totals:
         self.counted, self.overloaded, self.not_held = np.zeros((3, n_tried), dtype=np.int64)
         self.not_held_places = np.full((n_tried, n_coordinates), np.nan)
 
-    def add(self, rows: Sequence[int], positions: FloatArray, met: Meets, counts: bool) -> None:
+    def add(self, rows: Sequence[int], positions: FloatArray, meets: Meets, counts: bool) -> None:
         self.tried[rows] += len(positions) * counts
-        higher = met.utilisation > self.utilisation[rows]
-        self.utilisation[rows] = np.where(higher, met.utilisation, self.utilisation[rows])
-        at_worst = positions[met.pose]
+        higher = meets.utilisation > self.utilisation[rows]
+        self.utilisation[rows] = np.where(higher, meets.utilisation, self.utilisation[rows])
+        at_worst = positions[meets.pose]
         self.worst_places[rows] = np.where(higher[..., None], at_worst, self.worst_places[rows])
-        self.longest_m[rows] = np.maximum(self.longest_m[rows], met.longest_m)
-        self.counted[rows] += met.counted * counts
-        self.overloaded[rows] += met.overloaded * counts
-        fails = met.failed.sum(axis=1)
-        first = (self.not_held[rows] == 0) & (fails > 0)
-        at_first = positions[met.failed.argmax(axis=1)]
-        self.not_held_places[rows] = np.where(first[:, None], at_first, self.not_held_places[rows])
+        self.longest_m[rows] = np.maximum(self.longest_m[rows], meets.longest_m)
+        self.counted[rows] += meets.counted * counts
+        self.overloaded[rows] += meets.overloaded * counts
+        fails = meets.failed.sum(axis=1)
+        is_first = (self.not_held[rows] == 0) & (fails > 0)
+        at_first = positions[meets.failed.argmax(axis=1)]
+        self.not_held_places[rows] = np.where(
+            is_first[:, None], at_first, self.not_held_places[rows]
+        )
         self.not_held[rows] += fails
 
     def of(self, row: int) -> Sampled:
         not_held = int(self.not_held[row])
-        asked = self.utilisation[row]
-        order = np.argsort(-asked, kind="stable")
-        worst = self.worst_places[row][order[~np.isneginf(asked[order])]]
+        utilisation = self.utilisation[row]
+        order = np.argsort(-utilisation, kind="stable")
+        worst = self.worst_places[row][order[~np.isneginf(utilisation[order])]]
         serves_none = self.tried[row] > 0 and self.counted[row] == 0  # a landmark at most
+        fails = bool(not_held) or serves_none or not len(worst)
         return Sampled(
             worst_places=self.not_held_places[row][None] if not_held else worst,
-            utilisation=np.inf if not_held or serves_none or not len(worst) else float(asked.max()),
+            utilisation=np.inf if fails else float(utilisation.max()),
             longest_m=self.longest_m[row],
             samples=int(self.tried[row]),
             counted=int(self.counted[row]),

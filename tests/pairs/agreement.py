@@ -22,7 +22,7 @@ from designer.analysis.analyse import Analysis
 from designer.model.load_case import Loaded
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.inverse import solve_sagging
 from designer.workspace.demand import settled
 
@@ -45,7 +45,7 @@ class Situation:
     lost: int | None = None
 
     @classmethod
-    def of(cls, text: Mapping[str, Any], ropes: list, found: CaseFound) -> Situation:
+    def of(cls, text: Mapping[str, Any], ropes: list, found: CaseResult) -> Situation:
         named = {case["name"]: case for case in text.get("load_cases", ())}
         one = found.loaded
         return cls(
@@ -115,7 +115,7 @@ def is_slack(one: Situation, pose: Pose) -> bool:
     return state is not None and sag_ratio(state) > 0.9999 * (problem.sag_max or np.inf)
 
 
-def tension_at(one: Situation, pose: Pose, ours: CaseFound | None = None) -> tuple[float, str]:
+def tension_at(one: Situation, pose: Pose, ours: CaseResult | None = None) -> tuple[float, str]:
     """Return utilisation in a pose by the reference, and what is wrong with our lengths there.
 
     Of robots that choose internal forces on kept lengths the lengths are ours: the reference says
@@ -161,7 +161,9 @@ def disagreements(
             yield from _requirement(text, ropes, analysis, one)
 
 
-def _case(one: Situation, found: CaseFound, rng: np.random.Generator, others: int) -> Iterator[str]:
+def _case(
+    one: Situation, found: CaseResult, rng: np.random.Generator, others: int
+) -> Iterator[str]:
     name = f"{found.case.name} {found.loaded.words}".strip()
     pose = Pose.of(found.verification.worst_place)
     theirs, wrong = tension_at(one, pose, found)

@@ -15,7 +15,7 @@ from designer.io.config import read_study
 from designer.proof.prove import Proof
 from designer.report.design.proof import proof_statement
 from designer.resources import example_file
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.selection.proven import CaseProof
 from designer.selection.select import select
 from designer.study import Study
@@ -37,7 +37,7 @@ def _grades() -> list[Grade]:
 
 @pytest.mark.slow
 def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def blind(found: tuple[CaseFound, ...]) -> tuple[CaseFound, ...]:
+    def blind(found: tuple[CaseResult, ...]) -> tuple[CaseResult, ...]:
         """Take an easy pose for the worst one, and no search between the samples."""
         easy = [
             replace(
@@ -69,8 +69,8 @@ def test_a_worst_pose_that_the_samples_missed_is_caught(monkeypatch: pytest.Monk
     ours, theirs = caught.chosen.verification, honest.chosen.verification
     assert ours.utilisation == pytest.approx(theirs.utilisation, rel=1e-3)
     assert caught.proof is not None
-    assert caught.proof.found.status == "proved"
-    assert ours.utilisation <= caught.proof.found.bound <= 1.0015 * theirs.utilisation
+    assert caught.proof.proof.status == "proved"
+    assert ours.utilisation <= caught.proof.proof.bound <= 1.0015 * theirs.utilisation
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.resources import example_file
-from designer.selection.cases import CaseFound, Cases, governing, searched_all, together
+from designer.selection.cases import CaseResult, Cases, governing, searched_all, together
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
 from designer.selection.verify import verify
@@ -68,7 +68,7 @@ def chosen_for(study: Study, cases: tuple[LoadCase, ...]) -> SelectionResult:
     )  # fmt: skip
 
 
-def twin_tension_N(study: Study, found: CaseFound) -> FloatArray:
+def twin_tension_N(study: Study, found: CaseResult) -> FloatArray:
     """Largest tension of each cable at the pose found, by the twin; its start is ours."""
     robot, cable = found.loaded.bare
     body, case, one = robot.platform, found.case, found.loaded

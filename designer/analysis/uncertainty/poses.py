@@ -24,7 +24,7 @@ from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses
 from designer.progress import Advance
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import add_slowly, is_quick, meet
 from designer.study import Workspace
@@ -144,7 +144,7 @@ def largest(asked: Sequence[Asked], draws: Draws, progress: Advance = lambda _: 
 
 
 def may_govern(
-    cases: Sequence[CaseFound], rope_in: Callable[[LoadCase], Cable], probes: Draws
+    cases: Sequence[CaseResult], rope_in: Callable[[LoadCase], Cable], probes: Draws
 ) -> list[Asked]:
     """Return the poses, of each load case and direction, that are among the worst in a probe.
 
@@ -161,7 +161,7 @@ def may_govern(
     ]
 
 
-def _all_of(found: CaseFound, rope: Cable) -> Iterator[Asked]:
+def _all_of(found: CaseResult, rope: Cable) -> Iterator[Asked]:
     """Yield a case in the direction that asked for most, at many poses; in the others at one."""
     robot, space = found.loaded.bare[0], found.workspace.space
     worst = found.verification.worst_place[None]

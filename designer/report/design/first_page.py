@@ -173,8 +173,10 @@ def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
         )
     workspace, pose, need = analysis.workspace, analysis.pose, analysis.most_needed
     if need is not None:
-        what = f"every pose of the workspace in every load case; '{need.found.case.name}' governs"
-        diameter_m, tension_N = need.diameter_m, need.found.verification.max_tension_N
+        what = (
+            f"every pose of the workspace in every load case; '{need.governing.case.name}' governs"
+        )
+        diameter_m, tension_N = need.diameter_m, need.governing.verification.max_tension_N
     elif workspace is not None and workspace.sagging is not None:
         worst, what = workspace.sagging, "every pose of the workspace"
         diameter_m, tension_N = worst.diameter_m, worst.max_tension_N
@@ -222,7 +224,7 @@ def _no_rope(analysis: Analysis) -> str:
 def _no_family(analysis: Analysis) -> str:
     workspace, need = analysis.workspace, analysis.most_needed
     if need is not None and not need.is_held:
-        name = need.found.case.name
+        name = need.governing.case.name
         return f"No cable of the configured family holds every pose in the load case '{name}'."
     if workspace is not None and not workspace.is_feasible:
         return "The workspace is not served: no cable of the configured family holds every pose."
@@ -264,9 +266,9 @@ def _needs_card(need: CaseNeed) -> Card | None:
     """Return what the load cases need of the family; None where one of them is not held."""
     if not need.is_held:
         return None
-    met = need.found.verification
+    met = need.governing.verification
     facts = (
-        Fact("Load case", need.found.case.name, fmt.printed(need.found.loaded.words)),
+        Fact("Load case", need.governing.case.name, fmt.printed(need.governing.loaded.words)),
         Fact("Largest tension", fmt.newtons(met.max_tension_N)),
         Fact("At the position", fmt.position(met.worst_place)),
     )

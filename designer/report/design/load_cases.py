@@ -11,7 +11,7 @@ from designer.report.blocks import Column, Heads, Row, Section, Statement, Table
 from designer.report.design.source import Source
 from designer.report.material_class import class_of
 from designer.selection.candidate import Candidate
-from designer.selection.cases import CaseFound
+from designer.selection.cases import CaseResult
 from designer.selection.family_need import CaseNeed
 from designer.selection.samples import FEW_SAMPLES
 from designer.statics.cable_loss import Fate
@@ -118,7 +118,7 @@ _KEPT = (
 
 
 def _need_row(one: CaseNeed, *, governs: bool) -> Row:
-    met, found = one.found.verification, one.found
+    met, found = one.governing.verification, one.governing
     size, tension = fmt.millimetres(one.diameter_m), fmt.newtons(met.max_tension_N)
     cells = (
         found.case.name,
@@ -236,7 +236,7 @@ def _met(chosen: Candidate, *, leaves_out: bool) -> Table:
     return Table.of(f"{fmt.capital(chosen.name)}, in each load case at its worst.", columns, *rows)
 
 
-def _row(found: CaseFound, governs: bool, *, leaves_out: bool) -> Row:
+def _row(found: CaseResult, governs: bool, *, leaves_out: bool) -> Row:
     met, cable = found.verification, found.loaded.cable
     largest, allowable = fmt.newtons_alike(met.max_tension_N, cable.allowable_tension_N)
     verdict = "holds" if met.holds else "does not hold"

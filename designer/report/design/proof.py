@@ -15,13 +15,13 @@ from designer.selection.proven import CaseProof
 def section(source: Source) -> Section | None:
     """Return what was proved, and how; None where nothing was to be."""
     case = _case(source.analysis)
-    if case is None or case.found.status == "off":
+    if case is None or case.proof.status == "off":
         return None
     return Section.of(
         "proof",
         "Proof",
         proof_statement(case),
-        f"The region is divided into boxes of poses, {fmt.count(case.found.boxes)} of them. In "
+        f"The region is divided into boxes of poses, {fmt.count(case.proof.boxes)} of them. In "
         "each, all pulls and poses are enclosed by intervals that are rounded outward; where an "
         "equilibrium is then certain to exist, its "
         "tensions are bounded by their enclosure (test of Krawczyk). Boxes whose bound is not "
@@ -47,7 +47,7 @@ def proofs(analysis: Analysis) -> Iterator[Statement]:
 
 def proof_statement(case: CaseProof) -> Statement:
     """Return what is proved, in a sentence or two."""
-    found = case.found
+    found = case.proof
     where = f" in the load case that governs, {case.load_case}" if case.load_case else ""
     largest = f"The largest found is {fmt.utilisation(found.found)}."
     if found.status == "off":

@@ -100,16 +100,16 @@ def balance_at(
         return None
     reach = max(float(np.linalg.norm(robot.attachments_m, axis=1).max()), 1e-9)
     scale = np.array([1.0, 1.0, 1.0] + [reach] * (robot.degrees_of_freedom - 3))
-    each = np.zeros((robot.n_cables, len(members), 1))
+    is_of_group = np.zeros((robot.n_cables, len(members), 1))
     for g, cables in enumerate(members):
-        each[cables, g] = 1.0
+        is_of_group[cables, g] = 1.0
     unit = robot.weight_N
     structure = structure_matrix(robot, geometry) / scale[:, None]
     load = load_wrench_N(robot, pose) / unit / scale
     X, D = geometry.horizontal_distance_m, geometry.drop_m
-    strength = np.array([one.cable.allowable_tension_N for one in products]) / unit
-    heaviest = np.array([one.cable.weight_N_per_m for one in products]) / unit
-    lightest = heaviest / (1.0 + np.array([one.largest_strain for one in products]))
+    strength = np.array([candidate.cable.allowable_tension_N for candidate in products]) / unit
+    heaviest = np.array([candidate.cable.weight_N_per_m for candidate in products]) / unit
+    lightest = heaviest / (1.0 + np.array([candidate.largest_strain for candidate in products]))
     pull = _least_pull(structure, load, X, D)
     moment = lightest * _least_moment_m2(X[:, None], D[:, None], pull[:, None], heaviest)
     chord = geometry.chord_m
@@ -118,9 +118,9 @@ def balance_at(
         load=load,
         distance=X / chord,
         drop=D / chord,
-        strength=each * strength,
-        weight=each * lightest * chord[:, None, None],
-        moment=each * (moment / chord[:, None])[:, None, :],
+        strength=is_of_group * strength,
+        weight=is_of_group * lightest * chord[:, None, None],
+        moment=is_of_group * (moment / chord[:, None])[:, None, :],
     )
 
 
@@ -134,11 +134,16 @@ def _least_pull(
     below_chord = np.hstack([-np.diag(D), np.diag(X)])
     balance = np.hstack([structure[:, 0::2], -structure[:, 1::2]])
     bounds = [(0.0, None)] * n + [(None, None)] * n
-    found = [
+    solutions = [
         linprog(row, below_chord, np.zeros(n), balance, load, bounds) for row in np.eye(n, 2 * n)
     ]
     # Rounding must not make it larger than it is.
-    return np.array([(1.0 - 1e-6) * max(one.fun, 0.0) if one.success else 0.0 for one in found])
+    return np.array(
+        [
+            (1.0 - 1e-6) * max(solution.fun, 0.0) if solution.success else 0.0
+            for solution in solutions
+        ]
+    )
 
 
 def _least_moment_m2(X: FloatArray, D: FloatArray, H: FloatArray, w: FloatArray) -> FloatArray:

@@ -47,8 +47,8 @@ def is_monotone(robot: Robot, workspace: Workspace) -> bool:
 def block_by_weight(trials: Trials, combination: Combination, culprit: int) -> Block:
     """Return the block of a failing combination, see the module; it alone, if nothing is proved."""
     corner = [trials.products[p].cable for p in combination]
-    others = [g for g in range(len(corner)) if g != culprit]
-    proved = (g for g in (culprit, *others) if _overloads(trials, corner, g))
+    company = [g for g in range(len(corner)) if g != culprit]
+    proved = (g for g in (culprit, *company) if _overloads(trials, corner, g))
     culprit = next(proved, -1)
     if culprit < 0:
         return alone(combination)
@@ -59,36 +59,36 @@ def block_by_weight(trials: Trials, combination: Combination, culprit: int) -> B
     def at_least(cable: Cable) -> frozenset[int]:
         return frozenset(
             p
-            for p, one in enumerate(trials.products)
-            if one.cable.linear_density_kg_per_m >= cable.linear_density_kg_per_m
-            and one.cable.axial_stiffness_N >= cable.axial_stiffness_N
+            for p, candidate in enumerate(trials.products)
+            if candidate.cable.linear_density_kg_per_m >= cable.linear_density_kg_per_m
+            and candidate.cable.axial_stiffness_N >= cable.axial_stiffness_N
         )
 
     sets = [at_least(cable) for cable in corner]
     sets[culprit] = frozenset(
         p
-        for p, one in enumerate(trials.products)
+        for p, candidate in enumerate(trials.products)
         if p == combination[culprit]
-        or _overloads(trials, _with(corner, culprit, one.cable), culprit)
+        or _overloads(trials, _with(corner, culprit, candidate.cable), culprit)
     )
     return tuple(sets)
 
 
-def _overloads(trials: Trials, each: Sequence[Cable], culprit: int) -> bool:
+def _overloads(trials: Trials, of_groups: Sequence[Cable], culprit: int) -> bool:
     """Tell whether a witness shows, by the argument on weight, that the group is too weak."""
-    load = trials.load(trials.on_groups(each))
+    load = trials.load(trials.on_groups(of_groups))
     cables = trials.members[culprit]
-    used, hangs = load.utilisation[:, cables], load.hangs[:, cables]
-    counts = np.isfinite(used) & ~hangs & trials.stands_above()[:, None]
-    return bool((counts & (used > 1.0)).any())
+    utilisation, hangs = load.utilisation[:, cables], load.hangs[:, cables]
+    counts = np.isfinite(utilisation) & ~hangs & trials.stands_above()[:, None]
+    return bool((counts & (utilisation > 1.0)).any())
 
 
 def _lowered(trials: Trials, corner: list[Cable], g: int, culprit: int) -> list[Cable]:
     """Return the corner with group g as light and as soft as the argument reaches."""
-    softest = min(one.cable.axial_stiffness_N for one in trials.products)
+    softest = min(candidate.cable.axial_stiffness_N for candidate in trials.products)
     soft = _with(corner, g, replace(corner[g], axial_stiffness_N=softest))
     corner = soft if _overloads(trials, soft, culprit) else corner
-    weights = sorted({one.cable.linear_density_kg_per_m for one in trials.products})
+    weights = sorted({candidate.cable.linear_density_kg_per_m for candidate in trials.products})
     low = 0
     high = int(np.searchsorted(weights, corner[g].linear_density_kg_per_m))
     for _ in range(8):
@@ -125,12 +125,12 @@ def block_by_trial(
     last = trials.count + most_trials
     order = [g for g in range(len(sets)) if g != culprit] + [culprit]
     for g in order:
-        others = prod(len(s) for k, s in enumerate(sets) if k != g)
+        count = prod(len(s) for k, s in enumerate(sets) if k != g)
         distance = np.abs(np.arange(len(trials.products)) - combination[g])
         for p in np.argsort(distance, kind="stable").tolist():
             if p in sets[g]:
                 continue
-            if trials.count + others > last:
+            if trials.count + count > last:
                 break
             grown = product(*({p} if k == g else s for k, s in enumerate(sets)))
             if all(trials.is_refuted(a) for a in grown if matters(a)):

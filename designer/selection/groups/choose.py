@@ -124,8 +124,8 @@ def choose_groups_of(
     tension_N = math.nan if single is None else single.verification.max_tension_N
     with reporter.task("groups", MOST_PROPOSALS) as advance:
         for _ in range(_MOST_ROUNDS):
-            products = [replace(one, cable=one.cable.at_tension(tension_N)) for one in offered]
-            is_single = (one for one in products if single and one.size is single.size)
+            products = [replace(c, cable=c.cable.at_tension(tension_N)) for c in offered]
+            is_single = (c for c in products if single and c.size is single.size)
             choice = choose_groups(
                 built.robot,
                 workspace,
@@ -164,8 +164,8 @@ class _Search:
         self.by_weight = is_monotone(robot, workspace)
         self.per_metre = np.array(  # what a metre adds to the objective
             [
-                (one.size.price_per_m or 0.0) if by_price else one.cable.linear_density_kg_per_m
-                for one in products
+                (c.size.price_per_m or 0.0) if by_price else c.cable.linear_density_kg_per_m
+                for c in products
             ]
         )
         # Blocks by weight exclude as much, and a programme without balances is solved faster.
@@ -184,19 +184,19 @@ class _Search:
 
     def start(self, single: Candidate | None) -> None:
         """Verify one product for all cables: the given one, or else the strongest."""
-        strength = [one.cable.allowable_tension_N for one in self.products]
+        strength = [candidate.cable.allowable_tension_N for candidate in self.products]
         at = int(np.argmax(strength)) if single is None else self.products.index(single)
         combination = (at,) * len(self.members)
-        found = self._verified(combination)
-        if not self.lengths_are_bounds and found.longest_m.all():
+        verification = self._verified(combination)
+        if not self.lengths_are_bounds and verification.longest_m.all():
             # Which samples count depends on the cables; those of the first answer are a fair guess.
-            cost = self._least_cost(found.longest_m)
+            cost = self._least_cost(verification.longest_m)
             self.master = Master(cost, self.master.most_distinct)
         self._guide(combination)
-        if found.holds:
+        if verification.holds:
             self.master.cut(alone(combination))
-            self.best = self._assigned(combination, found)
-            self.best_total = self._total(combination, found.longest_m)
+            self.best = self._assigned(combination, verification)
+            self.best_total = self._total(combination, verification.longest_m)
             self.single = self.best if single is not None else NOT_ASSIGNED
 
     def run(self, most_proposals: int) -> None:
@@ -231,14 +231,16 @@ class _Search:
         if worst is None and self._is_no_better(combination):
             outcome = "not_better"
         elif worst is None:
-            found = self._verified(combination)
-            group = int(np.argmax(found.utilisation))
-            worst = Refutation(group, float(found.utilisation[group]), found.worst_place[group])
-            if found.holds:
-                total = self._total(combination, found.longest_m)
+            verification = self._verified(combination)
+            group = int(np.argmax(verification.utilisation))
+            worst = Refutation(
+                group, float(verification.utilisation[group]), verification.worst_place[group]
+            )
+            if verification.holds:
+                total = self._total(combination, verification.longest_m)
                 outcome = "holds" if total < self.best_total else "not_better"
                 if outcome == "holds":
-                    self.best, self.best_total = self._assigned(combination, found), total
+                    self.best, self.best_total = self._assigned(combination, verification), total
         if worst is not None and outcome == "fails":
             block = self._block(combination, worst.group)
         self.master.cut(block)
@@ -274,14 +276,14 @@ class _Search:
         before = self.master.n_cuts
         for g in range(len(combination)):
             for p in range(len(self.products)):
-                other = (*combination[:g], p, *combination[g + 1 :])
-                if p == combination[g] or other in self._settled:
+                neighbour = (*combination[:g], p, *combination[g + 1 :])
+                if p == combination[g] or neighbour in self._settled:
                     continue
-                if not self._could_be_better(other) or self.trials.count > _MOST_TRIALS:
+                if not self._could_be_better(neighbour) or self.trials.count > _MOST_TRIALS:
                     continue
-                if self.trials.is_refuted(other) or self._is_no_better(other):
-                    self._settled.add(other)
-                    self.master.cut(alone(other))
+                if self.trials.is_refuted(neighbour) or self._is_no_better(neighbour):
+                    self._settled.add(neighbour)
+                    self.master.cut(alone(neighbour))
         return self.master.n_cuts - before
 
     def _is_no_better(self, combination: Combination) -> bool:
@@ -299,20 +301,20 @@ class _Search:
     def _verified(self, combination: Combination) -> GroupVerification:
         """Solve the whole workspace, and remember the worst places of a combination."""
         cables = self.trials.cables(combination)
-        found = verify_groups(self.robot, self.workspace, cables, self.members)
-        some = found.worst_place
-        self.trials.add_witnesses(some)
-        for place in some[np.isfinite(some).all(axis=1)] if self.has_balances else ():
+        verification = verify_groups(self.robot, self.workspace, cables, self.members)
+        places = verification.worst_place
+        self.trials.add_witnesses(places)
+        for place in places[np.isfinite(places).all(axis=1)] if self.has_balances else ():
             balance = balance_at(self.robot, place, self.products, self.members)
             if balance is not None and len(self.master.balances) < _MOST_BALANCES:
                 self.master.balances.append(balance)
-        return found
+        return verification
 
     def _guide(self, combination: Combination) -> None:
         """Add the linearised tension of each cable, where it is used most, as a guide."""
         load, slope = self.trials.slopes(combination)
-        weight = np.array([one.cable.weight_N_per_m for one in self.products])
-        allowable = np.array([one.cable.allowable_tension_N for one in self.products])
+        weight = np.array([candidate.cable.weight_N_per_m for candidate in self.products])
+        allowable = np.array([candidate.cable.allowable_tension_N for candidate in self.products])
         for g, cables in enumerate(self.members):
             for c in cables:
                 solved = np.isfinite(load.utilisation[:, c])
@@ -322,18 +324,18 @@ class _Search:
                     continue
                 row = slopes[:, None] * weight
                 row[g] -= allowable
-                here = float(slopes @ weight[list(combination)])
-                self._guides.append((row, here - float(load.tension_N[at, c])))
+                there_N = float(slopes @ weight[list(combination)])
+                self._guides.append((row, there_N - float(load.tension_N[at, c])))
 
     def _least_cost(self, reach_m: FloatArray) -> FloatArray:
         """Return what each product costs on each group at the least, (n_groups, n_products)."""
-        strain = np.array([one.largest_strain for one in self.products])
+        strain = np.array([candidate.largest_strain for candidate in self.products])
         reach = np.array([reach_m[cables].sum() for cables in self.members])
         return np.asarray(reach[:, None] * (self.per_metre / (1.0 + strain)))
 
-    def _assigned(self, combination: Combination, met: GroupVerification) -> Assignment:
-        return Assignment(self.groups, tuple(self.products[p] for p in combination), met)
+    def _assigned(self, combination: Combination, verification: GroupVerification) -> Assignment:
+        return Assignment(self.groups, tuple(self.products[p] for p in combination), verification)
 
     def _total(self, combination: Combination, length_m: FloatArray) -> float:
-        each = zip(self.members, combination, strict=True)
-        return float(sum(self.per_metre[p] * length_m[cables].sum() for cables, p in each))
+        pairs = zip(self.members, combination, strict=True)
+        return float(sum(self.per_metre[p] * length_m[cables].sum() for cables, p in pairs))

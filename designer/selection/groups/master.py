@@ -83,8 +83,8 @@ class Master:
         n_groups, n_products = self.cost.shape
         x = cp.Variable(n_groups * n_products, boolean=True)
         scale = float(self.cost.max())
-        each = sparse.kron(sparse.eye_array(n_groups), np.ones((1, n_products))).tocsr()
-        constraints = [each @ x == 1]
+        of_group = sparse.kron(sparse.eye_array(n_groups), np.ones((1, n_products))).tocsr()
+        constraints = [of_group @ x == 1]
         if self.most_distinct < n_groups:
             y = cp.Variable(n_products)
             every = sparse.kron(np.ones((n_groups, 1)), sparse.eye_array(n_products)).tocsr()
@@ -96,7 +96,7 @@ class Master:
             rows = sparse.csr_array((np.ones(len(terms)), terms, ends), shape=shape)
             constraints.append(rows @ x <= n_groups - 1)
         constraints += [
-            *(one for balance in self.balances for one in balance.constraints(x)),
+            *(constraint for balance in self.balances for constraint in balance.constraints(x)),
             *((row.ravel() / abs(bound)) @ x <= bound / abs(bound) for row, bound in guides),
         ]
         problem = cp.Problem(cp.Minimize((self.cost.ravel() / scale) @ x), constraints)

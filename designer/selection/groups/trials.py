@@ -48,27 +48,27 @@ def verify_groups(
     demand_with = partial(_demand, robot, workspace, cables, members)
     demand = demand_with()
     pools = [Pool(space) for _ in members]
-    used = np.full(len(members), -np.inf)
+    utilisation = np.full(len(members), -np.inf)
     at = np.full((len(members), space.n_coordinates), np.nan)
     longest = np.zeros(robot.n_cables)
-    for some in workspace.places():
-        asked, lengths = np.split(demand(some), [len(members)], axis=1)
+    for batch in workspace.places():
+        demands, lengths = np.split(demand(batch), [len(members)], axis=1)
         for g, pool in enumerate(pools):
-            pool.add(some, asked[:, g])
-        best = asked.argmax(axis=0)
-        highest = asked[best, np.arange(len(members))]
-        at = np.where((highest > used)[:, None], some[best], at)
-        used = np.maximum(used, highest)
+            pool.add(batch, demands[:, g])
+        best = demands.argmax(axis=0)
+        highest = demands[best, np.arange(len(members))]
+        at = np.where((highest > utilisation)[:, None], batch[best], at)
+        utilisation = np.maximum(utilisation, highest)
         longest = np.maximum(longest, lengths.max(axis=0))
-    if np.isneginf(used).any():  # every sample is left out: nothing is served
-        used = np.full(len(members), np.inf)
-    if used.max() > 1.0:
-        return GroupVerification(at, used, longest, np.full_like(longest, np.nan), False)
+    if np.isneginf(utilisation).any():  # every sample is left out: nothing is served
+        utilisation = np.full(len(members), np.inf)
+    if utilisation.max() > 1.0:
+        return GroupVerification(at, utilisation, longest, np.full_like(longest, np.nan), False)
     starts = np.unique(np.concatenate([pool.places for pool in pools]), axis=0)
     worst = refine_over_branches(space, demand_with, starts)
-    asked = np.array([one.demand for one in worst])
-    at = np.array([one.place for one in worst[: len(members)]])
-    groups, lengths = np.split(asked, [len(members)])
+    demands = np.array([extreme.demand for extreme in worst])
+    at = np.array([extreme.place for extreme in worst[: len(members)]])
+    groups, lengths = np.split(demands, [len(members)])
     return GroupVerification(at, groups, lengths, np.full_like(lengths, np.nan), True)
 
 
@@ -82,11 +82,11 @@ def _demand(
 ) -> Demand:
     """What cables meet (n, n_groups + n_cables): utilisation of each group, lengths [m]."""
 
-    def demand(some: FloatArray) -> FloatArray:
-        statics = solve_sagging(robot, Poses.at(some), cables, seeks_better=seeks_better)
+    def demand(places: FloatArray) -> FloatArray:
+        statics = solve_sagging(robot, Poses.at(places), cables, seeks_better=seeks_better)
         left_out = is_left_out(statics, workspace.hangs_below)
-        used = utilisation_of(statics, cables, left_out)
-        groups = np.column_stack([used[:, cable].max(axis=1) for cable in members])
+        utilisation = utilisation_of(statics, cables, left_out)
+        groups = np.column_stack([utilisation[:, cable].max(axis=1) for cable in members])
         counts = np.isfinite(groups).all(axis=1)
         length = length_demand(statics, counts)[:, : robot.n_cables]
         return np.column_stack([groups, length])
@@ -133,12 +133,12 @@ class Trials:
         self.reach_m = np.zeros(robot.n_cables)
         """Longest chord of each cable over the samples (n_cables,) [m]."""
         self._farthest = np.zeros((robot.n_cables, workspace.space.n_coordinates))
-        for some in workspace.places():
-            chord = cable_geometry(robot, Poses.at(some)).chord_m
+        for batch in workspace.places():
+            chord = cable_geometry(robot, Poses.at(batch)).chord_m
             best = chord.argmax(axis=0)
             far = chord[best, np.arange(robot.n_cables)]
             is_farther = (far > self.reach_m)[:, None]
-            self._farthest = np.where(is_farther, some[best], self._farthest)
+            self._farthest = np.where(is_farther, batch[best], self._farthest)
             self.reach_m = np.maximum(self.reach_m, far)
         self._found = np.empty((0, workspace.space.n_coordinates))
         self._refuted: set[Combination] = set()
@@ -148,20 +148,20 @@ class Trials:
         """Places (n_witnesses, n_coordinates); the first are samples far from each exit point."""
         return np.concatenate([self._farthest, self._found])
 
-    def add_witnesses(self, some: FloatArray) -> None:
+    def add_witnesses(self, places: FloatArray) -> None:
         """Take up places (n, n_coordinates) where assignments have failed, or nearly so."""
-        known = {tuple(place) for place in self._found}
-        new = [p for p in some if np.isfinite(p).all() and tuple(p) not in known]
-        found = np.concatenate([self._found, np.array(new).reshape(-1, self._found.shape[1])])
-        self._found = found[-120:]  # the latest: each is asked in every trial
+        present = {tuple(place) for place in self._found}
+        new = [p for p in places if np.isfinite(p).all() and tuple(p) not in present]
+        witnesses = np.concatenate([self._found, np.array(new).reshape(-1, self._found.shape[1])])
+        self._found = witnesses[-120:]  # the latest: each is asked in every trial
 
     def cables(self, combination: Combination) -> Cables:
         """Return the cables of a combination, in the order of the exit points."""
         return self.on_groups([self.products[p].cable for p in combination])
 
-    def on_groups(self, each: Sequence[Cable]) -> Cables:
+    def on_groups(self, of_groups: Sequence[Cable]) -> Cables:
         """Return the cables of the robot from those of its groups."""
-        of_cable = {int(c): each[g] for g, cables in enumerate(self.members) for c in cables}
+        of_cable = {int(c): of_groups[g] for g, cables in enumerate(self.members) for c in cables}
         return Cables(tuple(of_cable[c] for c in range(self.robot.n_cables)))
 
     def load(self, cables: Cables) -> Load:
@@ -205,12 +205,12 @@ class Trials:
 
         The latter (n_groups, n_witnesses, n_cables) by forward differences [N per N/m].
         """
-        each = [self.products[p].cable for p in combination]
-        base = self.load(self.on_groups(each))
+        of_groups = [self.products[p].cable for p in combination]
+        base = self.load(self.on_groups(of_groups))
         slopes = []
-        for g, cable in enumerate(each):
+        for g, cable in enumerate(of_groups):
             density = (1.0 + _NUDGE) * cable.linear_density_kg_per_m
             heavier = replace(cable, linear_density_kg_per_m=density)
-            moved = self.load(self.on_groups([*each[:g], heavier, *each[g + 1 :]]))
+            moved = self.load(self.on_groups([*of_groups[:g], heavier, *of_groups[g + 1 :]]))
             slopes.append((moved.tension_N - base.tension_N) / (_NUDGE * cable.weight_N_per_m))
         return base, np.array(slopes)
