@@ -46,7 +46,7 @@ def export(
     question: Question,
     reporter: Reporter,
     *,
-    what: What,
+    content: What,
     target: Path,
     ropes: Ropes | None = None,
 ) -> Exported:
@@ -54,7 +54,7 @@ def export(
 
     Parameters
     ----------
-    what : str
+    content : str
         ``report``: what `designer report` writes, into the folder ``target``. ``tables``:
         ``cables.csv``, ``map.csv`` and ``ropes.csv`` into that folder. ``vtk``: the map into the
         file ``target``, which ends in ``.vtu``.
@@ -67,9 +67,9 @@ def export(
         If they cannot be written.
     """
     target = Path(target)
-    if what == "report":
+    if content == "report":
         return _report(question, reporter, target)
-    if what == "tables":
+    if content == "tables":
         return _tables(question, target, ropes)
     return _vtk(question, target)
 
@@ -93,9 +93,9 @@ def _report(question: Question, reporter: Reporter, folder: Path) -> Exported:
 
 
 def _tables(question: Question, folder: Path, ropes: Ropes | None) -> Exported:
-    found = here(question)
+    pose = here(question)
     tables = {
-        "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, found.cables)),
+        "cables.csv": _csv([f.name for f in fields(CableHere)], map(asdict, pose.cables)),
     }
     chart = map_answer(question, fine=True, quantities=_ALL)
     if chart.grids:

@@ -96,9 +96,9 @@ class Helper:
                 ends = self._closing
                 dropped += [request] if ends else []
                 self._running = None if ends or request is _NOTHING else request
-            for one in dropped:
-                if one is not _NOTHING:
-                    self._deliver(Cancelled(one))
+            for unanswered in dropped:
+                if unanswered is not _NOTHING:
+                    self._deliver(Cancelled(unanswered))
             if ends:
                 self._end()
                 return

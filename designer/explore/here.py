@@ -220,11 +220,11 @@ def _stability(
 
 
 def _caution(question: Question, statics: Statics) -> str:
-    told = []
+    sentences = []
     if question.study.load_cases:
-        told.append("At rest, without the load cases of the study.")
+        sentences.append("At rest, without the load cases of the study.")
     if statics.is_solved and statics.hangs_below:
         numbers = [str(k + 1) for k in np.flatnonzero(statics.hanging_cables)]
         hang = "s " + ", ".join(numbers) + " hang" if len(numbers) > 1 else f" {numbers[0]} hangs"
-        told.append(f"Cable{hang} below the platform.")
-    return " ".join(told)
+        sentences.append(f"Cable{hang} below the platform.")
+    return " ".join(sentences)

@@ -1,40 +1,79 @@
-"""Steps that can be undone and done again."""
+"""What a step may change, and steps that can be undone and done again."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
 
-State = TypeVar("State")
+from designer.arrays import FloatArray
+from designer.errors import Fault
+from designer.explore.question import Assignment, Rope
+from designer.explore.reading import Reading
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionState:
+    """All that a step may change.
+
+    Parameters
+    ----------
+    reading : Reading
+        The text, and what it is.
+    live : Reading
+        The same, or, where the text is faulty, what was sound last; where nothing ever was, the
+        text.
+    place : array (6,)
+        Where the platform is, and its rotation vector [m, rad].
+    rope : Rope, Assignment or None
+        The rope, or the ropes of groups, that are looked at.
+    pin : object
+        What the present state is compared with; None for nothing.
+    """
+
+    reading: Reading
+    live: Reading
+    place: FloatArray
+    rope: Rope | Assignment | None = None
+    pin: object = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rejected:
+    """An entry that was refused: what was typed, and why."""
+
+    text: str
+    faults: tuple[Fault, ...]
+
+
 _MOST_STEPS = 1000
+"""Some hours of edits; each holds a text and what was read of it."""
 
 
 @dataclass(slots=True)
-class Step(Generic[State]):
+class HistoryStep:
     """The states before and after something that has a name; ``key`` of what may go on with it."""
 
     label: str
-    before: State
-    after: State
+    before: SessionState
+    after: SessionState
     key: object = None
 
 
 @dataclass(slots=True)
-class History(Generic[State]):
+class History:
     """The present state, and the steps that led to it."""
 
-    state: State
-    done: list[Step[State]] = field(default_factory=list)
-    undone: list[Step[State]] = field(default_factory=list)
+    state: SessionState
+    done: list[HistoryStep] = field(default_factory=list)
+    undone: list[HistoryStep] = field(default_factory=list)
 
-    def take(self, label: str, state: State, key: object) -> None:
+    def take(self, label: str, state: SessionState, key: object) -> None:
         """Go on to another state; with the key of the last step as part of that step."""
         before, self.state = self.state, state
         last = self.done[-1] if self.done else None
         if key is not None and last is not None and last.key == key:
             last.after = state
         else:
-            self.done.append(Step(label, before, state, key))
+            self.done.append(HistoryStep(label, before, state, key))
             del self.done[:-_MOST_STEPS]
         self.undone.clear()
 

@@ -31,11 +31,11 @@ def main() -> None:
     os.dup2(2, 1)
     tasks: SimpleQueue[dict[str, Any]] = SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
-    told = Told(lambda *how_far: _send(out, ("progress", *how_far)))
+    reporter = Told(lambda *how_far: _send(out, ("progress", *how_far)))
     while True:
         task = tasks.get()
         try:
-            _send(out, ("done", _answer(task, told)))
+            _send(out, ("done", _answer(task, reporter)))
         except Exception as error:
             _send(out, ("failed", failure_text(error)))
 
@@ -54,17 +54,17 @@ def _send(out: BinaryIO, message: tuple[Any, ...]) -> None:
     out.flush()
 
 
-def _answer(task: dict[str, Any], told: Told) -> Any:
-    from designer.explore.diagnosing import diagnosis_answer
+def _answer(task: dict[str, Any], reporter: Told) -> Any:
     from designer.explore.export import export
+    from designer.explore.measurements import diagnosis_answer
     from designer.explore.ropes import full_ropes
 
     question = _question(task)
     if task["kind"] == "select":
-        return full_ropes(question, told)
+        return full_ropes(question, reporter)
     if task["kind"] == "diagnose":
-        return diagnosis_answer(question, told)
-    return export(question, told, **task["options"])
+        return diagnosis_answer(question, reporter)
+    return export(question, reporter, **task["options"])
 
 
 def _question(task: dict[str, Any]) -> Question:

@@ -88,17 +88,17 @@ class Question:
     @property
     def pose(self) -> Poses:
         """Where the platform is; the study's own pose, to the last digit, where it is there."""
-        own = self.study.pose
-        if own is not None and np.array_equal(own.place, self.place):
-            return own
+        study_pose = self.study.pose
+        if study_pose is not None and np.array_equal(study_pose.place, self.place):
+            return study_pose
         is_point = self.study.robot.is_point_mass
         return Poses.at(self.place[:3]) if is_point else Poses.at(self.place)
 
     @property
     def outside(self) -> str:
         """In what this pose is none of the workspace, in a sentence; or empty."""
-        told = replace(self.study, pose=self.pose).pose_outside
-        return f"This pose {told}." if told else ""
+        fault = replace(self.study, pose=self.pose).pose_outside
+        return f"This pose {fault}." if fault else ""
 
     @property
     def workspace(self) -> Workspace | None:
@@ -149,10 +149,10 @@ class Question:
         """
         if self.rope is None or isinstance(self.rope, Rope):
             return None if self.rope is None else self._as_it_meets(self.rope)
-        each = {rope: self._as_it_meets(rope) for rope in self.rope.ropes}
+        cables = {rope: self._as_it_meets(rope) for rope in self.rope.ropes}
         if len(self.rope.ropes) != self.robot.n_cables:
             raise DesignerError("the ropes of the groups are of a robot with other cables")
-        return Cables(tuple(each[rope] for rope in self.rope.ropes))
+        return Cables(tuple(cables[rope] for rope in self.rope.ropes))
 
     def cable_in(self, case: LoadCase, rope: Rope) -> Cable:
         """Return a rope with what it may be used to in a load case."""
@@ -160,7 +160,7 @@ class Question:
 
     def _cable_of(self, rope: Rope, case: LoadCase = STATIC) -> Cable:
         grade = self.catalogue.grade(rope.grade_id)
-        size = next((one for one in grade.sizes if one.id == rope.size_id), None)
+        size = next((size for size in grade.sizes if size.id == rope.size_id), None)
         if size is None:
             raise DesignerError(f"the grade {grade.id} has no size {rope.size_id}")
         allowance = Allowance.of(self.selection.under(case))
@@ -179,7 +179,9 @@ class Question:
         if self.workspace is None:
             return as_it_meets(
                 cable,
-                lambda one: float(solve_sagging(self.robot, self.pose, one).largest_tension_N),
+                lambda stiffened: float(
+                    solve_sagging(self.robot, self.pose, stiffened).largest_tension_N
+                ),
             )
         grade = self.catalogue.grade(rope.grade_id)
         size = next(size for size in grade.sizes if size.id == rope.size_id)

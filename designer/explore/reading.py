@@ -23,15 +23,15 @@ class Context:
     """What a text is read with: where its relative paths start, effects, and plugins' grades."""
 
     path: Path
-    known: KnownEffects
+    effects: KnownEffects
     plugins: Plugins
 
     def read(self, text: str) -> Reading:
         """Return what a text is."""
         try:
             document = document_of(text.encode(), str(self.path))
-            section = checked(document, self.known)
-            study = study_of(section, document, self.path, self.known, self.plugins)
+            section = checked(document, self.effects)
+            study = study_of(section, document, self.path, self.effects, self.plugins)
         except InputError as error:
             return Reading(self, text, None, error.faults)
         except DesignerError as error:
@@ -55,12 +55,12 @@ class Reading:
         """Every value that can vary; empty where the text is no study."""
         if self.section is None or self.document is None:
             return ()
-        return study_fields(self.section, self.document.root, self.context.known.by_id)
+        return study_fields(self.section, self.document.root, self.context.effects.by_id)
 
     @cached_property
     def by_path(self) -> dict[str, Field]:
         """The same by their paths."""
-        return {one.path: one for one in self.fields}
+        return {field.path: field for field in self.fields}
 
     def moved_to(self, folder: Path) -> str:
         """Return the text with the relative paths in it as they are from a folder."""

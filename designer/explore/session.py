@@ -15,10 +15,9 @@ from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
 from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
-from designer.explore.history import History
+from designer.explore.history import History, Rejected, SessionState
 from designer.explore.question import Assignment, Question, Rope, first_place
 from designer.explore.reading import Context, Reading, digest_of, text_of
-from designer.explore.state import Rejected, State
 from designer.io.output import write_file
 from designer.plugins.find import Plugins
 from designer.resources import example_file
@@ -48,10 +47,10 @@ class Session:
         """Entries that were refused, by the path of their field."""
         self._saved = context.read(text)
         self._digest = digest_of(text)
-        self._asked: tuple[State, Question] | None = None
-        self._shown: tuple[Reading, Reading, tuple[Field, ...]] | None = None
+        self._question: tuple[SessionState, Question] | None = None
+        self._fields: tuple[Reading, Reading, tuple[Field, ...]] | None = None
         place = first_place(self._saved.study)
-        self._history = History(State(self._saved, self._saved, place))
+        self._history = History(SessionState(self._saved, self._saved, place))
 
     @classmethod
     def open(cls, path: Path, plugins: Plugins) -> Self:
@@ -74,7 +73,7 @@ class Session:
     # What there is
 
     @property
-    def state(self) -> State:
+    def state(self) -> SessionState:
         """The present state."""
         return self._history.state
 
@@ -111,7 +110,7 @@ class Session:
     @property
     def problems(self) -> tuple[str, ...]:
         """What plugins brought that could not be used, one line each."""
-        return self._context.known.problems
+        return self._context.effects.problems
 
     @property
     def is_modified(self) -> bool:
@@ -123,11 +122,11 @@ class Session:
         state, live = self.state, self.state.live
         if live.study is None:
             return None
-        if self._asked is None or self._asked[0] is not state:
+        if self._question is None or self._question[0] is not state:
             origin = self._context.path, self._context.plugins
             question = Question(live.study, state.place, state.rope, live.text, *origin)
-            self._asked = state, question
-        return self._asked[1]
+            self._question = state, question
+        return self._question[1]
 
     def fields(self) -> tuple[Field, ...]:
         """Return every value that can vary; of a text that is faulty those of the last sound one.
@@ -135,18 +134,18 @@ class Session:
         Sliders go from where to where they went for the file, as long as the value lies there.
         """
         live, saved = self.state.live, self._saved
-        if self._shown is None or self._shown[:2] != (live, saved):
+        if self._fields is None or self._fields[:2] != (live, saved):
             ends = saved.by_path
-            found = tuple(with_ends_of(one, ends.get(one.path)) for one in live.fields)
-            self._shown = live, saved, found
-        return self._shown[2]
+            fields = tuple(with_ends_of(field, ends.get(field.path)) for field in live.fields)
+            self._fields = live, saved, fields
+        return self._fields[2]
 
     @property
     def differing(self) -> frozenset[str]:
         """Paths of the fields whose values are not those of the file."""
-        saved = {one.path: one.meaning for one in self._saved.fields}
+        saved = {field.path: field.meaning for field in self._saved.fields}
         return frozenset(
-            one.path for one in self.state.live.fields if saved.get(one.path) != one.meaning
+            field.path for field in self.state.live.fields if saved.get(field.path) != field.meaning
         )
 
     # Changes
@@ -167,12 +166,12 @@ class Session:
             Whether this goes on with the last such edit of the same field, as one step; see
             `settle`.
         """
-        one = self.state.live.by_path.get(path)
-        if one is None:
+        field = self.state.live.by_path.get(path)
+        if field is None:
             expected = "a value of this study"
             return (Fault(str(self.path), None, path, "there is no such value", expected),)
         self.rejected.pop(path, None)
-        if " ".join(typed.split()) == one.text:
+        if " ".join(typed.split()) == field.text:
             return ()
         together = {**{key: entry.text for key, entry in self.rejected.items()}, path: typed}
         reading = self._with_entries(together)
@@ -183,7 +182,7 @@ class Session:
         if reading.study is None:
             self.rejected[path] = Rejected(typed, reading.faults)
             return reading.faults
-        label = f"Change {_small(one.label)}"
+        label = f"Change {_small(field.label)}"
         self._take(label, path if continuous else None, reading, moves=path.startswith("pose."))
         return ()
 
@@ -194,14 +193,14 @@ class Session:
     def put_back(self, path: str) -> tuple[Fault, ...]:
         """Make one field as it is in the file; return what stands against it, nothing if done."""
         self.rejected.pop(path, None)
-        one = self.state.live.by_path.get(path)
-        if one is None:
+        field = self.state.live.by_path.get(path)
+        if field is None:
             return ()
         reading = self._context.read(put_back(self.state.live, self._saved, path))
         if reading.study is None:
-            self.rejected[path] = Rejected(one.text, reading.faults)
+            self.rejected[path] = Rejected(field.text, reading.faults)
             return reading.faults
-        self._take(f"Put back {_small(one.label)}", None, reading, moves=path.startswith("pose."))
+        self._take(f"Put back {_small(field.label)}", None, reading, moves=path.startswith("pose."))
         return ()
 
     def set_text(self, text: str, *, continuous: bool = False) -> tuple[Fault, ...]:
@@ -214,14 +213,14 @@ class Session:
 
     def move(self, place: ArrayLike, *, continuous: bool = False) -> None:
         """Take the platform to a position (3,) or a place (6,) [m, rad]; not part of the study."""
-        given = np.asarray(place, dtype=np.float64)
-        if len(given) == 3:
-            given = np.concatenate([given, self.state.place[3:]])
-        if not np.isfinite(given).all():
+        target = np.asarray(place, dtype=np.float64)
+        if len(target) == 3:
+            target = np.concatenate([target, self.state.place[3:]])
+        if not np.isfinite(target).all():
             raise ValueError("a place has finite coordinates")
-        if not np.array_equal(given, self.state.place):
+        if not np.array_equal(target, self.state.place):
             key = "place" if continuous else None
-            self._take("Move the platform", key, place=frozen_array(given))
+            self._take("Move the platform", key, place=frozen_array(target))
 
     def keep_pose(self) -> tuple[Fault, ...]:
         """Write the place of the platform into the study as its pose; return what is wrong."""

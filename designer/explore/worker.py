@@ -15,6 +15,7 @@ from typing import Any, get_args
 
 from designer.explore.here import here
 from designer.explore.map import map_answer, worst_answer
+from designer.explore.measurements import residuals
 from designer.explore.question import Question
 from designer.explore.requests import (
     Cancelled,
@@ -29,7 +30,6 @@ from designer.explore.requests import (
     Told,
     failure_text,
 )
-from designer.explore.residuals import residuals
 from designer.explore.ropes import quick_ropes
 from designer.progress import interrupted_by
 
@@ -82,10 +82,10 @@ class Worker:
         with self._changed:
             self._drop(kind)
             self._waiting[kind] = request
-            for one in self._running:
-                is_old = one.kind == kind or one.question.study is not question.study
-                if is_old and one.kind not in _SHORT:
-                    self._given_up.add(one.number)
+            for running in self._running:
+                is_old = running.kind == kind or running.question.study is not question.study
+                if is_old and running.kind not in _SHORT:
+                    self._given_up.add(running.number)
             self._changed.notify()
         return request.number
 
@@ -96,7 +96,7 @@ class Worker:
             return
         with self._changed:
             self._drop(kind)
-            self._given_up |= {one.number for one in self._running if one.kind == kind}
+            self._given_up |= {running.number for running in self._running if running.kind == kind}
             self._changed.notify()
 
     def close(self, timeout_s: float = 2.0) -> None:
@@ -105,7 +105,7 @@ class Worker:
             self._closing = True
             for kind in list(self._waiting):
                 self._drop(kind)
-            self._given_up |= {one.number for one in self._running}
+            self._given_up |= {running.number for running in self._running}
             self._changed.notify()
         for helper in self._helpers.values():
             helper.close()
@@ -142,8 +142,8 @@ class Worker:
                 request = self._waiting.pop(kinds[0]) if kinds else None
                 if request is not None:
                     self._running.append(request)
-            for one in dropped:
-                self._tell(Cancelled(one))
+            for unanswered in dropped:
+                self._tell(Cancelled(unanswered))
             if request is None:
                 return
             self._tell(self._answered(request))

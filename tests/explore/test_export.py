@@ -37,7 +37,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 
 def test_tables(question: Question, tmp_path: Path) -> None:
-    written = export(question, SILENT, what="tables", target=tmp_path / "out").files
+    written = export(question, SILENT, content="tables", target=tmp_path / "out").files
     assert [path.name for path in written] == ["cables.csv", "map.csv", "ropes.csv"]
     cables = rows_of(written[0])
     assert [float(row["length_m"]) for row in cables] == [
@@ -56,7 +56,7 @@ def test_tables(question: Question, tmp_path: Path) -> None:
 def test_the_map_for_paraview(question: Question, tmp_path: Path) -> None:
     import pyvista as pv
 
-    (path,) = export(question, SILENT, what="vtk", target=tmp_path / "map.vtu").files
+    (path,) = export(question, SILENT, content="vtk", target=tmp_path / "map.vtu").files
     mesh: Any = pv.read(path)
     chart = map_answer(question, fine=True)
     points = map_columns(chart)
@@ -75,14 +75,14 @@ def test_nothing_is_written_where_it_cannot_be(question: Question, tmp_path: Pat
     (tmp_path / "file").write_text("x", encoding="utf-8")
     for what, target in (("tables", tmp_path / "file"), ("vtk", tmp_path / "file" / "map.vtu")):
         with pytest.raises(OutputError):
-            export(question, SILENT, what=what, target=target)  # type: ignore[arg-type]
+            export(question, SILENT, content=what, target=target)  # type: ignore[arg-type]
     with pytest.raises(OutputError, match=r"\.vtu"):
-        export(question, SILENT, what="vtk", target=tmp_path / "map.vtk")
+        export(question, SILENT, content="vtk", target=tmp_path / "map.vtk")
 
 
 @pytest.mark.slow
 def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -> None:
-    written = export(question, SILENT, what="report", target=tmp_path / "report").files
+    written = export(question, SILENT, content="report", target=tmp_path / "report").files
     assert written[0].name == "report.html"
     result = json.loads((tmp_path / "report" / "result.json").read_text(encoding="utf-8"))
     own = analyse(question.study, question.catalogue).to_dict()
@@ -95,7 +95,7 @@ def test_the_report_is_that_of_the_command(question: Question, tmp_path: Path) -
 def test_a_report_that_is_given_up_leaves_nothing(
     question: Question, tmp_path: Path, asker: Any
 ) -> None:
-    number = asker.ask("export", question, what="report", target=tmp_path / "report")
+    number = asker.ask("export", question, content="report", target=tmp_path / "report")
     while not isinstance(asker.next(), Progress):
         pass
     asker.worker.cancel("export")

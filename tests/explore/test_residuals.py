@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from designer.errors import InputError
-from designer.explore.diagnosing import diagnosis_answer
+from designer.explore.measurements import diagnosis_answer, residuals
 from designer.explore.question import Question
 from designer.explore.requests import Done, Progress
-from designer.explore.residuals import residuals
 from designer.explore.session import Session
 from designer.model.cable import Cable
 from designer.model.robot import Poses

@@ -296,7 +296,7 @@ def test_the_full_selection_in_a_process(asker: Any, yard: Session) -> None:
 
 @pytest.mark.slow
 def test_a_failure_in_a_process_is_told(asker: Any, yard: Session, tmp_path: Path) -> None:
-    wrong = asker.ask("export", yard.question(), what="vtk", target=tmp_path / "map.txt")
+    wrong = asker.ask("export", yard.question(), content="vtk", target=tmp_path / "map.txt")
     end = asker.end_of(wrong)
     assert isinstance(end, Failed)
     assert "ends in .vtu" in end.text

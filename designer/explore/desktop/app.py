@@ -54,19 +54,19 @@ class _Picture:
     def __init__(self, window: Window, file: Path) -> None:
         self.status = 1
         self._window, self._file = window, file
-        self._left = _LONGEST_S * 10
+        self._ticks_left = _LONGEST_S * 10
         self._calm = 0
         self._timer = QTimer(window, interval=100)
         self._timer.timeout.connect(self._look)
         self._timer.start()
 
     def _look(self) -> None:
-        self._left -= 1
+        self._ticks_left -= 1
         self._calm = self._calm + 1 if self._window.live.is_at_rest else 0
-        if self._calm >= 8 or self._left <= 0:
+        if self._calm >= 8 or self._ticks_left <= 0:
             self._timer.stop()
             saved = self._window.grab().save(str(self._file))
-            if saved and self._left > 0:
+            if saved and self._ticks_left > 0:
                 self.status = 0
             else:
                 why = "cannot be written" if not saved else "not everything was answered in time"

@@ -46,17 +46,17 @@ def begin_probe() -> subprocess.Popen[str]:
 def why_no_window(probe: subprocess.Popen[str]) -> str:
     """Return in one line why no window can be opened here; empty where one can."""
     try:
-        _, told = probe.communicate(timeout=_LONGEST_S)
+        _, complaint = probe.communicate(timeout=_LONGEST_S)
     except subprocess.TimeoutExpired:
         probe.kill()
-        _, told = probe.communicate()
+        _, complaint = probe.communicate()
     if probe.returncode == 0:
         return ""
     if probe.returncode == _NO_OPENGL:
         return "No window can be opened: this display has no OpenGL 3.2, which the scene needs."
     if not sys.platform.startswith("linux"):
-        return f"No window can be opened. Qt says: {' '.join(told.split())[:200]}"
-    if "could not connect to display" in told:
+        return f"No window can be opened. Qt says: {' '.join(complaint.split())[:200]}"
+    if "could not connect to display" in complaint:
         return (
             "No window can be opened: there is no display. Set DISPLAY or WAYLAND_DISPLAY, "
             "log in with 'ssh -X', or use 'xvfb-run designer explore …'."

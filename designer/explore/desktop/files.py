@@ -250,16 +250,16 @@ class Files(QObject):
         ropes = self._live.answers.get("ropes")
         self._export_folder("tables", "Folder for the tables", ropes=ropes)
 
-    def _export_folder(self, what: str, title: str, **options: object) -> None:
-        target = self._target(title, f"-{what}", "", QFileDialog.Option.ShowDirsOnly)
+    def _export_folder(self, content: str, title: str, **options: object) -> None:
+        target = self._target(title, f"-{content}", "", QFileDialog.Option.ShowDirsOnly)
         if target is not None:
-            self._live.begin_long("export", what=what, target=target, **options)
+            self._live.begin_long("export", content=content, target=target, **options)
 
     def export_map(self) -> None:
         """Write the map for ParaView."""
         target = self._target("The map for ParaView", "-map.vtu", "VTK grids (*.vtu)")
         if target is not None:
-            self._live.begin_long("export", what="vtk", target=target.with_suffix(".vtu"))
+            self._live.begin_long("export", content="vtk", target=target.with_suffix(".vtu"))
 
     def export_picture(self, scene: QWidget) -> None:
         """Save the scene as it is seen."""

@@ -42,7 +42,7 @@ class Help(QDialog):
         self.setWindowTitle("Mouse, keys and quantities")
         self.resize(620, 560)
         page = QTextBrowser()
-        rows = "".join(f"<tr><td><b>{k}</b></td><td>{what}</td></tr>" for k, what in KEYS)
+        rows = "".join(f"<tr><td><b>{k}</b></td><td>{effect}</td></tr>" for k, effect in KEYS)
         terms = "".join(
             f"<p><b>{q.title}{f' [{q.unit}]' if q.unit else ''}.</b> {q.definition}</p>"
             for q in QUANTITIES

@@ -131,7 +131,7 @@ class LiveSession(QObject):
         """What is shown of an older state of the study, and has been for a while."""
         now_s = time.monotonic() + 0.01  # timers are no more exact
         since = self._old_since_s.items()
-        return frozenset(shown for shown, since_s in since if now_s - since_s >= _OLD_MS * 1e-3)
+        return frozenset(aspect for aspect, since_s in since if now_s - since_s >= _OLD_MS * 1e-3)
 
     def listen(self, show: Callable[[Any], object], *kinds: Kind) -> None:
         """Have the answers to some kinds of questions shown; None where all is forgotten."""
@@ -240,8 +240,8 @@ class LiveSession(QObject):
         robot, place = self.study.robot, self.session.state.place.copy()
         if robot.is_planar:
             rotation_rad = np.asarray(robot.upright[1]) * float(rotation_rad.sum())
-        turned = Rotation.from_rotvec(rotation_rad) * Rotation.from_rotvec(place[3:])
-        place[3:] = turned.as_rotvec()
+        rotation = Rotation.from_rotvec(rotation_rad) * Rotation.from_rotvec(place[3:])
+        place[3:] = rotation.as_rotvec()
         self.session.move(place, continuous=True)
         self._follow_place(moving=True)
 
@@ -336,8 +336,8 @@ class LiveSession(QObject):
         before, self.question = self.question, question
         if question is None:
             return
-        for shown in self._states:
-            self._see_age(shown)
+        for aspect in self._states:
+            self._see_age(aspect)
         if before is not None and before.text != question.text and "select" in self._pending:
             self._worker.cancel("select")
             self._newest["select"] = self._pending.pop("select")
@@ -357,8 +357,8 @@ class LiveSession(QObject):
 
     def _ask_whole(self) -> None:
         if self.question is not None:
-            whole: tuple[Kind, ...] = ("fine", "ropes", "worst")
-            for kind in whole:
+            kinds: tuple[Kind, ...] = ("fine", "ropes", "worst")
+            for kind in kinds:
                 self._ask(kind, self.question)
             self._ask("here", self.question, settled=True)
             if self.question.study.measurements is not None:
@@ -366,8 +366,8 @@ class LiveSession(QObject):
 
     def _ask(self, kind: Kind, question: Question, **options: Any) -> None:
         if kind in ("coarse", "fine"):
-            whole = {"unserved", "sag", "diameter"} if kind == "fine" else set()
-            options["quantities"] = frozenset({self.quantity, *whole})
+            always = {"unserved", "sag", "diameter"} if kind == "fine" else set()
+            options["quantities"] = frozenset({self.quantity, *always})
             options["slice_share"] = self.slice_share
             options["against"] = self._against
         self._last = self._pending[kind] = self._worker.ask(kind, question, **options)
@@ -398,13 +398,13 @@ class LiveSession(QObject):
 
     def _keep(self, kind: Kind, question: Question, answer: Any) -> None:
         self.answers[kind] = answer
-        for shown in _SHOWN_AS.get(kind, (kind,)):
-            self.answers[shown] = answer
-            self._states[shown] = _state_of(shown, question)
-            self._old_since_s.pop(shown, None)
+        for aspect in _SHOWN_AS.get(kind, (kind,)):
+            self.answers[aspect] = answer
+            self._states[aspect] = _state_of(aspect, question)
+            self._old_since_s.pop(aspect, None)
             if self.question is not None:
-                self._see_age(shown)
-            if shown == "ropes":
+                self._see_age(aspect)
+            if aspect == "ropes":
                 self._begin_with_best()
 
     def _begin_with_best(self) -> None:
@@ -416,23 +416,23 @@ class LiveSession(QObject):
             if self.quantity == "diameter":  # nobody chose it
                 self.colour_by("utilisation")
 
-    def _see_age(self, shown: str) -> None:
+    def _see_age(self, aspect: str) -> None:
         """Note since when what is shown is of an older state than the present one."""
         assert self.question is not None
-        if self._states[shown] == _state_of(shown, self.question):
-            self._old_since_s.pop(shown, None)
-        elif shown not in self._old_since_s:
-            self._old_since_s[shown] = time.monotonic()
+        if self._states[aspect] == _state_of(aspect, self.question):
+            self._old_since_s.pop(aspect, None)
+        elif aspect not in self._old_since_s:
+            self._old_since_s[aspect] = time.monotonic()
             self._aging.start()
 
     def _tell_failed(self, kind: Kind, text: str) -> None:
         self.message.emit(f"{NAMES[kind]}: {text}")
 
 
-def _state_of(shown: str, question: Question) -> object:
+def _state_of(aspect: str, question: Question) -> object:
     """Return what an answer depends on of the state of the window."""
-    if shown == "here":
+    if aspect == "here":
         return question.text, question.rope, question.place.tobytes()
-    if shown in ("map", "worst"):
+    if aspect in ("map", "worst"):
         return question.text, question.rope
     return question.text

@@ -46,8 +46,8 @@ class Command:
     def shortcuts(self) -> list[QKeySequence]:
         """Return the keys, those of the system in front."""
         keys = QKeySequence.keyBindings(self.standard)
-        own = QKeySequence(self.keys)
-        return keys if own in keys or own.isEmpty() else [*keys, own]
+        fallback = QKeySequence(self.keys)
+        return keys if fallback in keys or fallback.isEmpty() else [*keys, fallback]
 
 
 class Menus:
@@ -248,7 +248,7 @@ class Menus:
             "keep pose": at_work,
             "pin": at_work,
             "release": live.pinned is not None,
-            **{f"export {what}": at_work for what in ("report", "picture", "tables", "map")},
+            **{f"export {content}": at_work for content in ("report", "picture", "tables", "map")},
             **{f"look {view}": at_work for view, *_ in _VIEWS},
         }
         for name, is_allowed in allowed.items():

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from designer.arrays import BoolArray, FloatArray
-from designer.explore.desktop.legend import Key
 from designer.explore.desktop.theme import Theme
 from designer.explore.quantities import category_labels
 from designer.explore.question import cables_words
@@ -30,11 +29,20 @@ _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Of red, green and blue; ITU-R BT.709."""
 
 
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A colour and what it means; hatched where there is a second colour."""
+
+    colour: str
+    meaning: str
+    stripes: str = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Values:
     """Of points (n,): the quantity in the unit of the legend, and which points are set apart."""
 
-    shown: FloatArray
+    scaled: FloatArray
     is_unserved: BoolArray
     is_left_out: BoolArray
 
@@ -52,21 +60,21 @@ class Painting:
     is_old: bool = False
 
     @classmethod
-    def over(cls, answer: MapAnswer, quantity: Quantity, held: Steps | None = None) -> Painting:
+    def over(cls, answer: MapAnswer, quantity: Quantity, fixed: Steps | None = None) -> Painting:
         """Return what paints an answer; with the steps of another one, where they are held."""
         if answer.before is not None:
             return cls._of_difference(answer, quantity)
         plain = cls(quantity, None)
         if quantity.is_category:
             return plain
-        shown = plain.of(answer, tuple(answer.grids))
-        counts = ~(shown.is_unserved | shown.is_left_out)
-        return cls(quantity, held if held is not None else steps_for(shown.shown[counts]))
+        values = plain.of(answer, tuple(answer.grids))
+        counts = ~(values.is_unserved | values.is_left_out)
+        return cls(quantity, fixed if fixed is not None else steps_for(values.scaled[counts]))
 
     @classmethod
     def _of_difference(cls, answer: MapAnswer, quantity: Quantity) -> Painting:
         plain = cls(quantity, None, is_difference=True)
-        values = plain.of(answer, tuple(answer.grids)).shown
+        values = plain.of(answer, tuple(answer.grids)).scaled
         steps = steps_for(np.abs(values))
         if steps is None or not np.nanmax(np.abs(values)) > 0.0:
             return cls(quantity, Steps(np.array([-1.0, 0.0, 1.0]), "neither", DIFFERENCES), True)
@@ -132,45 +140,45 @@ class Painting:
         if self.is_difference:
             parts = [answer.difference(grid, self.quantity.key) for grid in grids]
             flat = [part.ravel() for part in parts if part is not None]
-            shown = np.concatenate(flat or [np.empty(0)])
+            scaled = np.concatenate(flat or [np.empty(0)])
         else:
-            shown = column(self.quantity.key)
+            scaled = column(self.quantity.key)
         if self.is_category:
-            shown = np.where(np.isfinite(shown), np.mod(shown, len(CATEGORIES)), np.nan)
+            scaled = np.where(np.isfinite(scaled), np.mod(scaled, len(CATEGORIES)), np.nan)
         else:
-            shown = shown * self.quantity.scale
+            scaled = scaled * self.quantity.scale
         left_out = column("left_out") > 0.5
         unserved = (column("verdict") != Verdict.SOLVED) & ~left_out
         if all("unserved" in answer.values[grid] for grid in grids):
             unserved |= column("unserved") > 0.5
-        return Values(shown, unserved, left_out)
+        return Values(scaled, unserved, left_out)
 
     def colours(self, values: Values, theme: Theme) -> NDArray[np.uint8]:
         """Return red, green and blue (n, 3) of single points."""
         low, high = self.span
         count = self.table.n_values
-        step = np.clip((np.nan_to_num(values.shown) - low) / (high - low) * count, 0, count - 1)
-        found = np.asarray(self.table.values)[step.astype(int), :3].copy()
-        found[~np.isfinite(values.shown)] = rgb(theme.muted)
-        found[values.is_left_out] = rgb(theme.left_out)
-        found[values.is_unserved] = rgb(theme.hatch[1])
-        return found
+        step = np.clip((np.nan_to_num(values.scaled) - low) / (high - low) * count, 0, count - 1)
+        colours = np.asarray(self.table.values)[step.astype(int), :3].copy()
+        colours[~np.isfinite(values.scaled)] = rgb(theme.muted)
+        colours[values.is_left_out] = rgb(theme.left_out)
+        colours[values.is_unserved] = rgb(theme.hatch[1])
+        return colours
 
     def keys(self, answer: MapAnswer, theme: Theme) -> list[Key]:
         """Return what beside the scale has to be explained, where it occurs."""
         values = self.of(answer, tuple(answer.grids))
-        found: list[Key] = []
+        keys: list[Key] = []
         if self.is_category:
             labels = category_labels(self.quantity.key, len(CATEGORIES))
-            present = np.unique(values.shown[np.isfinite(values.shown)]).astype(int)
+            present = np.unique(values.scaled[np.isfinite(values.scaled)]).astype(int)
             for code, meaning in labels.items():
                 if code % len(CATEGORIES) in present:
-                    found.append(Key(CATEGORIES[code % len(CATEGORIES)], meaning))
+                    keys.append(Key(CATEGORIES[code % len(CATEGORIES)], meaning))
         if values.is_unserved.any():
-            found.append(Key(theme.hatch[0], "no rope serves", theme.hatch[1]))
+            keys.append(Key(theme.hatch[0], "no rope serves", theme.hatch[1]))
         if values.is_left_out.any():
-            found.append(Key(theme.left_out, "left out: a cable hangs below"))
-        return found
+            keys.append(Key(theme.left_out, "left out: a cable hangs below"))
+        return keys
 
 
 def rgb(colour: str) -> NDArray[np.uint8]:

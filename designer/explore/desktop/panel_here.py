@@ -189,8 +189,8 @@ class PanelHere(QWidget):
         place, can_turn = session.state.place, not study.robot.is_point_mass
         is_elsewhere = not np.array_equal(place, self._place)
         self._place = np.array(place, dtype=np.float64)
-        shown = [*place[:3], *np.degrees(place[3:])]
-        for number, (entry, value) in enumerate(zip(self._entries, shown, strict=True)):
+        coordinates = [*place[:3], *np.degrees(place[3:])]
+        for number, (entry, value) in enumerate(zip(self._entries, coordinates, strict=True)):
             is_written = entry.hasFocus() and entry.isModified()
             if not is_written and (is_elsewhere or not entry.is_faulty):
                 entry.setText(f"{round(float(value), 4) + 0.0:g}")
@@ -199,26 +199,26 @@ class PanelHere(QWidget):
         for label in self._turn_labels:
             label.setVisible(can_turn)
 
-    def _show_here(self, here: Here | None) -> None:
+    def _show_here(self, answer: Here | None) -> None:
         """Show what was answered for this place."""
-        if here is None:
+        if answer is None:
             self.model.show(())
             return
-        self.verdict.setText(here.sentence)
-        good = here.is_solved and not here.is_too_weak
+        self.verdict.setText(answer.sentence)
+        good = answer.is_solved and not answer.is_too_weak
         restyle(self.verdict, "good" if good else "fault")
-        cautions = " ".join(filter(None, [here.outside, here.caution]))
+        cautions = " ".join(filter(None, [answer.outside, answer.caution]))
         self.cautions.setText(cautions)
         self.cautions.setVisible(bool(cautions))
-        unit, newtons = fmt.force_unit(here.max_tension_N)
+        unit, newtons = fmt.force_unit(answer.max_tension_N)
         self.model.rename(_columns(unit, 1.0 / newtons))
-        self.model.show(here.cables)
-        self.facts["cables"].setText(cables_words(here.rope))
-        self.facts["diameter"].setText(fmt.millimetres(here.diameter_m))
-        self.facts["tension"].setText(fmt.newtons(here.max_tension_N))
-        self.facts["stiffness"].setText(_stiffness(here.stiffness_N_per_m))
-        self.stability.setText(here.stability)
-        restyle(self.stability, "fault" if here.is_stable is False else "")
+        self.model.show(answer.cables)
+        self.facts["cables"].setText(cables_words(answer.rope))
+        self.facts["diameter"].setText(fmt.millimetres(answer.diameter_m))
+        self.facts["tension"].setText(fmt.newtons(answer.max_tension_N))
+        self.facts["stiffness"].setText(_stiffness(answer.stiffness_N_per_m))
+        self.stability.setText(answer.stability)
+        restyle(self.stability, "fault" if answer.is_stable is False else "")
 
     def _entered(self) -> None:
         place = self._place.copy()

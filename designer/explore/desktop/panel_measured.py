@@ -26,8 +26,7 @@ from designer.report import format as fmt
 from designer.report.figures.overlay import ticks_between
 
 if TYPE_CHECKING:
-    from designer.explore.diagnosing import DiagnosisAnswer
-    from designer.explore.residuals import Residuals
+    from designer.explore.measurements import DiagnosisAnswer, Residuals
 
 _ALL = "all, in units of noise"
 
@@ -166,8 +165,8 @@ class PanelMeasured(QWidget):
             values, before = residuals.residual[:, column], residuals.without[:, column]
             label = f"{name} [{residuals.units[column]}]"
             noise = float(residuals.noise[column])
-        shown = before if self.without.isChecked() else np.full(len(over), np.nan)
-        now, pale = (np.column_stack([over, column]) for column in (values, shown))
+        without = before if self.without.isChecked() else np.full(len(over), np.nan)
+        now, pale = (np.column_stack([over, column]) for column in (values, without))
         self.plot.show_points(self.over.currentText(), label, now, pale, noise)
 
 

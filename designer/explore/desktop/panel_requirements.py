@@ -46,7 +46,7 @@ def _key(value: float) -> float:
     return -math.inf if math.isnan(value) else value
 
 
-def _where(requirement: Requirement) -> str:
+def _place_words(requirement: Requirement) -> str:
     place = "" if requirement.place is None else fmt.position(requirement.place[:3])
     return ", ".join(filter(None, [place, fmt.printed(requirement.direction)]))
 
@@ -65,7 +65,7 @@ COLUMNS = (
            "Up to 100 % where it holds.", share=lambda r: float(r.utilisation)),
     Column("cable", lambda r: fmt.MISSING if r.cable is None else str(r.cable),
            lambda r: r.cable or 0, "The cable that comes nearest to failing."),
-    Column("where", _where, _where,
+    Column("where", _place_words, _place_words,
            "Where the platform is; a click takes it there. Then the direction of wind and inertia, "
            "or the lost cable.", False),
     Column("what it is", lambda r: fmt.capital(r.remark or r.formula), lambda r: r.formula,
@@ -136,17 +136,17 @@ class PanelRequirements(QWidget):
 
 def answer_words(ropes: Ropes) -> str:
     """Return the answer to the study with how many requirements it follows from."""
-    asked = fmt.plural(len(ropes.requirements), "requirement")
+    count = fmt.plural(len(ropes.requirements), "requirement")
     if ropes.answer is Answer.YES:
-        return f"Yes: {asked}, all met."
+        return f"Yes: {count}, all met."
     n_failing, n_open = (
-        sum(each.state is state for each in ropes.requirements)
+        sum(requirement.state is state for requirement in ropes.requirements)
         for state in (State.FAILS, State.OPEN)
     )
     unknown = f"{n_open} not known"
     if ropes.answer is Answer.OPEN:
-        return f"Open: of {asked} {unknown}, the others met."
-    return f"No: of {asked} {n_failing} not met{f', {unknown}' if n_open else ''}."
+        return f"Open: of {count} {unknown}, the others met."
+    return f"No: of {count} {n_failing} not met{f', {unknown}' if n_open else ''}."
 
 
 def _hint(requirement: Requirement) -> str:

@@ -113,9 +113,9 @@ class PanelRopes(QWidget):
         self.model.bold = lambda row: self._ropes is not None and row.rope == self._ropes.best
         self.model.muted = lambda row: not row.holds
         self.model.hint = lambda row: row.reason
-        self.shown = _Filter(self.model)
+        self.filtered = _Filter(self.model)
         self.table = table_view("candidates")
-        self.table.setModel(self.shown)
+        self.table.setModel(self.filtered)
         self.table.setSortingEnabled(True)
         self.table.sortByColumn(len(COLUMNS) - 1, Qt.SortOrder.AscendingOrder)
         self.table.horizontalHeader().setStretchLastSection(True)
@@ -219,7 +219,7 @@ class PanelRopes(QWidget):
         selection.blockSignals(True)
         if self._rope in rows:
             source = self.model.index(rows.index(self._rope), 0)
-            self.table.setCurrentIndex(self.shown.mapFromSource(source))
+            self.table.setCurrentIndex(self.filtered.mapFromSource(source))
         else:
             self.table.clearSelection()
             self.table.setCurrentIndex(QModelIndex())
@@ -228,13 +228,13 @@ class PanelRopes(QWidget):
 
     def _current_changed(self, current: QModelIndex, _: QModelIndex) -> None:
         if current.isValid():
-            rope = self.model.rows[self.shown.mapToSource(current).row()].rope
+            rope = self.model.rows[self.filtered.mapToSource(current).row()].rope
             if rope != self._rope:
                 self._rope = rope
                 self._live.choose(rope)
 
     def _filter(self) -> None:
-        self.shown.narrow(
+        self.filtered.narrow(
             "" if self.material.currentText() == _ALL_MATERIALS else self.material.currentText(),
             "" if self.maker.currentText() == _ALL_MAKERS else self.maker.currentText(),
             self.only_holding.isChecked(),

@@ -30,7 +30,7 @@ from designer.report import format as fmt
 if TYPE_CHECKING:
     from designer.errors import Fault
     from designer.explore.fields import Field
-    from designer.explore.state import Rejected
+    from designer.explore.history import Rejected
 
 _STEPS = 1000
 _BESIDE = 75

@@ -16,10 +16,8 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
 from designer.arrays import FloatArray
-from designer.explore.desktop.camera import Camera
-from designer.explore.desktop.legend import Legend
-from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Overlay
-from designer.explore.desktop.stage import Stage
+from designer.explore.desktop.overlay import ARROW_PX, HANDLE_PX, Legend, Overlay
+from designer.explore.desktop.scene_actors import Camera, SceneActors
 from designer.explore.desktop.theme import Theme
 from designer.report.figures.view import View
 
@@ -42,7 +40,7 @@ _TURN_RAD = float(np.radians(1.0))
 """How far a key turns the platform."""
 
 
-class Scene(QtInteractor):
+class SceneView(QtInteractor):
     """The stage with its camera, overlay and legend, and what mouse and keys do in it."""
 
     asks_for_position = Signal(object, bool)
@@ -64,7 +62,7 @@ class Scene(QtInteractor):
         self.frames = 0
         self.frame_s = 0.0
         self.camera_ = Camera(View(-1.0, 0.5, np.zeros(3), 1.0), 1.0, 1.0)
-        self.stage = Stage(self)
+        self.stage = SceneActors(self)
         self.overlay = Overlay(self, self.camera_)
         self.colour_legend = Legend(self)
         self.can_turn = False
@@ -144,14 +142,14 @@ class Scene(QtInteractor):
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Drag, or tell what the mouse is over."""
-        here = event.position().toPoint()
+        pixel = event.position().toPoint()
         if self._pressed is None:
-            self._last = here
+            self._last = pixel
             over = self._grip_at(event.position())
             self.setCursor(Qt.CursorShape.OpenHandCursor if over else Qt.CursorShape.CrossCursor)
             self._hover.start()
             return
-        step, self._last = here - self._last, here
+        step, self._last = pixel - self._last, pixel
         buttons, modifiers = event.buttons(), event.modifiers()
         if self._grip:
             self._drag_platform(event.position(), True)
@@ -242,10 +240,10 @@ class Scene(QtInteractor):
         handle = self.overlay.handle_px()
         if handle is None:
             return ""
-        here = np.array([place.x(), place.y()])
-        if np.linalg.norm(here - handle[0]) <= HANDLE_PX:
+        pixel = np.array([place.x(), place.y()])
+        if np.linalg.norm(pixel - handle[0]) <= HANDLE_PX:
             return "level"
-        across, down = here - handle[1]
+        across, down = pixel - handle[1]
         return "upright" if abs(across) <= 8 and -6 <= down <= ARROW_PX - HANDLE_PX else ""
 
     def _dragged_to(self, place: QPointF) -> FloatArray | None:
@@ -269,12 +267,12 @@ class Scene(QtInteractor):
     # What the mouse is over
 
     def _hit(self, place: QPointF) -> Any:
-        near = self.camera_.point(place.x(), place.y())
+        centre = self.camera_.point(place.x(), place.y())
         far = (self.camera_.reach_m + 20.0 * self.camera_.view.half_height_m) * (
             self.camera_.view.toward_camera
         )
         pixel = np.array([place.x(), place.y()])
-        return self.stage.hit(near + far, near - far, pixel, self.camera_)
+        return self.stage.hit(centre + far, centre - far, pixel, self.camera_)
 
     def _point(self) -> None:
         if self._pressed is None:

@@ -32,8 +32,8 @@ class Settings:
     @property
     def hidden_panels(self) -> tuple[str, ...]:
         """Names of the panels that are not to be seen."""
-        kept = self._store.value("hidden panels", [])
-        return (kept,) if isinstance(kept, str) else tuple(cast("list[str]", kept or []))
+        names = self._store.value("hidden panels", [])
+        return (names,) if isinstance(names, str) else tuple(cast("list[str]", names or []))
 
     @hidden_panels.setter
     def hidden_panels(self, names: Iterable[str]) -> None:
@@ -42,21 +42,21 @@ class Settings:
     @property
     def recent(self) -> tuple[Path, ...]:
         """Studies that were open, the last one first; only those that are still there."""
-        kept = self._store.value("recent", [])
-        names = [kept] if isinstance(kept, str) else cast("list[str]", kept or [])
+        stored = self._store.value("recent", [])
+        names = [stored] if isinstance(stored, str) else cast("list[str]", stored or [])
         return tuple(path for path in map(Path, names) if path.is_file())
 
     def remember(self, study: Path) -> None:
         """Put a study in front of the recent ones."""
         path = study.resolve()
-        others = [one for one in self.recent if one != path]
-        names = [str(one) for one in [path, *others][:MOST_RECENT]]
+        earlier = [study_file for study_file in self.recent if study_file != path]
+        names = [str(study_file) for study_file in [path, *earlier][:MOST_RECENT]]
         self._store.setValue("recent", names)
 
     def bytes_of(self, name: str) -> QByteArray:
         """Return a state of Qt that was kept under this name; empty where none was."""
-        kept = self._store.value(name)
-        return kept if isinstance(kept, QByteArray) else QByteArray()
+        state = self._store.value(name)
+        return state if isinstance(state, QByteArray) else QByteArray()
 
     def keep_bytes(self, name: str, state: QByteArray) -> None:
         """Keep a state of Qt under a name."""

@@ -121,10 +121,10 @@ def _picture(file: Path) -> QLabel:
     label = QLabel()
     label.setFixedHeight(_PICTURE_PX[1])
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-    whole = QPixmap(str(file))
-    if not whole.isNull():
+    picture = QPixmap(str(file))
+    if not picture.isNull():
         ratio = label.devicePixelRatioF()
-        fitted = whole.scaled(
+        fitted = picture.scaled(
             round(_PICTURE_PX[0] * ratio),
             round(_PICTURE_PX[1] * ratio),
             Qt.AspectRatioMode.KeepAspectRatio,

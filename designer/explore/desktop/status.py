@@ -69,12 +69,12 @@ class LongWork(QWidget):
         if self._kind is not None:
             self._live.cancel(self._kind)
 
-    def _progress(self, kind: str, task: str, done: int, total: int) -> None:
+    def _progress(self, kind: str, task: str, steps: int, total: int) -> None:
         """Show how far it is; a total of 0 is not known."""
         if kind == self._kind:
             self._task.setText(task)
             self._bar.setRange(0, max(total, 0))
-            self._bar.setValue(done)
+            self._bar.setValue(steps)
 
     def _end(self) -> None:
         if self._kind is not None and self._kind not in self._live.busy:

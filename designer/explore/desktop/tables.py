@@ -56,11 +56,11 @@ class RowsModel(QAbstractTableModel):
 
     def show(self, rows: Sequence[Any]) -> None:
         """Show other rows; where there are as many as before, selection and place are kept."""
-        kept = len(rows) == len(self.rows)
-        if not kept:
+        has_same_count = len(rows) == len(self.rows)
+        if not has_same_count:
             self.beginResetModel()
         self.rows = tuple(rows)
-        if kept:
+        if has_same_count:
             self._tell_changed()
         else:
             self.endResetModel()
@@ -72,7 +72,7 @@ class RowsModel(QAbstractTableModel):
 
     def rename(self, columns: Sequence[Column]) -> None:
         """Show the same columns in other units."""
-        if [one.title for one in columns] != [one.title for one in self.columns]:
+        if [column.title for column in columns] != [column.title for column in self.columns]:
             self.columns = tuple(columns)
             last = len(columns) - 1
             self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, last)

@@ -79,10 +79,10 @@ class TextPage(QWidget):
             self.editor.make_room()
         self.faults.clear()
         for fault in faults:
-            where = f"line {fault.line}: " if fault.line else ""
+            line = f"line {fault.line}: " if fault.line else ""
             expected = f" (expected {fault.expected})" if fault.expected else ""
             field = f"{fault.field}: " if fault.field else ""
-            item = QListWidgetItem(f"{where}{field}{fault.problem}{expected}")
+            item = QListWidgetItem(f"{line}{field}{fault.problem}{expected}")
             item.setData(Qt.ItemDataRole.UserRole, fault.line)
             self.faults.addItem(item)
         self.faults.setVisible(bool(faults))

@@ -96,11 +96,11 @@ def restyle(label: QLabel, role: str) -> None:
         label.style().polish(label)
 
 
-def grey_when_old(live: LiveSession, shown: set[str], *widgets: QWidget) -> None:
+def grey_when_old(live: LiveSession, aspects: set[str], *widgets: QWidget) -> None:
     """Have widgets grey while any of what they show is of an older state of the study."""
 
     def follow() -> None:
-        is_old = not shown.isdisjoint(live.outdated)
+        is_old = not aspects.isdisjoint(live.outdated)
         for widget in widgets:
             if bool(widget.property("old")) != is_old:
                 widget.setProperty("old", is_old)

@@ -159,8 +159,8 @@ class Window(QMainWindow):
 
     def show_panels(self) -> None:
         """Show the panels that are wanted, and remember which are not."""
-        wanted = self.menus.wants_panel
-        self.settings.hidden_panels = [name for name in self.docks if not wanted(name)]
+        wants = self.menus.wants_panel
+        self.settings.hidden_panels = [name for name in self.docks if not wants(name)]
         page = self.pages.currentWidget()
         assert page is not None
         self._show_page(page)

@@ -21,10 +21,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from designer.explore.desktop.hit import Hit
+from designer.explore.desktop.actors import Hit
 from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.painting import Painting
-from designer.explore.desktop.scene import Scene
+from designer.explore.desktop.scene import SceneView
 from designer.explore.desktop.theme import LIGHT, Theme
 from designer.explore.desktop.widgets import emptied
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
@@ -37,7 +37,7 @@ from designer.report.figures.view import clear_azimuth_rad, facing_azimuth_rad
 if TYPE_CHECKING:
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer, WorstAnswer
-    from designer.explore.residuals import Residuals
+    from designer.explore.measurements import Residuals
     from designer.study import Study
 
 FACTORS = (1, 2, 5, 10, 20, 50)
@@ -56,14 +56,14 @@ class WorkPage(QWidget):
     def __init__(self, live: LiveSession) -> None:
         super().__init__()
         self._live = live
-        self.scene = Scene(self)
+        self.scene = SceneView(self)
         self.map: MapAnswer | None = None
         self.painting: Painting | None = None
         self._theme: Theme = LIGHT
-        self._here: Here | None = None
+        self._pose_answer: Here | None = None
         self._study: Study | None = None
         self._place = np.zeros(6)
-        self._held: Steps | None = None
+        self._fixed_steps: Steps | None = None
         self._hit: Hit | None = None
         self._residuals: Residuals | None = None
         self._shows_rows = self._is_old = False
@@ -127,14 +127,16 @@ class WorkPage(QWidget):
         for factor in FACTORS:
             self.exaggeration.addItem("true sag" if factor == 1 else f"sag × {factor}", factor)
         self.exaggeration.currentIndexChanged.connect(self._show_place)
-        self.held = QCheckBox("Hold the scale")
-        self.held.setObjectName("hold scale")
-        self.held.setToolTip("<p>The colours keep their meaning while the study changes.</p>")
-        self.held.toggled.connect(self._hold)
+        self.holds_scale = QCheckBox("Hold the scale")
+        self.holds_scale.setObjectName("hold scale")
+        self.holds_scale.setToolTip(
+            "<p>The colours keep their meaning while the study changes.</p>"
+        )
+        self.holds_scale.toggled.connect(self._hold)
         row.addWidget(QLabel("Colour by"))
         row.addWidget(self.quantity)
         row.addSpacing(8)
-        for widget in (self.held, self.surface, self.slice, self.exaggeration):
+        for widget in (self.holds_scale, self.surface, self.slice, self.exaggeration):
             row.addWidget(widget)
         row.addStretch(1)
         return bar
@@ -186,20 +188,20 @@ class WorkPage(QWidget):
         if self._live.session is not None:
             place = self._live.session.state.place
             if not np.array_equal(place, self._place):
-                self._here = None
+                self._pose_answer = None
             self._place = np.array(place)
             self._show_place()
 
-    def _show_here(self, here: Here | None) -> None:
+    def _show_here(self, answer: Here | None) -> None:
         """Show the cables in their true shape."""
-        self._here = here
+        self._pose_answer = answer
         self._show_place()
 
     def _show_place(self) -> None:
         if self._study is None:
             return
         factor = float(self.exaggeration.currentData())
-        self.scene.stage.put_place(self._study, self._place, self._here, factor)
+        self.scene.stage.put_place(self._study, self._place, self._pose_answer, factor)
         self.scene.overlay.platform_m = self._place[:3].copy()
         self._write_note()
         self.scene.redraw()
@@ -209,7 +211,7 @@ class WorkPage(QWidget):
         self.map = answer
         if answer is None:
             self.painting = None
-            self.held.setChecked(False)
+            self.holds_scale.setChecked(False)
             self.scene.stage.put_map(None, None)
             self.scene.colour_legend.show_meaning("", None, (), self._theme)
         self._show_map()
@@ -269,7 +271,7 @@ class WorkPage(QWidget):
             return  # it was asked for, and comes with the next answer
         if quantity.key == "utilisation" and answer.rope is None:
             return  # of the thinnest cable it is 100 % everywhere; that of the rope comes
-        painting = Painting.over(answer, quantity, self._held)
+        painting = Painting.over(answer, quantity, self._fixed_steps)
         self.painting = replace(painting, is_old=self._is_old)
         self.scene.stage.put_map(answer, self.painting)
         keys = self.painting.keys(answer, self._theme)
@@ -297,7 +299,7 @@ class WorkPage(QWidget):
         self.scene.redraw()
 
     def _quantity_chosen(self) -> None:
-        self.held.setChecked(False)
+        self.holds_scale.setChecked(False)
         self.quantity.setToolTip(f"<p>{BY_KEY[self.quantity.currentData()].definition}</p>")
         self._show_map()
         self._live.colour_by(str(self.quantity.currentData()))
@@ -306,7 +308,7 @@ class WorkPage(QWidget):
         self.quantity.setCurrentIndex(self.quantity.findData(key))
 
     def _hold(self, is_held: bool) -> None:
-        self._held = self.painting.steps if is_held and self.painting is not None else None
+        self._fixed_steps = self.painting.steps if is_held and self.painting is not None else None
         self._show_map()
 
     def _slice_slid(self, value: int) -> None:
@@ -353,7 +355,7 @@ class WorkPage(QWidget):
         if self.map is None or self.painting is None or hit.grid not in self.map.grids:
             return ""
         values = {key: v.ravel()[hit.number] for key, v in self.map.values[hit.grid].items()}
-        where = fmt.position(self.map.grids[hit.grid].reshape(-1, 3)[hit.number])
+        position = fmt.position(self.map.grids[hit.grid].reshape(-1, 3)[hit.number])
         quantity = self.painting.quantity
         value = float(values[quantity.key])
         if values["left_out"]:
@@ -364,7 +366,7 @@ class WorkPage(QWidget):
             text = labels.get(int(value), fmt.MISSING) if math.isfinite(value) else fmt.MISSING
         else:
             text = f"{fmt.number(value * quantity.scale, 4)} {quantity.unit}".strip()
-        lines = [f"{quantity.title}: {text}", where]
+        lines = [f"{quantity.title}: {text}", position]
         change = self.map.difference(hit.grid, quantity.key)
         if change is not None and not quantity.is_category:
             less = fmt.number(float(change.ravel()[hit.number]) * quantity.scale, 3)

@@ -63,9 +63,9 @@ class Driver:
         self.window.live.session = None
         for box in (work.surface, work.slice):
             box.setChecked(True)
-        work.held.setChecked(False)
-        for one in (work.exaggeration, work.quantity):
-            one.setCurrentIndex(0)
+        work.holds_scale.setChecked(False)
+        for box in (work.exaggeration, work.quantity):
+            box.setCurrentIndex(0)
         work.height_slider.setValue(50)
         table = self.window.ropes.table
         table.sortByColumn(table.model().columnCount() - 1, Qt.SortOrder.AscendingOrder)

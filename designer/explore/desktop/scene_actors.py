@@ -1,28 +1,113 @@
-"""All pieces that the scene shows, each made once and filled from what was answered."""
+"""All actors of the scene, each made once and filled from what was answered; and its camera.
+
+The camera is the parallel view of the report's pictures, to be turned by hand.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.explore.desktop.camera import Camera
-from designer.explore.desktop.hit import Hit
-from designer.explore.desktop.map_surface import MapSurface
+from designer.explore.desktop.actors import Body, Dots, Faces, Hit, Lines, MapSurface
 from designer.explore.desktop.painting import Painting
-from designer.explore.desktop.pieces import Body, Dots, Faces, Lines
 from designer.explore.desktop.theme import LIGHT, Theme
 from designer.model.robot import Poses
 from designer.report.figures.overlay import ticks_between
 from designer.report.figures.scenes import base_outline_m
 from designer.report.figures.stage import hull_faces
+from designer.report.figures.view import View, fitting
 
 if TYPE_CHECKING:
     from designer.explore.here import Here
     from designer.explore.map import MapAnswer
     from designer.study import Study
+
+_STEEPEST_RAD = np.radians(89.0)
+_LARGEST_ZOOM = 1e4
+
+
+@dataclass(slots=True)
+class Camera:
+    """A view onto a widget of some size [px]; x to the right and y downward from its corner."""
+
+    view: View
+    width_px: float
+    height_px: float
+    reach_m: float = 1.0  # Size of all that is on the stage, none of which lies behind the camera
+
+    def fit(
+        self, points_m: FloatArray, azimuth_rad: float, elevation_rad: float, right_px: float
+    ) -> None:
+        """See all points (n, 3) from this side, clear of a strip at the right."""
+        frame = (0.05, 0.97 - right_px / self.width_px, 0.08, 0.92)
+        aspect = self.width_px / self.height_px
+        self.view = fitting(points_m, azimuth_rad, elevation_rad, frame, aspect)
+        self.reach_m = float(np.linalg.norm(np.ptp(points_m, axis=0)))
+
+    @property
+    def pixels_per_m(self) -> float:
+        """Pixels per metre across the line of sight."""
+        return 0.5 * self.height_px / self.view.half_height_m
+
+    def pixels(self, points_m: FloatArray) -> FloatArray:
+        """Return where points (..., 3) land (..., 2) [px]."""
+        offset = (np.asarray(points_m) - self.view.centre_m) * self.pixels_per_m
+        right = 0.5 * self.width_px + offset @ self.view.right
+        return np.stack([right, 0.5 * self.height_px - offset @ self.view.up], axis=-1)
+
+    def point(self, x_px: float, y_px: float) -> FloatArray:
+        """Return the point (3,) behind a pixel, at the depth of the centre [m]."""
+        right = (x_px - 0.5 * self.width_px) / self.pixels_per_m
+        up = (0.5 * self.height_px - y_px) / self.pixels_per_m
+        return np.asarray(self.view.centre_m + right * self.view.right + up * self.view.up)
+
+    def on_plane(
+        self, x_px: float, y_px: float, through_m: FloatArray, normal: FloatArray
+    ) -> FloatArray | None:
+        """Return the point (3,) of a plane behind a pixel; None where it is seen from its edge."""
+        along = self.view.toward_camera
+        steepness = float(along @ normal)
+        if abs(steepness) < 0.02:
+            return None
+        start = self.point(x_px, y_px)
+        return np.asarray(start + along * float((through_m - start) @ normal) / steepness)
+
+    def turn(self, right_px: float, down_px: float) -> None:
+        """Turn about the vertical and lift, as a drag over so many pixels asks for."""
+        azimuth = self.view.azimuth_rad - right_px * 0.008
+        elevation = self.view.elevation_rad + down_px * 0.008
+        clipped = float(np.clip(elevation, -_STEEPEST_RAD, _STEEPEST_RAD))
+        self.view = replace(self.view, azimuth_rad=azimuth, elevation_rad=clipped)
+
+    def shift(self, right_px: float, down_px: float) -> None:
+        """Move the picture along with a drag."""
+        offset = -right_px * self.view.right + down_px * self.view.up
+        centre = self.view.centre_m + offset / self.pixels_per_m
+        self.view = replace(self.view, centre_m=centre)
+
+    def zoom(self, factor: float, x_px: float, y_px: float) -> None:
+        """Bring the picture nearer; what is behind this pixel stays there."""
+        anchor_m = self.point(x_px, y_px)
+        half = float(np.clip(self.view.half_height_m / factor, 1e-3, _LARGEST_ZOOM))
+        self.view = replace(self.view, half_height_m=half)
+        centre = self.view.centre_m + anchor_m - self.point(x_px, y_px)
+        self.view = replace(self.view, centre_m=centre)
+
+    def aim(self, plotter: Any) -> None:
+        """Point the camera of a plotter."""
+        camera, view = plotter.camera, self.view
+        far = 20.0 * view.half_height_m + 2.0 * self.reach_m
+        camera.position = tuple(view.centre_m + far * view.toward_camera)
+        camera.focal_point = tuple(view.centre_m)
+        camera.up = (0.0, 0.0, 1.0)
+        camera.parallel_projection = True
+        camera.parallel_scale = view.half_height_m
+        plotter.renderer.ResetCameraClippingRange()
+
 
 _NEAR_PX = 10.0
 
@@ -30,7 +115,7 @@ _BELOW = 5e-3
 """How far the floor lies below everything, over the size of the scene."""
 
 
-class Stage:
+class SceneActors:
     """Robot, floor, map, cables and marks of one plotter."""
 
     def __init__(self, plotter: Any) -> None:
@@ -102,13 +187,15 @@ class Stage:
         self.exits.put(points)
         self._faces = hull_faces(robot.attachments_m)
 
-    def put_place(self, study: Study, place: FloatArray, here: Here | None, factor: float) -> None:
+    def put_place(
+        self, study: Study, place: FloatArray, answer: Here | None, factor: float
+    ) -> None:
         """Show platform and cables; without an answer yet, the cables straight."""
         pose = Poses.at(place)
         ends = pose.attachment_points_m(study.robot)
         chords = np.stack([study.robot.exit_points_m, ends], axis=1)
         self.chords.put(chords)
-        curves = None if here is None else here.curves_exaggerated_m(factor)
+        curves = None if answer is None else answer.curves_exaggerated_m(factor)
         self.cables.put(chords if curves is None else curves)
         if study.robot.is_point_mass or len(self._faces) == 0:
             self.body.put(np.empty((0, 3)), self._faces)
@@ -134,13 +221,13 @@ class Stage:
         if len(self._points_m) and answer is not None and painting is not None:
             self.dots.paint(painting.colours(painting.of(answer, ["points"]), self.theme))
 
-    def put_rows(self, position_m: FloatArray, sizes: FloatArray, most: float) -> None:
+    def put_rows(self, position_m: FloatArray, sizes: FloatArray, brightest: float) -> None:
         """Show measured rows (n,), coloured by how much is left of them, up to ``most``."""
         import matplotlib
 
         self.rows.put(position_m)
         if len(position_m):
-            share = np.clip(np.nan_to_num(sizes) / most, 0.0, 1.0)
+            share = np.clip(np.nan_to_num(sizes) / brightest, 0.0, 1.0)
             table = matplotlib.colormaps["magma"]
             self.rows.paint(np.round(255.0 * table(share)[:, :3]).astype(np.uint8))
 
@@ -151,12 +238,12 @@ class Stage:
         if len(self._points_m):
             away = np.linalg.norm(camera.pixels(self._points_m) - pixel, axis=1)
             number = int(np.argmin(away))
-            near = away[number] <= _NEAR_PX
-            return Hit(self._points_m[number], "points", number) if near else None
+            is_near = away[number] <= _NEAR_PX
+            return Hit(self._points_m[number], "points", number) if is_near else None
         hits = [
-            found
+            hit
             for surface in self.map_surfaces
-            if (found := surface.first_hit(start_m, end_m)) is not None
+            if (hit := surface.first_hit(start_m, end_m)) is not None
         ]
         if not hits:
             return None

@@ -1,20 +1,151 @@
-"""Surfaces coloured by a quantity, hatched where no rope serves, grey where poses are left out."""
+"""What stands in the scene: each piece is one actor with one mesh, for as long as the window lives.
+
+What changes is written into the arrays of the mesh on display: a mesh that is added again leaks,
+and costs some thirty milliseconds. The map is a surface of four pieces, coloured by a quantity,
+hatched where no rope serves, grey where poses are left out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from designer.arrays import FloatArray
-from designer.explore.desktop.hit import Hit
 from designer.explore.desktop.painting import Painting, Values, rgb
-from designer.explore.desktop.pieces import Faces, Piece
 from designer.explore.desktop.theme import Theme
 
 if TYPE_CHECKING:
+    from pyvista import PolyData
     from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+Faces = NDArray[np.int64]
+
+
+class Piece:
+    """One actor on the stage, under its name; without lamps, so a colour is what the legend says.
+
+    ``before`` lifts it towards the camera, by so many steps of depth.
+    """
+
+    def __init__(self, plotter: Any, name: str, before: float = 0.0) -> None:
+        import pyvista
+
+        self.mesh: PolyData = pyvista.PolyData()
+        self.mapper: Any = pyvista.DataSetMapper(self.mesh)
+        self.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        self.mapper.scalar_visibility = False
+        for lift in (
+            self.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters,
+            self.mapper.SetRelativeCoincidentTopologyLineOffsetParameters,
+        ):
+            lift(-before, -4.0 * before)
+        self.mapper.SetRelativeCoincidentTopologyPointOffsetParameter(-4.0 * before)
+        self.actor: Any = pyvista.Actor(mapper=self.mapper, name=name)
+        self.actor.prop.lighting = False
+        plotter.add_actor(self.actor, name=name, reset_camera=False, render=False)
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether it is drawn."""
+        return bool(self.actor.visibility)
+
+    def show(self, is_shown: bool) -> None:
+        """Draw it or not."""
+        self.actor.visibility = is_shown
+
+    def colour(self, colour: str) -> None:
+        """Draw all of it in one colour."""
+        self.actor.prop.color = colour
+
+    def _put(self, points_m: FloatArray, cells: Any, kind: str) -> None:
+        """Write points, and cells only where their number has changed."""
+        mesh, points = self.mesh, np.ascontiguousarray(points_m, dtype=np.float64)
+        if mesh.n_points == len(points) and len(points) > 0 and cells is None:
+            mesh.points[:] = points
+            mesh.GetPoints().Modified()
+            mesh.Modified()
+            return
+        import pyvista
+
+        if len(points) == 0:
+            mesh.copy_from(pyvista.PolyData())
+            return
+        mesh.copy_from(pyvista.PolyData(points, **{kind: cells} if cells is not None else {}))
+
+
+class Lines(Piece):
+    """Polylines of one colour, as wide as so many pixels of the usual density."""
+
+    def __init__(
+        self, plotter: Any, name: str, width: float, before: float = 2.0, opacity: float = 1.0
+    ) -> None:
+        super().__init__(plotter, name, before)
+        self.actor.prop.line_width = width * plotter.devicePixelRatioF()
+        self.actor.prop.opacity = opacity
+        self._sizes: tuple[int, ...] = ()
+
+    def put(self, lines_m: Iterable[FloatArray]) -> None:
+        """Show polylines, each (n, 3) [m]."""
+        lines = [np.asarray(line, dtype=np.float64) for line in lines_m if len(line) > 1]
+        sizes = tuple(len(line) for line in lines)
+        points = np.concatenate(lines) if lines else np.empty((0, 3))
+        if sizes == self._sizes:
+            self._put(points, None, "lines")
+            return
+        self._sizes = sizes
+        ends = np.cumsum(sizes)
+        cells = np.concatenate(
+            [[n, *range(end - n, end)] for n, end in zip(sizes, ends, strict=True)] or [[]]
+        )
+        self._put(points, cells.astype(np.int64), "lines")
+
+
+class Dots(Piece):
+    """Balls of a constant size on the screen."""
+
+    def __init__(self, plotter: Any, name: str, size_px: float, before: float = 4.0) -> None:
+        super().__init__(plotter, name, before)
+        self.actor.prop.point_size = size_px * plotter.devicePixelRatioF()
+        self.actor.prop.render_points_as_spheres = True
+
+    def put(self, points_m: FloatArray) -> None:
+        """Show points (n, 3) [m]."""
+        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
+        has_same_count = len(points) == self.mesh.n_points
+        cells = np.column_stack([np.ones(len(points)), np.arange(len(points))]).astype(np.int64)
+        self._put(points, None if has_same_count else cells.ravel(), "verts")
+
+    def paint(self, colours: NDArray[np.uint8]) -> None:
+        """Give each point a colour of its own (n, 3)."""
+        self.mesh.point_data["colour"] = colours
+        self.mesh.point_data.active_scalars_name = "colour"
+        self.mapper.scalar_map_mode = "point"
+        self.mapper.color_mode = "direct"
+        self.mapper.scalar_visibility = True
+
+
+class Body(Piece):
+    """Triangles or quadrangles of one colour."""
+
+    def put(self, points_m: FloatArray, faces: Faces) -> None:
+        """Show faces (n_faces, 3 or 4) over points (n, 3) [m]."""
+        sides = np.full((len(faces), 1), faces.shape[1] if len(faces) else 3)
+        cells = np.hstack([sides, faces]).ravel() if len(faces) else None
+        self._put(points_m if len(faces) else np.empty((0, 3)), cells, "faces")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hit:
+    """A place on the map (3,) [m], and the grid point next to it: of which grid, and which one."""
+
+    position_m: FloatArray
+    grid: str
+    number: int
+
 
 _STRIPES = 50.0
 """Over the size of all that is shown."""
@@ -43,10 +174,10 @@ class MapSurface:
         self._faces: Faces = np.empty((0, 4), dtype=np.int64)
         self._locator: vtkStaticCellLocator | None = None
 
-    def show(self, wanted: bool) -> None:
+    def show(self, is_shown: bool) -> None:
         """Draw it or not."""
         for piece in self.pieces:
-            piece.show(wanted)
+            piece.show(is_shown)
 
     @property
     def is_visible(self) -> bool:
@@ -106,7 +237,7 @@ class MapSurface:
             return
         hatched = values.is_unserved[faces].any(axis=1)
         left_out = values.is_left_out[faces].any(axis=1) & ~hatched
-        valued = ~np.isnan(values.shown)[faces].any(axis=1) & ~left_out
+        valued = ~np.isnan(values.scaled)[faces].any(axis=1) & ~left_out
         kinds = (valued, hatched & ~valued, left_out, hatched)
         for piece, chosen in zip(self.pieces, kinds, strict=True):
             _put_faces(piece.mesh, faces[chosen])
@@ -115,11 +246,11 @@ class MapSurface:
         mapper.lookup_table, mapper.scalar_range = painting.table, (low, high)
         mapper.scalar_visibility = True
         if painting.is_category:
-            mesh.cell_data["category"] = values.shown[faces[valued][:, 0]]
+            mesh.cell_data["category"] = values.scaled[faces[valued][:, 0]]
             mapper.scalar_map_mode = "cell"
         else:
             margin = 1e-6 * (high - low)
-            inside = np.clip(np.nan_to_num(values.shown), low + margin, high - margin)
+            inside = np.clip(np.nan_to_num(values.scaled), low + margin, high - margin)
             _write(mesh, "value", inside)
             mapper.scalar_map_mode = "point"
         mesh.Modified()
@@ -130,15 +261,15 @@ class MapSurface:
 
         if not self.is_visible or len(self._faces) == 0:
             return None
-        found, cells = vtkPoints(), vtkIdList()
+        crossings, cells = vtkPoints(), vtkIdList()
         ends = start_m.tolist(), end_m.tolist()
-        self._cells().IntersectWithLine(*ends, 1e-9, found, cells)
-        for number in range(found.GetNumberOfPoints()):
+        self._cells().IntersectWithLine(*ends, 1e-9, crossings, cells)
+        for number in range(crossings.GetNumberOfPoints()):
             face = self._faces[cells.GetId(number)]
             corners = self._points_m[face]
             normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
             if not self._is_closed or normal @ (end_m - start_m) > 0.0:
-                place = np.array(found.GetPoint(number))
+                place = np.array(crossings.GetPoint(number))
                 away = np.linalg.norm(corners - place, axis=1)
                 return self._hit(place, int(face[np.argmin(away)]))
         return None
@@ -156,8 +287,8 @@ class MapSurface:
 
         if self._locator is None:
             self._locator = vtkStaticCellLocator()
-            whole = pyvista.PolyData.from_regular_faces(self._points_m, self._faces)
-            self._locator.SetDataSet(whole)
+            mesh = pyvista.PolyData.from_regular_faces(self._points_m, self._faces)
+            self._locator.SetDataSet(mesh)
             self._locator.BuildLocator()
         return self._locator
 

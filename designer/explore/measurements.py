@@ -1,17 +1,20 @@
-"""Measured data beside the model: what is left of every reading, and what it may go with."""
+"""Measured data beside the model: what is left of every reading, and the search for why."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.diagnosis.case import case_of
+from designer.diagnosis.diagnose import diagnose_study
 from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem, channel_names
 from designer.explore.question import Question
+from designer.io.diagnosis_files import diagnosed_config
 from designer.measured.read import read_measured
 from designer.model.measured_data import Measured
 
@@ -96,20 +99,111 @@ def residuals(question: Question) -> Residuals:
 
 def _covariates(measured: Measured) -> dict[str, FloatArray]:
     """Return everything of a row that a residual may be drawn over."""
-    found = {"row": measured.row_numbers.astype(np.float64)}
+    covariates = {"row": measured.row_numbers.astype(np.float64)}
     if measured.time_s is not None:
-        found["time [s]"] = measured.time_s
+        covariates["time [s]"] = measured.time_s
     for axis, values in zip("xyz", measured.poses.position_m.T, strict=True):
-        found[f"{axis} [m]"] = values
+        covariates[f"{axis} [m]"] = values
     if measured.temperature_C is not None:
-        found["temperature [°C]"] = measured.temperature_C
+        covariates["temperature [°C]"] = measured.temperature_C
     if measured.wind_m_per_s is not None:
-        found["wind speed [m/s]"] = np.linalg.norm(measured.wind_m_per_s, axis=1)
+        covariates["wind speed [m/s]"] = np.linalg.norm(measured.wind_m_per_s, axis=1)
     for kind, unit, readings in (
         ("length", "m", measured.length_m),
         ("tension", "N", measured.tension_N),
     ):
         for k, values in enumerate(readings.T, start=1):
             if np.isfinite(values).any():
-                found[f"{kind} {k} [{unit}]"] = values
-    return {**found, **measured.covariates}
+                covariates[f"{kind} {k} [{unit}]"] = values
+    return {**covariates, **measured.covariates}
+
+
+@dataclass(frozen=True, slots=True)
+class FoundEffect:
+    """An effect that the model lacked: its name, its values in words, and its rivals."""
+
+    key: str
+    values: str
+    rivals: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorChange:
+    """Error on rows that no fit has seen, of lengths or tensions, in an SI unit."""
+
+    reading: str
+    unit: str
+    before: float
+    after: float
+    noise: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DiagnosisAnswer:
+    """What a diagnosis came to.
+
+    Parameters
+    ----------
+    title, text, tone : str
+        The answer in a few words, in sentences, and ``good``, ``doubt`` or ``bad``.
+    effects : tuple of FoundEffect
+        What was found.
+    errors : tuple of ErrorChange
+        Before and after.
+    diagnosed_text : str
+        The study with what was fitted and found; a text for the session.
+    json : mapping
+        What ``diagnosis.json`` holds.
+    """
+
+    title: str
+    text: str
+    tone: str
+    effects: tuple[FoundEffect, ...]
+    errors: tuple[ErrorChange, ...]
+    diagnosed_text: str
+    json: dict[str, Any]
+
+
+def diagnosis_answer(question: Question, progress: Callable[[str], None]) -> DiagnosisAnswer:
+    """Search for what the model lacks.
+
+    Raises
+    ------
+    InputError
+        If the study has no measurements, or the data are not as they should be.
+    """
+    from designer.report.diagnosis.first_page import verdict
+
+    study = question.study
+    measured = read_measured(study)
+    assert study.measurements is not None  # else reading has refused
+    diagnosis = diagnose_study(study, study.measurements, measured, progress)
+    answer = verdict(diagnosis)
+    stages = diagnosis.stages[0], diagnosis.final
+    kinds = (
+        ("length", "m", [stage.length_m for stage in stages], diagnosis.noise.length_m),
+        ("tension", "N", [stage.tension_N for stage in stages], diagnosis.noise.tension_N),
+    )
+    return DiagnosisAnswer(
+        title=answer.title,
+        text=answer.text,
+        tone=answer.tone,
+        effects=tuple(
+            FoundEffect(
+                finding.effect.key,
+                ", ".join(
+                    f"{k} = {e.value:.4g} ± {e.std:.2g}" for k, e in finding.parameters.items()
+                ),
+                finding.rivals,
+            )
+            for finding in diagnosis.findings
+        ),
+        errors=tuple(
+            ErrorChange(name, unit, was.heldout.value, now.heldout.value, noise)
+            for name, unit, (was, now), noise in kinds
+            if was is not None and now is not None
+        ),
+        diagnosed_text=diagnosed_config(diagnosis, question.path.parent, question.text),
+        json=diagnosis.to_dict(),
+    )
