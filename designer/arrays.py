@@ -53,8 +53,8 @@ def require_shape(name: str, array: NDArray[Any], *shape: int | None) -> None:
         for have, want in zip(array.shape, shape, strict=True)
     )
     if not fits:
-        wanted = ", ".join("n" if size is None else str(size) for size in shape)
-        raise ValueError(f"{name} must have the shape ({wanted}), not {array.shape}")
+        expected = ", ".join("n" if size is None else str(size) for size in shape)
+        raise ValueError(f"{name} must have the shape ({expected}), not {array.shape}")
 
 
 def require_number(
@@ -82,12 +82,12 @@ def require_number(
         raise ValueError(f"{name} must be finite, not {value:g}")
 
 
-def require_one_of(name: str, values: Iterable[object], known: Sequence[object]) -> None:
+def require_one_of(name: str, values: Iterable[object], allowed: Sequence[object]) -> None:
     """Raise ValueError unless everything given is known, and nothing is given twice."""
     seen: set[object] = set()
     for value in values:
-        if value not in known:
-            raise ValueError(f"{name}: {value!r} is none of {', '.join(map(str, known))}")
+        if value not in allowed:
+            raise ValueError(f"{name}: {value!r} is none of {', '.join(map(str, allowed))}")
         if value in seen:
             raise ValueError(f"{name}: {value!r} is given twice")
         seen.add(value)

@@ -25,8 +25,8 @@ def one_line(text: object) -> str:
         words = " ".join(str(text).split())
     except Exception:  # a stranger's exception may fail at telling what it is
         words = "an error without a readable message"
-    shown = "".join(letter if letter.isprintable() else "?" for letter in words)
-    return shown if len(shown) <= 300 else shown[:300] + "…"
+    printable = "".join(letter if letter.isprintable() else "?" for letter in words)
+    return printable if len(printable) <= 300 else printable[:300] + "…"
 
 
 def described(error: BaseException) -> str:

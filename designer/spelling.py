@@ -20,9 +20,9 @@ def nearest_name(text: str, names: Iterable[str]) -> str | None:
     names : iterable of str
         What might have been meant.
     """
-    known = list(names)
-    same_letters = [name for name in known if name.casefold() == text.casefold()]
-    return next(iter(same_letters or get_close_matches(text, known, n=1)), None)
+    candidates = list(names)
+    same_letters = [name for name in candidates if name.casefold() == text.casefold()]
+    return next(iter(same_letters or get_close_matches(text, candidates, n=1)), None)
 
 
 def did_you_mean(text: str, names: Iterable[str]) -> str:

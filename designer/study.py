@@ -99,9 +99,11 @@ class Workspace:
         Memory stays flat, however many there are.
         """
         size = max(CHUNK // self.orientations.count, 1)
-        what = self.samples, self.sampling, self.seed
-        few = self.samples <= CHUNK
-        for chunk in _kept_samples_m(self.region, *what) if few else self.region.samples_m(*what):
+        draw = self.samples, self.sampling, self.seed
+        is_short = self.samples <= CHUNK
+        for chunk in (
+            _kept_samples_m(self.region, *draw) if is_short else self.region.samples_m(*draw)
+        ):
             yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
 
     def places(self) -> Iterator[FloatArray]:
@@ -119,9 +121,9 @@ class Workspace:
         count = max(most // self.orientations.count, 1)
         rng = np.random.default_rng(self.seed)
         kept, draws = np.empty((0, 3)), np.empty(0)
-        for some in self.positions_m():
-            kept = np.concatenate([kept, some])
-            draws = np.concatenate([draws, rng.random(len(some))])
+        for positions in self.positions_m():
+            kept = np.concatenate([kept, positions])
+            draws = np.concatenate([draws, rng.random(len(positions))])
             first = np.sort(np.argsort(draws)[:count])
             kept, draws = kept[first], draws[first]
         return self.space.places(kept)
@@ -338,8 +340,8 @@ class Study:
         if self.uncertainty and (self.selection is None or self.selection.groups):
             raise ValueError("uncertainty needs a selection, without groups")
         for case in self.load_cases:
-            own = case.safety_factor, case.termination_efficiency
-            if self.selection is None and own != (None, None):
+            case_factors = case.safety_factor, case.termination_efficiency
+            if self.selection is None and case_factors != (None, None):
                 raise ValueError(f"'{case.name}' changes a selection that is not there")
             if case.wind is not None and self.robot.platform.drag_area_m2 is None:
                 raise ValueError(f"the wind of '{case.name}' needs the drag area of the platform")
@@ -357,11 +359,13 @@ class Study:
         """In what the pose is none of the workspace, as ``lies outside the region``; or empty."""
         if self.pose is None or self.workspace is None:
             return ""
-        beyond, turned = self.workspace.space.outside(self.pose.place)
+        beyond, beyond_turn = self.workspace.space.outside(self.pose.place)
         is_list = self.workspace.region.is_discrete
-        where = "is none of the listed points" if is_list else "lies outside the region"
+        reason = "is none of the listed points" if is_list else "lies outside the region"
         turn = "is turned as the workspace is not"
-        return " and ".join([where] * beyond + [turn] * (turned and not self.robot.is_point_mass))
+        return " and ".join(
+            [reason] * beyond + [turn] * (beyond_turn and not self.robot.is_point_mass)
+        )
 
 
 def require_enough_cables(study: Study) -> None:
@@ -410,15 +414,15 @@ def declared_settings(study: Study, machine: Machine | None = None) -> tuple[Set
     InputError
         If this machine cannot have one of them.
     """
-    wanted = {(effect.id, effect.cable): effect.parameters for effect in study.effects}
-    ids = {effect_id for effect_id, _ in wanted}
+    parameters_of = {(effect.id, effect.cable): effect.parameters for effect in study.effects}
+    ids = {effect_id for effect_id, _ in parameters_of}
     known = KnownEffects(tuple(e for e in study.known_effects.effects if e.id in ids))
     settings = tuple(
-        Setting(effect, wanted[effect.id, effect.cable])
+        Setting(effect, parameters_of[effect.id, effect.cable])
         for effect in known.of(machine or declared_machine(study))
-        if (effect.id, effect.cable) in wanted
+        if (effect.id, effect.cable) in parameters_of
     )
-    impossible = wanted.keys() - {(s.effect.id, s.effect.cable) for s in settings}
+    impossible = parameters_of.keys() - {(s.effect.id, s.effect.cable) for s in settings}
     if impossible:
         raise InputError(
             study.source.fault(f"effects.{effect_id}", "this robot cannot have it")
@@ -446,7 +450,9 @@ def as_built_by(study: Study, section_m: float | None = None, *, mounted: bool =
     def built(*, has_rope_effects: bool) -> AsBuilt:
         def settings_of(machine: Machine) -> tuple[Setting, ...]:
             every = declared_settings(study, machine)
-            return tuple(one for one in every if has_rope_effects or not one.effect.of_rope)
+            return tuple(
+                setting for setting in every if has_rope_effects or not setting.effect.of_rope
+            )
 
         return built_with(declared_machine(study), settings_of)
 

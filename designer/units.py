@@ -145,11 +145,11 @@ def in_SI(given: object) -> float:
 
 def format_SI(value: float, dimension: Dimension) -> str:
     """Return ``value`` (in SI) as text with its SI unit, such as ``0.002 m`` or ``2e11 Pa``."""
-    shown = f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0
+    text = f"{value + 0.0:.10g}"  # 0.0 makes a plain zero of −0
     if abs(value) >= 1e6:
         digits, power = f"{value:.9e}".split("e")
-        shown = f"{digits.rstrip('0').rstrip('.')}e{int(power)}"
-    return f"{shown} {dimension.unit}".rstrip()
+        text = f"{digits.rstrip('0').rstrip('.')}e{int(power)}"
+    return f"{text} {dimension.unit}".rstrip()
 
 
 def describe(value: object) -> str:
@@ -212,13 +212,13 @@ def _to_SI(value: float, unit: Unit, dimension: Dimension) -> float:
     from pint import PintError
 
     with suppress(PintError, ArithmeticError):  # such as a logarithmic unit in a product
-        wanted = _unit(dimension.unit)
+        expected = _unit(dimension.unit)
         if dimension.takes_percent and unit == _unit("%"):
             return value / 100.0
-        if dimension.unit and _root(unit) == _root(wanted):
-            if dimension is TEMPERATURE_CHANGE and _registry().Quantity(0.0, unit).to(wanted):
+        if dimension.unit and _root(unit) == _root(expected):
+            if dimension is TEMPERATURE_CHANGE and _registry().Quantity(0.0, unit).to(expected):
                 raise _MisreadError(f"has the unit {unit:P}, of which 0 is no change of 0 K")
-            return float(_registry().Quantity(value, unit).to(wanted).magnitude)
+            return float(_registry().Quantity(value, unit).to(expected).magnitude)
     raise _MisreadError(f"has the unit {unit:P}")
 
 

@@ -103,9 +103,9 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
         field=field,
         focus_distance_m=reach - float(np.hypot(*(focus_m[:2] - centre))),
         region_distance_m=None if inside is None else reach - inside,
-        limit_distance_m=first_failure_m(at, distance, field, lambda some: some.is_solved),
+        limit_distance_m=first_failure_m(at, distance, field, lambda stretch: stretch.is_solved),
         straight_distance_m=first_failure_m(
-            at, distance, field, lambda some: some.is_held_straight
+            at, distance, field, lambda stretch: stretch.is_held_straight
         ),
     )
 

@@ -43,20 +43,20 @@ def layers_of(maps: WorkspaceMaps, usable: Usable) -> Layers | None:
 
     None for a list of points, and where no size serves a part only.
     """
-    shown = chosen_sizes(usable)
+    sizes = chosen_sizes(usable)
     workspace = maps.study.workspace
-    if "top" not in maps.shell or not shown or workspace is None:
+    if "top" not in maps.shell or not sizes or workspace is None:
         return None
     plan = maps.shell["top"].position_m
-    solved = plan[..., 0].size * _HEIGHTS * len(shown) * len(workspace.orientations.turns_rad)
+    solved = plan[..., 0].size * _HEIGHTS * len(sizes) * len(workspace.orientations.turns_rad)
     share = min(1.0, np.sqrt(2e6 / solved))  # a coarser grid where there would be more to solve
     rings = np.linspace(0, len(plan) - 1, max(2, round(share * len(plan)))).round().astype(int)
     low, high = maps.region.bounds_m[:, 2]
     heights = np.linspace(low, high, max(2, round(share * _HEIGHTS)))
     position = np.repeat(plan[rings, :, None], len(heights), axis=2)
     position[..., 2] = heights
-    used = [_utilisation(maps.study.robot, workspace, one, position) for one in shown]
-    return Layers(shown, position, np.stack(used))
+    used = [_utilisation(maps.study.robot, workspace, size, position) for size in sizes]
+    return Layers(sizes, position, np.stack(used))
 
 
 def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
@@ -64,23 +64,23 @@ def chosen_sizes(usable: Usable) -> tuple[UsableSize, ...]:
 
     Thinnest first. Empty where no size serves a part only.
     """
-    part = [one for one in usable.sizes if 0.0 < one.fraction < 1.0]
-    whole = [one for one in usable.sizes if one.fraction == 1.0][:1]
+    part = [size for size in usable.sizes if 0.0 < size.fraction < 1.0]
+    serves_all = [size for size in usable.sizes if size.fraction == 1.0][:1]
     if not part:
         return ()
-    shares = [one.fraction for one in part]
-    wanted = np.linspace(min(shares), max(shares), min(_MOST - len(whole), len(part)))
-    nearest = [min(part, key=lambda one: abs(one.fraction - share)) for share in wanted]
-    return tuple(one for one in usable.sizes if one in nearest or one in whole)
+    shares = [size.fraction for size in part]
+    spread = np.linspace(min(shares), max(shares), min(_MOST - len(serves_all), len(part)))
+    nearest = [min(part, key=lambda size: abs(size.fraction - share)) for share in spread]
+    return tuple(size for size in usable.sizes if size in nearest or size in serves_all)
 
 
 def _utilisation(
-    robot: Robot, workspace: Workspace, one: UsableSize, position_m: FloatArray
+    robot: Robot, workspace: Workspace, size: UsableSize, position_m: FloatArray
 ) -> FloatArray:
-    most = np.zeros(position_m.shape[:-1])
+    largest = np.zeros(position_m.shape[:-1])
     for turn_rad in workspace.orientations.turns_rad:
-        statics = solve_sagging(robot, Poses.at(position_m, turn_rad), one.cable)
+        statics = solve_sagging(robot, Poses.at(position_m, turn_rad), size.cable)
         serves = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-        used = statics.largest_tension_N / one.cable.allowable_tension_N
-        most = np.maximum(most, np.where(serves, np.minimum(used, _BEYOND), _BEYOND))
-    return most
+        used = statics.largest_tension_N / size.cable.allowable_tension_N
+        largest = np.maximum(largest, np.where(serves, np.minimum(used, _BEYOND), _BEYOND))
+    return largest

@@ -165,11 +165,11 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
     ValueError
         If the analysis has no workspace.
     """
-    study, found = as_built(analysis.study, analysis.section_m), analysis.workspace
-    if found is None or analysis.sweep_file is None:
+    study, survey = as_built(analysis.study, analysis.section_m), analysis.workspace
+    if survey is None or analysis.sweep_file is None:
         raise ValueError("the analysis has no workspace")
     region, part = _workspace(study).region, analysis.servable
-    focus = _focus(study, found)
+    focus = _focus(study, survey)
     shell: Mapping[str, Field]
     positions = region.section_m()
     if positions is not None:
@@ -188,7 +188,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
         section=section,
         shell=shell,
         edge=edge_profile(study, focus.position_m),
-        served=served(analysis.sweep_file, _workspace(study), found),
+        served=served(analysis.sweep_file, _workspace(study), survey),
         impossible_m=np.empty((0, 3, 3)) if part is None else part.border_m,
     )
 
@@ -202,7 +202,7 @@ def as_built(study: Study, section_m: float | None = None) -> Study:
     return replace(study, robot=built.robot, material=built.material(study.material), effects=())
 
 
-def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Served:
+def served(sweep_file: Path, workspace: Workspace, survey: WorkspaceMap) -> Served:
     """Return the share of the workspace over diameter, from every sample of a sweep."""
     names = ("verdict", "hangs_below", "diameter", "massless_diameter")
     verdict, hangs, diameter, massless = columns(sweep_file, *names)
@@ -214,8 +214,8 @@ def served(sweep_file: Path, workspace: Workspace, found: WorkspaceMap) -> Serve
         *_cumulative(diameter, total),
         *_cumulative(massless, total),
         unserved=float(np.isnan(diameter).sum() / total),
-        needed_m=found.sagging.diameter_m if found.sagging else float("nan"),
-        massless_needed_m=found.massless.diameter_m if found.massless else float("nan"),
+        needed_m=survey.sagging.diameter_m if survey.sagging else float("nan"),
+        massless_needed_m=survey.massless.diameter_m if survey.massless else float("nan"),
         samples=len(diameter),
     )
 
@@ -229,17 +229,17 @@ def _cumulative(diameter_m: FloatArray, total: int) -> tuple[FloatArray, FloatAr
     return ordered[at], (at + 1.0) / total
 
 
-def _focus(study: Study, found: WorkspaceMap) -> Focus:
+def _focus(study: Study, survey: WorkspaceMap) -> Focus:
     """The worst pose; else a pose that cannot be held; else, with all left out, the middle."""
-    if found.sagging is not None:
-        pose = found.sagging.pose
-    elif found.infeasible_pose is not None:
-        pose = found.infeasible_pose
+    if survey.sagging is not None:
+        pose = survey.sagging.pose
+    elif survey.infeasible_pose is not None:
+        pose = survey.infeasible_pose
     else:
         pose = Poses.at(_workspace(study).region.bounds_m.mean(axis=0))
     field = field_of(study, pose.place)
     statics = size_poses(study.robot, pose, study.material).statics
-    if found.sagging is not None:
+    if survey.sagging is not None:
         label = "worst pose"
     else:
         label = f"{field.why_infeasible}, for example here" if field.is_infeasible else "left out"

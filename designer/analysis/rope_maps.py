@@ -45,19 +45,19 @@ def _over(rope: GoverningRopes, position_m: FloatArray) -> Field:
     places = space.places(position_m.reshape(-1, 3))
     if space.orientations.count > 1:
         statics = rope.statics(places)
-        asked = demand_of(rope.used(statics), statics, rope.workspace.hangs_below)
-        places = in_worst_turn(space, places, asked)
+        demand = demand_of(rope.used(statics), statics, rope.workspace.hangs_below)
+        places = in_worst_turn(space, places, demand)
     return _at(rope, places.reshape(*axes, -1))
 
 
 def _at(rope: GoverningRopes, place: FloatArray) -> Field:
     statics = rope.statics(place)
-    nothing = np.full(place.shape[:-1], np.nan)
+    no_value = np.full(place.shape[:-1], np.nan)
     return Field(
         position_m=place[..., :3],
-        diameter_m=nothing,
+        diameter_m=no_value,
         tension_N=statics.largest_tension_N,
-        massless_diameter_m=nothing,
+        massless_diameter_m=no_value,
         massless_tension_N=solve_massless(rope.robot, Poses.at(place)).largest_tension_N,
         uplift=statics.force_z_N.max(axis=-1) / rope.robot.weight_N,
         verdict=statics.verdict,

@@ -48,8 +48,8 @@ def displacement_section(analysis: Analysis) -> Section | None:
 
 def clearance_section(analysis: Analysis) -> Section | None:
     """Return the smallest clearance [m]; None without an area or anything to compare."""
-    found = None if analysis.qualities is None else analysis.qualities.interference
-    if found is None or found.worst is None:
+    interference = None if analysis.qualities is None else analysis.qualities.interference
+    if interference is None or interference.worst is None:
         return None
     statics = _statics(analysis, 16, 60)
     if statics is None:

@@ -235,7 +235,10 @@ class _Composer:
                 _refuse(self._name, node.line, "a mapping or a list is no field name", "a name")
             parent.key, parent.key_line = node.content, node.line
         elif parent.key in parent.fields:
-            keys = [one.key or "" if one.is_mapping else len(one.items) for one in self._open]
+            keys = [
+                container.key or "" if container.is_mapping else len(container.items)
+                for container in self._open
+            ]
             problem = f"is given twice, first in line {parent.fields[parent.key].line}"
             place = path_text(keys)
             self.faults.append(Fault(self._name, parent.key_line, place, problem, "once"))
@@ -250,8 +253,8 @@ class _Composer:
 
     def _check_tag(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
         if event.tag not in (None, "!"):
-            shown = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
-            _refuse(self._name, _line(event), f"the tag '{shown}' is not supported", "plain YAML")
+            tag = printable(event.tag.replace("tag:yaml.org,2002:", "!!"))
+            _refuse(self._name, _line(event), f"the tag '{tag}' is not supported", "plain YAML")
 
 
 def _line(event: yaml.Event) -> int:

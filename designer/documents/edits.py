@@ -98,14 +98,14 @@ def _walk(node: _Node) -> Iterator[_Node]:
 
     waiting, seen = [node], set()
     while waiting:
-        one = waiting.pop()
-        if id(one) not in seen:
-            seen.add(id(one))
-            yield one
-            if isinstance(one, yaml.MappingNode):
-                waiting += [part for pair in one.value for part in pair]
-            elif isinstance(one, yaml.SequenceNode):
-                waiting += one.value
+        pending = waiting.pop()
+        if id(pending) not in seen:
+            seen.add(id(pending))
+            yield pending
+            if isinstance(pending, yaml.MappingNode):
+                waiting += [part for pair in pending.value for part in pair]
+            elif isinstance(pending, yaml.SequenceNode):
+                waiting += pending.value
 
 
 def _in_brackets(node: _Node) -> str:
@@ -113,8 +113,8 @@ def _in_brackets(node: _Node) -> str:
     import yaml
 
     if isinstance(node, yaml.MappingNode):
-        each = (f"{_in_brackets(name)}: {_in_brackets(value)}" for name, value in node.value)
-        return "{" + ", ".join(each) + "}"
+        entries = (f"{_in_brackets(name)}: {_in_brackets(value)}" for name, value in node.value)
+        return "{" + ", ".join(entries) + "}"
     if isinstance(node, yaml.SequenceNode):
         return "[" + ", ".join(map(_in_brackets, node.value)) + "]"
     if not node.style:

@@ -263,8 +263,8 @@ def _rising(ends: tuple[float, float], unit: str = "m") -> tuple[float, float]:
 def _not_zero(direction: tuple[float, float, float]) -> tuple[float, float, float]:
     # Squares of smaller parts come near the least that a float can be.
     if max(map(abs, direction)) < _LEAST_OF_A_DIRECTION:
-        found = "smaller than any that is meant" if any(direction) else "zero"
-        raise refusal(f"the direction is {found}", _DIRECTION)
+        problem = "smaller than any that is meant" if any(direction) else "zero"
+        raise refusal(f"the direction is {problem}", _DIRECTION)
     return direction
 
 

@@ -134,5 +134,5 @@ def path_keys(text: str) -> tuple[Key, ...]:
 
 def printable(name: str) -> str:
     """Return a field name cut short, with control characters replaced."""
-    shown = "".join(letter if letter.isprintable() else "?" for letter in name)
-    return shown if len(shown) <= 60 else shown[:60] + "…"
+    printable_name = "".join(letter if letter.isprintable() else "?" for letter in name)
+    return printable_name if len(printable_name) <= 60 else printable_name[:60] + "…"

@@ -104,7 +104,7 @@ def _outside(element: Element) -> list[str]:
     attributes = element.attributes
     named = [value for name, value in attributes.items() if name.split(":")[-1] in ("href", "src")]
     texts = (*attributes.values(), element.text)
-    named += ["".join(found) for text in texts for found in _ADDRESS.findall(text)]
+    named += ["".join(address) for text in texts for address in _ADDRESS.findall(text)]
     return [address for address in named if not _INSIDE.match(address.strip())]
 
 

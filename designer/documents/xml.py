@@ -73,10 +73,10 @@ class Element:
         except ValueError:
             values = ()
         if len(values) != count or not all(map(math.isfinite, values)):
-            wanted = "a finite number" if count == 1 else f"{count} finite numbers"
-            where = "" if name is None else f"{name}="
-            shown = printable(" ".join(text.split()))[:60]
-            self.refuse(f"<{self.tag}> has {where}'{shown}'", wanted)
+            expected = "a finite number" if count == 1 else f"{count} finite numbers"
+            attribute = "" if name is None else f"{name}="
+            content = printable(" ".join(text.split()))[:60]
+            self.refuse(f"<{self.tag}> has {attribute}'{content}'", expected)
         return values
 
     def refuse(self, problem: str, expected: str = "") -> NoReturn:

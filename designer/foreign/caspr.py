@@ -45,7 +45,7 @@ _JOINTS = {
 
 
 def read_caspr(
-    path: Path, root: Element, other: Path | None, cable_set: str | None
+    path: Path, root: Element, counterpart: Path | None, cable_set: str | None
 ) -> ForeignRobot:
     """Return the robot of a CASPR model.
 
@@ -55,7 +55,7 @@ def read_caspr(
         Its file of bodies or of cables.
     root : Element
         What is in it.
-    other : Path or None
+    counterpart : Path or None
         The file of the other kind; None for the one beside it that CASPR's names lead to.
     cable_set : str or None
         Which of its sets of cables; None for the default of the file.
@@ -66,29 +66,29 @@ def read_caspr(
         If a file is missing or faulty, or no study can hold such a robot.
     """
     kind = ROOTS[root.tag]
-    wanted = CABLES if kind == BODIES else BODIES
-    second = read_xml(other or _beside(path, kind, wanted))
-    if ROOTS.get(second.tag) != wanted:
-        second.refuse(f"the file holds <{second.tag}>", f"CASPR's {wanted} to {path.name}")
+    suffix = CABLES if kind == BODIES else BODIES
+    second = read_xml(counterpart or _beside(path, kind, suffix))
+    if ROOTS.get(second.tag) != suffix:
+        second.refuse(f"the file holds <{second.tag}>", f"CASPR's {suffix} to {path.name}")
     bodies, cables = (root, second) if kind == BODIES else (second, root)
     return _robot(bodies, _chosen_set(cables, cable_set))
 
 
-def _beside(path: Path, kind: str, wanted: str) -> Path:
+def _beside(path: Path, kind: str, suffix: str) -> Path:
     """Return where CASPR keeps the file of the other kind."""
-    before, found, after = path.name.rpartition(f"_{kind}")
-    other = path.with_name(f"{before}_{wanted}{after}")
-    if not found or not other.is_file():
-        option = f"--{wanted} FILE"
+    before, limits, after = path.name.rpartition(f"_{kind}")
+    counterpart = path.with_name(f"{before}_{suffix}{after}")
+    if not limits or not counterpart.is_file():
+        option = f"--{suffix} FILE"
         problem = f"holds the {kind} alone"
-        if found:
-            problem += f", and there is no {other.name} beside it"
+        if limits:
+            problem += f", and there is no {counterpart.name} beside it"
         raise InputError([Fault(str(path), None, "", problem, option)])
-    return other
+    return counterpart
 
 
 def _chosen_set(cables: Element, text: str | None) -> Element:
-    sets = {one.attributes.get("id", ""): one for one in cables.all("cable_set")}
+    sets = {cable_set.attributes.get("id", ""): cable_set for cable_set in cables.all("cable_set")}
     name = text if text is not None else cables.attributes.get("default_cable_set")
     if not sets:
         cables.refuse("the file has no cable set", "<cable_set>")
@@ -106,8 +106,8 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
     links_of = bodies if bodies.tag == "links" else bodies.need("links")
     links = list(links_of.all("link_rigid"))
     if len(links) != 1:
-        what = "no link" if not links else f"{len(links)} links that move against each other"
-        links_of.refuse(f"the robot has {what}", "one rigid platform: a study has no more")
+        description = "no link" if not links else f"{len(links)} links that move against each other"
+        links_of.refuse(f"the robot has {description}", "one rigid platform: a study has no more")
     link = links[0]
     joint_element = link.need("joint")
     type_ = joint_element.attribute("type")
@@ -147,7 +147,7 @@ def _robot(bodies: Element, cable_set: Element) -> ForeignRobot:
 
 
 def _cables(cable_set: Element) -> list[Element]:
-    cables = [one for one in cable_set.children if one.tag.startswith("cable_")]
+    cables = [cable for cable in cable_set.children if cable.tag.startswith("cable_")]
     if not cables:
         cable_set.refuse("the cable set has no cables", "<cable_ideal> and the like")
     return cables
@@ -163,14 +163,14 @@ def _ends(cable: Element, centre: Point) -> tuple[Point, Point]:
     name = f"cable '{cable.attributes.get('name', '?')}'"
     reference = cable.attributes.get("attachment_reference", "joint")
     exits, attachments = [], []
-    for one in cable.need("attachments").children:
-        if one.tag == "base_rotating_pulley":
-            exits.append(_point(one.need("fixed_location")))
+    for attachment in cable.need("attachments").children:
+        if attachment.tag == "base_rotating_pulley":
+            exits.append(_point(attachment.need("fixed_location")))
             continue
-        link, place = one.need("link").numbers(1)[0], _point(one.need("location"))
+        link, place = attachment.need("link").numbers(1)[0], _point(attachment.need("location"))
         if link not in (0, 1):
-            one.refuse(f"{name} is held by link {link:g}", "0, the base, or 1, the platform")
-        at = one.attributes.get("attachment_reference", reference)
+            attachment.refuse(f"{name} is held by link {link:g}", "0, the base, or 1, the platform")
+        at = attachment.attributes.get("attachment_reference", reference)
         if link == 0:
             exits.append(place)
         else:
@@ -183,10 +183,10 @@ def _ends(cable: Element, centre: Point) -> tuple[Point, Point]:
 
 def _initial(element: Element, joint: _Joint, base: Point) -> tuple[Point | None, Point | None]:
     """Return position and angles at first; None where the file gives none that a study knows."""
-    given = element.attributes.get("q_initial", "").split()
-    if len(given) < len(joint.axes):
+    written = element.attributes.get("q_initial", "").split()
+    if len(written) < len(joint.axes):
         return None, ORIGIN
-    values = element.numbers(len(given), "q_initial")
+    values = element.numbers(len(written), "q_initial")
     position = moved(base, _along(joint.axes, values))
     angles = values[len(joint.axes) :] if joint.turns else ()
     if element.attributes["type"] == "SPATIAL_EULER_XYZ" and len(angles) == 3:
@@ -205,19 +205,21 @@ def _limits(
     element: Element, joint: _Joint, base: Point
 ) -> tuple[tuple[tuple[float, float], ...] | None, dict[str, tuple[str, ...]]]:
     """Return the limits of the joint; else what to know of those that the file has."""
-    given = [element.attributes.get(name, "").split() for name in ("q_min", "q_max")]
-    if not all(given):
+    written = [element.attributes.get(name, "").split() for name in ("q_min", "q_max")]
+    if not all(written):
         return None, {}
     ends = []
-    for name, words in zip(("q_min", "q_max"), given, strict=True):
+    for name, words in zip(("q_min", "q_max"), written, strict=True):
         values = element.numbers(len(words), name)
         ends.append(moved(base, _along(joint.axes, values)))
     box = tuple(zip(*ends, strict=True))
-    is_whole = min(map(len, given)) >= len(joint.axes)
+    is_whole = min(map(len, written)) >= len(joint.axes)
     if is_whole and all(box[axis][0] < box[axis][1] for axis in joint.axes):
         return box, {}
-    shown = " to ".join(f"[{' '.join(words)}]" for words in given)
-    return None, {"workspace": (f"The limits of the joint in the file span no region: {shown}.",)}
+    interval = " to ".join(f"[{' '.join(words)}]" for words in written)
+    return None, {
+        "workspace": (f"The limits of the joint in the file span no region: {interval}.",)
+    }
 
 
 def _shifted(box: tuple[tuple[float, float], ...], by: Point) -> tuple[tuple[float, float], ...]:
@@ -228,7 +230,9 @@ def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...
     """Return the radius of the pulleys of all cables, if a study can have them."""
     cables = _cables(cable_set)
     pulleys = [
-        one for cable in cables for one in cable.need("attachments").all("base_rotating_pulley")
+        pulley
+        for cable in cables
+        for pulley in cable.need("attachments").all("base_rotating_pulley")
     ]
     if not pulleys:
         return None, {}
@@ -248,19 +252,19 @@ def _pulleys(cable_set: Element) -> tuple[float | None, dict[str, tuple[str, ...
 
 def _forces(cable_set: Element) -> tuple[float, dict[str, tuple[str, ...]]]:
     """Return the least tension, the largest of those that the file has, and what to know."""
-    found: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
+    limits: dict[str, set[float]] = {"force_min": set(), "force_max": set()}
     for cable in _cables(cable_set):
-        for name, values in found.items():
+        for name, values in limits.items():
             element = cable.find("properties", name)
             if element is not None:
                 values.update(element.numbers(1))
-    least, most = found["force_min"], found["force_max"]
+    least, largest = limits["force_min"], limits["force_max"]
     remarks: dict[str, tuple[str, ...]] = {}
     if len(least) > 1:
         remarks["robot.tension_min"] = ("The file's cables differ; this is the largest.",)
-    if most:
-        shown = " and ".join(f"{one:g}" for one in sorted(most))
+    if largest:
+        forces = " and ".join(f"{force:g}" for force in sorted(largest))
         remarks["cable"] = (
-            f"The file lets cables pull with {shown} N at most, which no field of a study takes.",
+            f"The file lets cables pull with {forces} N at most, which no field of a study takes.",
         )
     return max((0.0, *least)), remarks

@@ -32,6 +32,6 @@ def read_foreign(
     if root.tag in caspr.ROOTS:
         return caspr.read_caspr(path, root, other, cable_set)
     if root.tag != wirex.ROOT:
-        known = f"<{'>, <'.join(caspr.ROOTS)}> of CASPR or <{wirex.ROOT}> of WireX"
-        root.refuse(f"the file holds <{root.tag}>", known)
+        roots = f"<{'>, <'.join(caspr.ROOTS)}> of CASPR or <{wirex.ROOT}> of WireX"
+        root.refuse(f"the file holds <{root.tag}>", roots)
     return wirex.read_wirex(path, root)

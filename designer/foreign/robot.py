@@ -87,5 +87,5 @@ def held_at_one_point(element: Element, attachments_m: tuple[Point, ...]) -> Poi
 
 def moved(point: Point, by: Point) -> Point:
     """Return the sum of two vectors."""
-    x, y, z = (one + other for one, other in zip(point, by, strict=True))
+    x, y, z = (component + shift for component, shift in zip(point, by, strict=True))
     return x, y, z

@@ -147,8 +147,8 @@ def _mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
         and_payload = f", with its payload of {format_SI(payload, MASS)}" if payload else ""
         yield f"    mass: {FILL_IN}                       # such as 4000 kg{and_payload}"
     elif payload:
-        whole = f"{format_SI(mass, MASS)} and a payload of {format_SI(payload, MASS)}"
-        yield f"    mass: {format_SI(mass + payload, MASS)}   # {whole}"
+        masses = f"{format_SI(mass, MASS)} and a payload of {format_SI(payload, MASS)}"
+        yield f"    mass: {format_SI(mass + payload, MASS)}   # {masses}"
     else:
         yield f"    mass: {format_SI(mass, MASS)}"
 
@@ -176,11 +176,11 @@ def _cable(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
         modulus, stress = rope.youngs_modulus_Pa, rope.breaking_stress_Pa
         yield "cable:"
         yield f"  density: {format_SI(rope.density_kg_per_m3, DENSITY)}"
-        shown = FILL_IN if modulus is None else format_SI(modulus, STRESS)
-        yield f"  youngs_modulus: {shown}"
+        quantity = FILL_IN if modulus is None else format_SI(modulus, STRESS)
+        yield f"  youngs_modulus: {quantity}"
         yield f"  # It breaks at {format_SI(stress, STRESS)}; divide by a safety factor of yours."
-        shown = FILL_IN if safety is None else format_SI(stress / safety, STRESS)
-        yield f"  allowable_stress: {shown}"
+        quantity = FILL_IN if safety is None else format_SI(stress / safety, STRESS)
+        yield f"  allowable_stress: {quantity}"
 
 
 def _pose(robot: ForeignRobot) -> Iterator[str]:
@@ -235,14 +235,14 @@ def _remarks(robot: ForeignRobot, field: str, indent: str = "") -> Iterator[str]
 
 def _in_one_line(text: str) -> str:
     # Else a name could go on beyond its comment.
-    return "".join(one if one.isprintable() else "?" for one in " ".join(text.split()))
+    return "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))
 
 
 def _quoted(text: str) -> str:
     """Return a text in quotes; what YAML lets in no file is escaped, as JSON does not."""
     return "".join(
-        one if one.isprintable() else f"\\U{ord(one):08x}"
-        for one in json.dumps(text, ensure_ascii=False)
+        letter if letter.isprintable() else f"\\U{ord(letter):08x}"
+        for letter in json.dumps(text, ensure_ascii=False)
     )
 
 

@@ -90,9 +90,9 @@ def _centre(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> Po
     centre = _position(element)
     if centre != _CENTRE:
         return centre
-    shown = ", ".join(f"{one:g}" for one in centre)
+    listed = ", ".join(f"{item:g}" for item in centre)
     remarks["robot.platform.centre_of_mass"] = (
-        f"The file has [{shown}], which WireX writes where nobody entered one.",
+        f"The file has [{listed}], which WireX writes where nobody entered one.",
     )
     return None
 
@@ -102,39 +102,39 @@ def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> Foreign
     needed = ("radius", "breaking_load", "weight")
     if cable is None or any(name not in cable.attributes for name in needed):
         return None
-    given = {name: cable.number(name) for name in _ROPE if name in cable.attributes}
-    if all(value == _ROPE[name] for name, value in given.items()):
+    pulleys = {name: cable.number(name) for name in _ROPE if name in cable.attributes}
+    if all(value == _ROPE[name] for name, value in pulleys.items()):
         remarks["cable"] = (
             "The file has the 6 mm rope that WireX writes where nobody entered one.",
         )
         return None
-    if min(given.values()) <= 0.0:
+    if min(pulleys.values()) <= 0.0:
         cable.refuse("the rope has a figure that is zero or less", "figures above zero")
     bound = BOUNDS["rope diameter"]
-    if not bound.least <= 2.0 * given["radius"] <= bound.most:
-        found = f"the rope has a radius of {given['radius']:g} m"
+    if not bound.least <= 2.0 * pulleys["radius"] <= bound.most:
+        radius_words = f"the rope has a radius of {pulleys['radius']:g} m"
         expected = f"{0.5 * bound.least:g} m to {0.5 * bound.most:g} m: {bound.reason}"
-        cable.refuse(found, expected)
-    area = math.pi * given["radius"] ** 2
+        cable.refuse(radius_words, expected)
+    area = math.pi * pulleys["radius"] ** 2
     remarks["cable"] = (
-        f"A rope of {2e3 * given['radius']:g} mm, {given['weight']:g} kg/m, breaking at "
-        f"{given['breaking_load']:g} N; all over the full circle of its diameter.",
+        f"A rope of {2e3 * pulleys['radius']:g} mm, {pulleys['weight']:g} kg/m, breaking at "
+        f"{pulleys['breaking_load']:g} N; all over the full circle of its diameter.",
     )
     return ForeignRope(
-        density_kg_per_m3=given["weight"] / area,
-        breaking_stress_Pa=given["breaking_load"] / area,
-        youngs_modulus_Pa=given.get("elasticity"),
+        density_kg_per_m3=pulleys["weight"] / area,
+        breaking_stress_Pa=pulleys["breaking_load"] / area,
+        youngs_modulus_Pa=pulleys.get("elasticity"),
     )
 
 
 def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
     """Tell what the file has of the winches, as far as somebody entered it."""
     figures = []
-    for (tag, name), (default, shown) in _WINCH.items():
+    for (tag, name), (default, listed) in _WINCH.items():
         element = None if winch is None else winch.find(tag)
         if element is not None and name in element.attributes:
             value = element.number(name)
-            figures += [] if value in (0.0, default) else [shown.format(value)]
+            figures += [] if value in (0.0, default) else [listed.format(value)]
     if figures:
         remarks["robot"] = (
             f"Of the winches the file has: {', '.join(figures)}. No field of a study takes it.",
@@ -143,9 +143,9 @@ def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
 
 def _pulley_radius(bases: list[Element], remarks: dict[str, tuple[str, ...]]) -> float | None:
     """Return the radius of the pulleys, where a study can have them and the file says so."""
-    given = [base for base in bases if "radius" in base.attributes]
-    radii = {one.number("radius") for one in given}
-    if not given or radii == {0.0}:
+    pulleys = [base for base in bases if "radius" in base.attributes]
+    radii = {item.number("radius") for item in pulleys}
+    if not pulleys or radii == {0.0}:
         return None
     if radii == {_RADIUS}:
         remarks["effects"] = (
@@ -154,12 +154,12 @@ def _pulley_radius(bases: list[Element], remarks: dict[str, tuple[str, ...]]) ->
             "effects: {pulley_radius: {radius_m: 0.1}}",
         )
         return None
-    upward = all("a33" not in one.attributes or one.number("a33") == 1.0 for one in given)
-    if len(given) == len(bases) and len(radii) == 1 and upward:
+    upward = all("a33" not in item.attributes or item.number("a33") == 1.0 for item in pulleys)
+    if len(pulleys) == len(bases) and len(radii) == 1 and upward:
         return radii.pop()
-    shown = " and ".join(f"{one:g}" for one in sorted(radii))
+    listed = " and ".join(f"{item:g}" for item in sorted(radii))
     remarks["effects"] = (
-        f"The file has pulleys of {shown} m that differ, or that cables do not reach from below: "
+        f"The file has pulleys of {listed} m that differ, or that cables do not reach from below: "
         "exit points are taken as fixed.",
     )
     return None

@@ -21,6 +21,6 @@ def register_grades() -> list[Path | Grade]:
 @cache
 def _grades() -> tuple[Path | Grade, ...]:
     """Read them once; the folder itself where a file is faulty, so that the fault is told."""
-    found, faults = read_grades(data_folder("catalog"))
-    shipped = (data_folder("catalog"),) if faults else tuple(one.grade for one in found)
+    files, faults = read_grades(data_folder("catalog"))
+    shipped = (data_folder("catalog"),) if faults else tuple(file.grade for file in files)
     return (*shipped, *standard_ropes())

@@ -66,17 +66,17 @@ def _texts(value: object, keys: Keys) -> Iterator[tuple[Keys, str]]:
 
 
 def _choices(grade: Grade) -> Iterator[Flaw]:
-    given: list[tuple[Keys, object, object]] = [(("trust",), grade.trust, Trust)]
+    choices: list[tuple[Keys, object, object]] = [(("trust",), grade.trust, Trust)]
     if grade.material is not None:
-        given.append((("material",), grade.material, RopeMaterial))
+        choices.append((("material",), grade.material, RopeMaterial))
     if grade.modulus is not None:
-        given.append((("modulus", "reference_area"), grade.modulus.reference_area, ReferenceArea))
+        choices.append((("modulus", "reference_area"), grade.modulus.reference_area, ReferenceArea))
     for name in ("modulus", "stiffness", "area_factor", "thermal_expansion"):
         part = getattr(grade, name)
         if part is not None:
-            given.append(((name, "basis"), part.basis, Basis))
-    given += [(("computed",), column.figure, ComputedColumn) for column in grade.computed]
-    for keys, value, choice in given:
+            choices.append(((name, "basis"), part.basis, Basis))
+    choices += [(("computed",), column.figure, ComputedColumn) for column in grade.computed]
+    for keys, value, choice in choices:
         if value not in get_args(choice):
             yield Flaw(keys, f"{value!r} is not known", "one of " + ", ".join(get_args(choice)))
 

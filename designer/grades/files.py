@@ -47,8 +47,8 @@ def read_grade(path: Path) -> Grade:
     except ValidationError as error:
         faults += schema_faults(error, document, GradeSheet)
     else:
-        given = {field.name: getattr(sheet, field.name) for field in fields(sheet)}
-        grade = Grade(**given, file=path.name)
+        values = {field.name: getattr(sheet, field.name) for field in fields(sheet)}
+        grade = Grade(**values, file=path.name)
         faults += [
             document.fault(flaw.keys, flaw.problem, flaw.expected) for flaw in find_flaws(grade)
         ]
@@ -96,10 +96,10 @@ def read_grades(path: Path) -> tuple[list[GradeFile], list[Fault]]:
         except InputError as error:
             faults += error.faults
             continue
-        first = grades.setdefault(grade_file.grade.id, grade_file)
-        if first is not grade_file:
+        earlier = grades.setdefault(grade_file.grade.id, grade_file)
+        if earlier is not grade_file:
             faults.append(
-                id_fault(grade_file, f"{grade_file.grade.id!r} is in {first.path} already")
+                id_fault(grade_file, f"{grade_file.grade.id!r} is in {earlier.path} already")
             )
     return list(grades.values()), faults
 

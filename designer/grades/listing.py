@@ -61,18 +61,18 @@ class Wanted:
         return tuple(s for s in grade.sizes if abs(s.diameter_m - self.diameter_m) <= allowed_m)
 
 
-def _names(construction: str, wanted: str) -> bool:
+def _names(construction: str, pattern: str) -> bool:
     """Tell whether a construction has this in its name; ``9x7`` is not in ``19x7``."""
-    text, part = ("".join(name.casefold().split()) for name in (construction, wanted))
+    text, part = ("".join(name.casefold().split()) for name in (construction, pattern))
     return re.search(rf"(?<!\d){re.escape(part)}", text) is not None
 
 
 def split_nominal(grades: Iterable[Grade]) -> tuple[list[Grade], list[Grade]]:
     """Return the products, and the grades that a standard's factors alone stand for."""
-    both: tuple[list[Grade], list[Grade]] = ([], [])
+    halves: tuple[list[Grade], list[Grade]] = ([], [])
     for grade in grades:
-        both[grade.is_nominal].append(grade)
-    return both
+        halves[grade.is_nominal].append(grade)
+    return halves
 
 
 def summary(catalogue: Catalogue) -> str:
@@ -120,8 +120,8 @@ def check_path(path: Path) -> list[Fault]:
 
     A folder without a grade file is a fault as well: nothing has been checked.
     """
-    found, faults = read_grades(path)
-    if not found and not faults:
+    files, faults = read_grades(path)
+    if not files and not faults:
         return [nothing_found_fault(path)]
     return faults
 

@@ -32,15 +32,15 @@ def unit_of(figure: str) -> BeforeValidator:
     """Return the check that a text is a unit of a size's figure."""
     dimension = DIMENSIONS[figure]
 
-    def check(given: object) -> str:
-        if not isinstance(given, str):
-            raise refusal(f"{describe(given)} is not a unit", f"a unit of {dimension.noun}")
+    def check(columns: object) -> str:
+        if not isinstance(columns, str):
+            raise refusal(f"{describe(columns)} is not a unit", f"a unit of {dimension.noun}")
         try:
-            read_quantity(f"1 {given}", dimension)
+            read_quantity(f"1 {columns}", dimension)
         except QuantityError:
             expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
-            raise refusal(f"{describe(given)} does not fit", expected) from None
-        return given
+            raise refusal(f"{describe(columns)} does not fit", expected) from None
+        return columns
 
     return BeforeValidator(check)
 
@@ -156,8 +156,8 @@ class ComputedSection(Section):
 
     def value(self) -> tuple[ComputedFigure, ...]:
         """Return those that are given."""
-        given = ((column, getattr(self, column)) for column in get_args(ComputedColumn))
-        return tuple(ComputedFigure(column, how) for column, how in given if how is not None)
+        columns = ((column, getattr(self, column)) for column in get_args(ComputedColumn))
+        return tuple(ComputedFigure(column, how) for column, how in columns if how is not None)
 
 
 @dataclass(frozen=True, slots=True)

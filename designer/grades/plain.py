@@ -47,8 +47,8 @@ def _item(item: object) -> dict[str, Any]:
         if isinstance(item, str | os.PathLike):
             return {_PATH: os.fsdecode(item)}
         if not isinstance(item, Grade):
-            given = one_line(type(item).__name__)
-            return {_MISFIT: f"register_grades() gave {given}, not a path or a Grade"}
+            values = one_line(type(item).__name__)
+            return {_MISFIT: f"register_grades() gave {values}, not a path or a Grade"}
         plain: dict[str, Any] = _plain(item)
     except Exception as error:  # a stranger's value may do anything when it is looked at
         return {_MISFIT: f"a Grade is not usable: {described(error)}"}
@@ -63,8 +63,8 @@ def _plain(value: Any) -> Any:
     if isinstance(value, numbers.Real):
         return float(value)
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
-    kind = next((one.__name__ for one in type(value).__mro__ if one in _KINDS.values()), None)
+        return [_plain(item) for item in value]
+    kind = next((item.__name__ for item in type(value).__mro__ if item in _KINDS.values()), None)
     if kind is None:
         raise TypeError(f"it holds {type(value).__name__}")
     names = [field.name for field in dataclasses.fields(_KINDS[kind])]
@@ -82,8 +82,8 @@ def _taken(item: dict[str, Any]) -> Path | Grade | Misfit:
 
 def _value(plain: Any) -> Any:
     if isinstance(plain, list):
-        return tuple(_value(one) for one in plain)
+        return tuple(_value(item) for item in plain)
     if not isinstance(plain, dict):
         return plain
-    given = {name: _value(one) for name, one in plain.items() if name != _KIND}
-    return _KINDS[plain[_KIND]](**given)
+    values = {name: _value(item) for name, item in plain.items() if name != _KIND}
+    return _KINDS[plain[_KIND]](**values)

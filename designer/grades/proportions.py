@@ -82,25 +82,25 @@ def _stand_off(values: Sequence[float], indices: Sequence[int], allowed: float) 
     The worst goes first and is no neighbour any more, so that it does not blame the others. Of
     fewer than three nobody can say which one is wrong.
     """
-    left = list(indices)
-    found: dict[int, float] = {}
-    while len(left) >= 3:
+    remaining = list(indices)
+    outliers: dict[int, float] = {}
+    while len(remaining) >= 3:
         deviations = {
-            index: values[index] / _around(values, left, place) - 1.0
-            for place, index in enumerate(left)
+            index: values[index] / _around(values, remaining, place) - 1.0
+            for place, index in enumerate(remaining)
         }
         worst = max(deviations, key=lambda index: abs(deviations[index]))
         if abs(deviations[worst]) <= allowed:
             break
-        found[worst] = deviations[worst]
-        left.remove(worst)
-    return found
+        outliers[worst] = deviations[worst]
+        remaining.remove(worst)
+    return outliers
 
 
-def _around(values: Sequence[float], left: Sequence[int], place: int) -> float:
+def _around(values: Sequence[float], remaining: Sequence[int], place: int) -> float:
     """Return the median of the nearest values on either side."""
-    before = left[max(place - _NEIGHBOURS, 0) : place]
-    after = left[place + 1 : place + 1 + _NEIGHBOURS]
+    before = remaining[max(place - _NEIGHBOURS, 0) : place]
+    after = remaining[place + 1 : place + 1 + _NEIGHBOURS]
     return median(values[index] for index in (*before, *after))
 
 

@@ -82,28 +82,28 @@ class Catalogue:
         InputError
             With a fault for each; names the nearest ids.
         """
-        known = {grade.id for grade in self.grades}
+        ids = {grade.id for grade in self.grades}
         grades = study.selection.grades if study.selection else None
         faults = [
             study.source.fault(f"selection.grades[{k}]", *self.explain_unknown(grade))
             for k, grade in enumerate(grades or ())
-            if grade not in known
+            if grade not in ids
         ]
         if faults:
             raise InputError(faults)
 
     def explain_unknown(self, grade_id: str) -> tuple[str, str]:
         """Return what is wrong with an id that no grade has, and what was expected."""
-        shown = one_line(grade_id)
+        printable_id = one_line(grade_id)
         ours = {"astm-a475-": "guy-strand", "hmpe-computed-": "fibre-rope"}  # as their ids begin
         plugin = next((p for start, p in ours.items() if grade_id.startswith(start)), None)
         if plugin is not None:
             why = "is not installed" if self.with_plugins else "--no-plugins leaves out"
-            problem = f"the grade {shown!r} is of the plugin {plugin}, which {why}"
+            problem = f"the grade {printable_id!r} is of the plugin {plugin}, which {why}"
             return problem, f"`pip install plugins/{plugin}` in a checkout, or another grade"
         expected = self._alike(grade_id) or "an id that `designer catalog list` shows"
         hint = "" if self.with_plugins else "; --no-plugins leaves out those of plugins"
-        return f"there is no grade {shown!r}", expected + hint
+        return f"there is no grade {printable_id!r}", expected + hint
 
     def _alike(self, text: str) -> str:
         """Return the ids whose construction or name has this in it, else those nearly so called."""
@@ -199,24 +199,24 @@ class _Shelf:
         """Add what the config names; refuse all of it if anything is faulty."""
         faults: list[Fault] = []
         for path in paths:
-            found, unreadable = read_grades(path)
+            files, unreadable = read_grades(path)
             faults += unreadable
-            if not found and not unreadable:
+            if not files and not unreadable:
                 faults.append(nothing_found_fault(path))
-            for one in found:
-                problems = self._add(replace(one.grade, origin=path.name))
-                faults += [id_fault(one, problem) for problem in problems]
-            digest = _digest([one.grade for one in found])
-            self.sources.append(CatalogueSource(path.name, str(path), len(found), digest))
+            for file in files:
+                problems = self._add(replace(file.grade, origin=path.name))
+                faults += [id_fault(file, problem) for problem in problems]
+            digest = _digest([one.grade for one in files])
+            self.sources.append(CatalogueSource(path.name, str(path), len(files), digest))
         if faults:
             raise InputError(faults)
 
     def _add(self, grade: Grade) -> list[str]:
         """Add a grade, unless its id is taken; return what is wrong."""
-        first = self.grades.setdefault(grade.id, grade)
-        if first is grade:
+        earlier = self.grades.setdefault(grade.id, grade)
+        if earlier is grade:
             return []
-        return [f"grade {grade.id!r} of {_label(grade)} is in {_label(first)} already"]
+        return [f"grade {grade.id!r} of {_label(grade)} is in {_label(earlier)} already"]
 
 
 def _digest(grades: Iterable[Grade]) -> str:
@@ -239,10 +239,10 @@ def _grades_in(item: object, complain: Callable[[str], None]) -> list[Grade]:
     if not path.is_absolute():
         complain(f"register_grades() gave the relative path {str(path)!r}")
         return []
-    found, faults = read_grades(path)
+    files, faults = read_grades(path)
     for fault in faults:
         complain(str(fault))
-    return [one.grade for one in found]
+    return [file.grade for file in files]
 
 
 def _sound(grade: Grade, complain: Callable[[str], None]) -> list[Grade]:

@@ -50,8 +50,8 @@ class RelativeStiffness:
         """The stiffness in words."""
         ratios = ", ".join(f"{ratio:.4g}" for ratio in self.ea_over_breaking_load)
         loads = ", ".join(f"{load:.4g}" for load in self.load_fraction)
-        where = f" at {loads} of it" if loads else ""
-        return f"EA is {ratios} times the breaking load{where}"
+        at_loads = f" at {loads} of it" if loads else ""
+        return f"EA is {ratios} times the breaking load{at_loads}"
 
     @property
     def stiffening(self) -> Stiffening | None:

@@ -113,12 +113,14 @@ def solve_batch(
     )
     sizing = inverse_weight_m_per_N is None
     inverse_weight = -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N
-    asked = situation, figures, inverse_weight, out
-    share_out(solve_redundant_range if robot.is_redundant else solve_range, count, _SHARE, *asked)
+    arguments = situation, figures, inverse_weight, out
+    share_out(
+        solve_redundant_range if robot.is_redundant else solve_range, count, _SHARE, *arguments
+    )
     potential = np.zeros(count)
     if inverse_weight != 0.0:  # at infinite section nothing is chosen
         if is_thorough:
-            share_out(search_range, count, _SHARE, *asked)
+            share_out(search_range, count, _SHARE, *arguments)
         if rates_branches and not robot.has_one_branch:
             share_out(rate_range, count, _SHARE, situation, figures, sizing, out, potential)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w

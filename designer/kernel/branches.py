@@ -63,7 +63,7 @@ def rate_range(
     situation: Situation,
     figures: Figures,
     is_sizing: bool,
-    found: Answers,
+    answers: Answers,
     out: FloatArray,
 ) -> None:
     """Fill the potential (n_poses,) of the solved poses `start` to `stop`, of cables of weight w.
@@ -76,16 +76,16 @@ def rate_range(
     scratch = new_scratch(m, n)
     for at in range(start, stop):
         out[at] = 0.0
-        if found.verdict[at] != SOLVED:
+        if answers.verdict[at] != SOLVED:
             continue
         place(pose, situation, at)
         limit_sag(pose)
-        c, w = pose.cables, found.poses[at, WEIGHT]
+        c, w = pose.cables, answers.poses[at, WEIGHT]
         for i in range(n):
-            c[L, i] = found.cables[at, i, LENGTH]
-            c[P, i] = found.cables[at, i, FORCE_X] / (w * np.sqrt(c[X2, i]))
+            c[L, i] = answers.cables[at, i, LENGTH]
+            c[P, i] = answers.cables[at, i, FORCE_X] / (w * np.sqrt(c[X2, i]))
         scaled_c = pose.scale[SIZE] / (w * pose.scale[FORCE])
-        limit = 1.0 if is_sizing else found.poses[at, LOAD_FACTOR]
+        limit = 1.0 if is_sizing else answers.poses[at, LOAD_FACTOR]
         linearise(pose)
         choose_bounds(pose, scaled_c)
         write_wrenches(pose)

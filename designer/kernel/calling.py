@@ -156,7 +156,7 @@ def share_out(solve: Callable[..., None], count: int, share: int, *arguments: An
     if len(shares) == 1:
         solve(0, count, *arguments)
     else:
-        for future in [_pool().submit(solve, *each, *arguments) for each in shares]:
+        for future in [_pool().submit(solve, *part, *arguments) for part in shares]:
             future.result()
 
 

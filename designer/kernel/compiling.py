@@ -91,8 +91,8 @@ class _Files:
     def load(self, key: object) -> Any:
         """Return what is kept under a key; None for nothing, or what is not to be read."""
         try:
-            kept = self._files.load(key)
-            return None if kept is None else _checked(*kept)
+            cached = self._files.load(key)
+            return None if cached is None else _checked(*cached)
         except Exception:  # whatever a damaged file makes of its reader
             _Damage.tell(self._files._index_path)
             with suppress(OSError):

@@ -286,8 +286,8 @@ def _separation(cone: Cone, n_rays: int) -> float:
         return 0.0
     if not _normalise(cone.rest) > 0.0:
         return 0.0
-    most = _ROUNDING
+    largest = _ROUNDING
     for j in range(n_rays):
-        most = max(most, _along(cone.rest, cone.rays[j]))
+        largest = max(largest, _along(cone.rest, cone.rays[j]))
     separation = _along(cone.rest, cone.load)
-    return separation if separation > max(_LEAST_SEPARATION, _BEYOND * most) else 0.0
+    return separation if separation > max(_LEAST_SEPARATION, _BEYOND * largest) else 0.0

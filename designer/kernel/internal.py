@@ -175,17 +175,17 @@ def _set_normal(normal: FloatArray, slopes: FloatArray, cables: FloatArray, m: i
             entry = normal[r, c]
             entry[:] = 0.0
             for i in range(n):
-                row, one, other = cables[i], slopes[r, i], slopes[c, i]
+                row, row_slope, column_slope = cables[i], slopes[r, i], slopes[c, i]
                 for j in range(LANES):
-                    entry[j] += one[j] * other[j] / row[_CURVATURE, j]
+                    entry[j] += row_slope[j] * column_slope[j] / row[_CURVATURE, j]
             normal[c, r] = entry
         right = normal[r, m]
         for j in range(LANES):
             right[j] = -slopes[r, n, j] - slopes[r, n + 1, j]
         for i in range(n):
-            row, one = cables[i], slopes[r, i]
+            row, row_slope = cables[i], slopes[r, i]
             for j in range(LANES):
-                right[j] -= one[j] * row[_GRADIENT, j] / row[_CURVATURE, j]
+                right[j] -= row_slope[j] * row[_GRADIENT, j] / row[_CURVATURE, j]
 
 
 @kernel

@@ -326,12 +326,12 @@ def _measure(pose: Pose, c: float) -> tuple[float, float, float, float]:
         closure = max(closure, abs(F / F_l)) + 0.0 * F
         apart = max(apart, abs(F / F_l) / length) + 0.0 * F
         lowest, _ = _lowest_tension(cables, i, p, length, 0.0, v, 0.0)
-        held = (
+        is_held = (
             p * AT_LIMIT >= cables[FLOOR, i]
             and t > 0.0
             and lowest * AT_LIMIT >= c * cables[LEAST, i]
         )
-        overload = max(overload, t / cables[STRENGTH, i] if held else np.inf)
+        overload = max(overload, t / cables[STRENGTH, i] if is_held else np.inf)
     for k in pose.rows:
         error += abs(rest[k])
     return closure, apart, error, overload

@@ -178,10 +178,10 @@ def solve_massless_range(
             out_verdict[at] = RANK_DEFICIENT
         elif not held:
             out_verdict[at] = OUTSIDE_HULL if c <= NOTHING else NOT_CONVERGED
-        known = spans and _value_wrenches(pose, lp, scratch)
+        is_valued = spans and _value_wrenches(pose, lp, scratch)
         for k in range(m):
             value = scratch.value[k] if rows[k] < 3 else scratch.value[k] / pose.scale[REACH]
-            out_wrench[at, k] = value if known else np.nan
+            out_wrench[at, k] = value if is_valued else np.nan
 
 
 @element
@@ -367,17 +367,17 @@ def _settle_hanging(pose: Pose, value: FloatArray, i: int) -> float:
     c = pose.cables
     upward = along(pose, value, LIFT, i) * (c[SHARE, i] * c[UNIT, i] / pose.scale[FORCE])
     sideways = along(pose, value, WRENCH, i) - upward * c[V_P, i]
-    wanted = -sideways / upward - c[D, i]
-    if not (upward > 0.0 and wanted > 0.0):
+    goal = -sideways / upward - c[D, i]
+    if not (upward > 0.0 and goal > 0.0):
         return np.inf
     before = c[P, i]
-    p = (c[X2, i] / (24.0 * c[CHORD, i] * wanted)) ** (1.0 / 3.0)
+    p = (c[X2, i] / (24.0 * c[CHORD, i] * goal)) ** (1.0 / 3.0)
     for _ in range(_MOST_TURNS):
         excess = _lift_slope(c, i, p) - c[D, i]
         excess_ahead = _lift_slope(c, i, p * (1.0 + _ALONG)) - c[D, i]
         if not (excess_ahead > 0.0 and excess > excess_ahead):
             return np.inf
-        turn = np.log(excess / wanted) / np.log(excess / excess_ahead) * np.log(1.0 + _ALONG)
+        turn = np.log(excess / goal) / np.log(excess / excess_ahead) * np.log(1.0 + _ALONG)
         p *= np.exp(min(max(turn, -_LARGEST_TURN), _LARGEST_TURN))
         if abs(turn) < _SETTLED:
             break

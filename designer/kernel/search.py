@@ -104,16 +104,16 @@ def search_range(
             best = to_scaled / out.poses[at, WEIGHT] if sizing else -out.poses[at, LOAD_FACTOR]
         state = np.uint64(_RANDOM_SEED)
         is_proved = best == -np.inf and straight_c > 0.0 and _point_bounds(pose)
-        first = n + 3 + _RANDOM_STARTS
-        for attempt in range(first + 2 * n + _RANDOM_BESIDE):
-            if best == -np.inf and (is_proved or attempt >= first):
+        n_starts = n + 3 + _RANDOM_STARTS
+        for attempt in range(n_starts + 2 * n + _RANDOM_BESIDE):
+            if best == -np.inf and (is_proved or attempt >= n_starts):
                 # Nor does the section that is asked for hold then, within its strength.
                 out.verdict[at] = NO_FINITE_CABLE if is_proved and sizing else out.verdict[at]
                 break
-            if attempt < first:
+            if attempt < n_starts:
                 s, state = _begin(pose, ask, straight_c, attempt, state)
             else:
-                s, state = _begin_beside(pose, ask, best, out, at, attempt - first, state)
+                s, state = _begin_beside(pose, ask, best, out, at, attempt - n_starts, state)
             s, gap = climb(pose, ask, s, KEPT_PULLS[1 if attempt == 1 else 0], scratch)
             is_optimal = gap <= OPTIMAL_WITHIN
             if best == -np.inf and not (is_optimal and (s > 0.0 or not sizing)):
@@ -216,18 +216,18 @@ def _point_bounds(pose: Pose) -> bool:
     n = c.shape[1]
     if rows.size != n or rows[n - 1] != 2 or load[0] != 0.0 or load[1] != 0.0:
         return False
-    least, most = 0.0, np.inf
+    least, largest = 0.0, np.inf
     for i in range(n):
         low, high = _range(pose, i)
         share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
         least = max(least, low / share)
-        most = min(most, high / share)
-    if least > most * (1.0 + _SURELY):
+        largest = min(largest, high / share)
+    if least > largest * (1.0 + _SURELY):
         return True
     lift_of_all, size = 0.0, 0.0
     for i in range(n):
         share = max(c[STRAIGHT, i], _NOTHING) / (c[SHARE, i] * c[CHORD, i])
-        up = c[SHARE, i] * _lift_and_top(c, i, most * share)[0]
+        up = c[SHARE, i] * _lift_and_top(c, i, largest * share)[0]
         lift_of_all += up
         size += abs(up)
     return bool(lift_of_all < -_SURELY * size)
@@ -243,9 +243,9 @@ def _bounds(pose: Pose, value: FloatArray) -> bool:
         return False
     total, size = 0.0, 0.0
     for i in range(pose.cables.shape[1]):
-        most = _most(pose, value, i)
-        total += most
-        size += abs(most)
+        largest = _most(pose, value, i)
+        total += largest
+        size += abs(largest)
     return bool(total < -_MARGIN * size)
 
 
@@ -256,13 +256,13 @@ def _most(pose: Pose, value: FloatArray, i: int) -> float:
     alpha, beta = along(pose, value, LEVEL, i) * factor, along(pose, value, LIFT, i) * factor
     low, high = _range(pose, i)
     ratio = (high / low) ** (1.0 / _PARTS)
-    most, up = -np.inf, _lift_and_top(pose.cables, i, low)[0]
+    largest, up = -np.inf, _lift_and_top(pose.cables, i, low)[0]
     for _ in range(_PARTS):
         before, p = up, low
         low *= ratio
         up = _lift_and_top(pose.cables, i, low)[0]
-        most = max(most, max(alpha * p, alpha * low) + max(beta * before, beta * up))
-    return float(most)
+        largest = max(largest, max(alpha * p, alpha * low) + max(beta * before, beta * up))
+    return float(largest)
 
 
 @kernel

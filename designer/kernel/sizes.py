@@ -49,7 +49,7 @@ def sweep_sizes(
     strength: FloatArray,
     cells: IntArray,
     leaves_out_hanging: bool,
-    found: Meets,
+    meets: Meets,
 ) -> None:
     """Solve all poses with the sizes from `first` to `last`, and keep what they ask for.
 
@@ -64,9 +64,9 @@ def sweep_sizes(
     """
     n, count, rows = situation.attachments.shape[0], cells.size, situation.rows
     # Taken out of the tuple once: looked up for every pose they take half of the time.
-    utilisation, pose, longest_m = found.utilisation, found.pose, found.longest_m
-    counted, overloaded = found.counted, found.overloaded
-    left_out, failed = found.left_out, found.failed
+    utilisation, pose, longest_m = meets.utilisation, meets.pose, meets.longest_m
+    counted, overloaded = meets.counted, meets.overloaded
+    left_out, failed = meets.left_out, meets.failed
     cables = np.empty((n, LANE_ROWS, LANES))
     A = np.empty((n + 1, n + 2, LANES))
     poses = np.empty((POSE_ROWS, LANES))

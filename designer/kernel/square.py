@@ -249,7 +249,7 @@ def _store(
         for i in range(cables.shape[0]):
             write_cable(out, at, i, cables[i], j, w)
         closed = poses[RESIDUAL, j] <= TOLERANCE
-        held = poses[LOWEST, j] >= -_ON_BOUNDARY * poses[HIGHEST, j]
-        held = held and poses[HIGHEST, j] <= _SINGULAR * poses[PULL, j]
+        is_held = poses[LOWEST, j] >= -_ON_BOUNDARY * poses[HIGHEST, j]
+        is_held = is_held and poses[HIGHEST, j] <= _SINGULAR * poses[PULL, j]
         out.poses[at, LOAD_FACTOR] = overload if closed else np.nan
-        out.poses[at, MASSLESS_TENSION] = poses[HIGHEST, j] if held else np.nan
+        out.poses[at, MASSLESS_TENSION] = poses[HIGHEST, j] if is_held else np.nan

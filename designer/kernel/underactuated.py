@@ -176,10 +176,10 @@ def _set_left(
 @kernel
 def _left2(slopes: FloatArray, n: int, m: int, j: int) -> float:
     """Return the square of what is left."""
-    left = 0.0
+    residual = 0.0
     for r in range(m):
-        left += slopes[r, n, j] ** 2
-    return left
+        residual += slopes[r, n, j] ** 2
+    return residual
 
 
 @kernel

@@ -41,8 +41,8 @@ class Stiffening:
     def scaled(self, tension: float, stiffness: float) -> Stiffening:
         """Return the same with each tension and each EA times a factor."""
         return Stiffening(
-            tuple(tension * each for each in self.tension_N),
-            tuple(stiffness * each for each in self.axial_stiffness_N),
+            tuple(tension * value for value in self.tension_N),
+            tuple(stiffness * value for value in self.axial_stiffness_N),
         )
 
 

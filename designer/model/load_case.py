@@ -249,8 +249,8 @@ class LoadCase:
         pushes = [None] if self.acceleration_m_per_s2 == 0.0 else list(_spread(robot))
         lost: list[int | None] = [None]
         if self.cable_lost is not None:
-            each = self.cable_lost == EACH
-            lost = list(range(1, robot.n_cables + 1)) if each else [int(self.cable_lost)]
+            any_cable = self.cable_lost == EACH
+            lost = list(range(1, robot.n_cables + 1)) if any_cable else [int(self.cable_lost)]
         for wind, push, gone in product(winds, pushes, lost):
             yield self.under(robot, cable, wind, push, gone)
 
@@ -302,10 +302,10 @@ STATIC = LoadCase("static")
 def _aside(along: FloatArray, axes: FloatArray, step: float) -> Iterator[FloatArray]:
     """Yield unit vectors by a step along each axis, and against it, from one (3,)."""
     for side in (*axes, *-axes):
-        turned = along + step * side
-        size = float(np.linalg.norm(turned))
+        direction = along + step * side
+        size = float(np.linalg.norm(direction))
         if size > 0.0:
-            yield turned / size
+            yield direction / size
 
 
 def free_axes(robot: Robot) -> FloatArray:

@@ -180,8 +180,8 @@ class Prism(Region):
         sides = normals[gaps <= ON_A_SIDE * float(np.ptp(self.polygon_m, axis=0).max())]
         if len(sides) == 0:
             return np.zeros(3)
-        way, *_ = np.linalg.lstsq(sides, np.ones(len(sides)), rcond=None)
-        return np.append(way, 0.0)
+        direction, *_ = np.linalg.lstsq(sides, np.ones(len(sides)), rcond=None)
+        return np.append(direction, 0.0)
 
     def grown(self, margin_m: float) -> Prism:
         return Prism.over(self.polygon_m, -margin_m, self.z_m)

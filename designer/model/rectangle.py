@@ -141,9 +141,9 @@ class Rectangle(Region):
 
     def outward(self, position_m: FloatArray) -> FloatArray:
         share = float(self.shares(position_m)[0])
-        way = np.append((self.ends_m[1] - self.ends_m[0]) / self.size_m[0], 0.0)
+        direction = np.append((self.ends_m[1] - self.ends_m[0]) / self.size_m[0], 0.0)
         at_start, at_end = (abs(share - end) <= ON_A_SIDE for end in (0.0, 1.0))
-        return np.asarray((at_end * 1.0 - at_start * 1.0) * way)
+        return np.asarray((at_end * 1.0 - at_start * 1.0) * direction)
 
     def grown(self, margin_m: float) -> Rectangle:
         return Rectangle.over(self.ends_m, -margin_m, self.z_m)

@@ -257,11 +257,11 @@ class Robot:
 
     def without_cable(self, cable: int) -> Robot:
         """Return the robot without one of its cables, counted from 1."""
-        left = np.delete(np.arange(self.n_cables), cable - 1)
+        remaining = np.delete(np.arange(self.n_cables), cable - 1)
         body = self.platform
         if body.attachments_m is not None:
-            body = replace(body, attachments_m=body.attachments_m[left])
-        return replace(self, exit_points_m=self.exit_points_m[left], platform=body)
+            body = replace(body, attachments_m=body.attachments_m[remaining])
+        return replace(self, exit_points_m=self.exit_points_m[remaining], platform=body)
 
     def loads_N(self, force_N: FloatArray | None = None) -> FloatArray:
         """Return `pull_N` less a force (n_poses, 3), upright frame, (1 or n_poses, 6) [N, N·m]."""

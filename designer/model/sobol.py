@@ -29,13 +29,13 @@ def sobol(dimensions: int, seed: int, chunk: int) -> Iterator[FloatArray]:
     scramble = np.tril(rng.integers(0, 2, (dimensions, _BITS, _BITS), np.uint32), -1)
     scramble += np.eye(_BITS, dtype=np.uint32)
     bits = _directions(dimensions)[..., None] >> powers.size - 1 - np.arange(_BITS) & 1
-    turned = np.einsum("dij,dkj->dki", scramble, bits) % 2 @ powers[::-1]
-    turned[:, 1:] ^= turned[:, :-1]  # what each bit of a number turns over in its Gray code
+    scrambled = np.einsum("dij,dkj->dki", scramble, bits) % 2 @ powers[::-1]
+    scrambled[:, 1:] ^= scrambled[:, :-1]  # what each bit of a number turns over in its Gray code
     points = shift[None]
-    for flip in turned.T[: chunk.bit_length() - 1]:
+    for flip in scrambled.T[: chunk.bit_length() - 1]:
         points = np.concatenate([points, points ^ flip])
     for number in range(2**_BITS // chunk):
-        first = turned[:, number * chunk >> np.arange(_BITS) & 1 == 1]
+        first = scrambled[:, number * chunk >> np.arange(_BITS) & 1 == 1]
         yield (points ^ np.bitwise_xor.reduce(first, axis=1)) / 2.0**_BITS
 
 

@@ -140,8 +140,8 @@ class Space:
             low, high = self.orientations.range_rad
             corners = product(*zip(low, high, strict=True))
             turns = np.unique([*corners, 0.5 * (low + high)], axis=0)
-        each = np.repeat(positions, len(turns), axis=0)
-        return np.hstack([each, np.tile(turns, (len(positions), 1))])
+        repeated = np.repeat(positions, len(turns), axis=0)
+        return np.hstack([repeated, np.tile(turns, (len(positions), 1))])
 
     def scattered(
         self, rng: np.random.Generator, per_edge: int, per_face: int, inside: int
@@ -193,8 +193,10 @@ class Space:
         if self.orientations.range_rad is not None:
             low, high = self.orientations.range_rad
             return beyond, not ((turn >= low - _APART) & (turn <= high + _APART)).all()
-        asked = Rotation.from_rotvec(np.array(self.orientations.turns_rad))  # read-only: refused
-        gap = (asked.inv() * Rotation.from_rotvec(np.array(turn))).magnitude()
+        rotations = Rotation.from_rotvec(
+            np.array(self.orientations.turns_rad)
+        )  # read-only: refused
+        gap = (rotations.inv() * Rotation.from_rotvec(np.array(turn))).magnitude()
         return beyond, not (gap < _APART).any()
 
     def nearest(self, places: FloatArray) -> FloatArray:

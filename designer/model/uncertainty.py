@@ -95,11 +95,11 @@ class Uncertainty:
         require_number("samples", self.samples, least=1)
         require_number("seed", self.seed, least=0)
         for name in INPUTS[:-1]:
-            one = getattr(self, name)
-            if isinstance(one, Normal):
-                require_number(name, one.standard_deviation, most=MOST_DEVIATION)
-            elif one is not None:
-                require_number(name, one.low, least=LEAST_DEVIATION)
+            spread = getattr(self, name)
+            if isinstance(spread, Normal):
+                require_number(name, spread.standard_deviation, most=MOST_DEVIATION)
+            elif spread is not None:
+                require_number(name, spread.low, least=LEAST_DEVIATION)
 
     def spreads(self, modulus: Spread) -> Mapping[Input, Spread]:
         """Return what is not certain, with this of the modulus where the study says nothing."""
@@ -110,4 +110,8 @@ class Uncertainty:
             "breaking_load": self.breaking_load,
             "exit_points": self.exit_points_m,
         }
-        return {name: one for name, one in each.items() if one is not None and not one.is_certain}
+        return {
+            name: spread
+            for name, spread in each.items()
+            if spread is not None and not spread.is_certain
+        }

@@ -210,9 +210,9 @@ def _length_from_pull(p: FloatArray, X: FloatArray, D: FloatArray, kappa: FloatA
         newton = length - f / fall
         inside = (newton >= low) & (newton <= high)
         new = np.where(inside, newton, 0.5 * (low + np.minimum(high, 4.0 * length)))
-        done = ~(np.abs(new - length) > 2e-15 * length)
+        converged = ~(np.abs(new - length) > 2e-15 * length)
         length = new
-        if np.all(done):
+        if np.all(converged):
             break
     return length
 
@@ -271,9 +271,9 @@ def _theta_from_length(
             newton = u - np.log1p(f) * (1.0 + f) / (slope * np.exp(u))
         inside = (newton >= low) & (newton <= high)
         new = np.where(inside, newton, 0.5 * (low + high))
-        done = np.abs(new - u) <= 4e-15 * np.maximum(np.abs(u), 1.0)
+        converged = np.abs(new - u) <= 4e-15 * np.maximum(np.abs(u), 1.0)
         u = new
-        if np.all(done | ~reachable | folded):
+        if np.all(converged | ~reachable | folded):
             break
     theta = np.where(folded & (X == 0.0), np.inf, np.exp(u))
     return np.where(reachable & ~(folded & (X > 0.0)), theta, np.nan)

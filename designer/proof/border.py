@@ -29,8 +29,8 @@ def border_m(cover: Cover, ones: Boxes, others: Boxes) -> FloatArray:
     triangles = [np.empty((0, 3, 3))]
     for axis in range(3):
         low, high, plan = cover.cut(*_touching(ones, others, axis))
-        some = (low <= high).all(axis=1)
-        low, high, plan = low[some], high[some], plan[some]
+        overlaps = (low <= high).all(axis=1)
+        low, high, plan = low[overlaps], high[overlaps], plan[overlaps]
         if axis == 2:
             level = np.broadcast_to(low[:, None, 2:], (*plan.shape[:2], 1))
             faces = np.concatenate([plan, level], axis=2)
@@ -59,6 +59,6 @@ def _touching(ones: Boxes, boxes: Boxes, axis: int) -> Boxes:
         low = np.maximum(ones[0][one], boxes[0][other])
         high = np.minimum(ones[1][one], boxes[1][other])
         low[:, axis] = high[:, axis] = at[one]
-        some = (low < high)[:, across].all(axis=1)
-        found.append((low[some], high[some]))
+        overlaps = (low < high)[:, across].all(axis=1)
+        found.append((low[overlaps], high[overlaps]))
     return np.concatenate([low for low, _ in found]), np.concatenate([high for _, high in found])

@@ -65,7 +65,7 @@ class Encloser:
 
         self.cover = cover
         self._robot, self._cable = robot, cable
-        ends = (cover.places(one)[:, :3] for one in (cover.low, cover.high))
+        ends = (cover.places(corner)[:, :3] for corner in (cover.low, cover.high))
         self._size = np.abs(np.concatenate([robot.exit_points_m, *ends])).max()
         self._least_N = robot.tension_min_N if robot.is_redundant else 0.0
         self._sag = robot.sag_max if robot.is_redundant else None
@@ -185,8 +185,8 @@ class Encloser:
             ahead, there = self._solve(middle + step, raised)
             behind, too = self._solve(middle - step, raised)
             change = np.where((there & too)[:, None], 0.5 * (ahead - behind), 0.0)
-            most = _MOST_FOLLOWED * pull
-            follow[..., d] = np.clip(change, -most, most) / half[:, d, None]
+            largest_change = _MOST_FOLLOWED * pull
+            follow[..., d] = np.clip(change, -largest_change, largest_change) / half[:, d, None]
         return pull, solved, follow
 
     def _solve(self, coordinates: FloatArray, raised: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -233,6 +233,6 @@ def _turning_axes(turn: FloatArray) -> FloatArray:
         half = np.where(angle2 > 0.0, np.sin(0.5 * angle) / angle, 0.5)
         series = 1.0 / 6.0 - angle2 / 120.0 + angle2**2 / 5040.0
         two = np.where(small, series, (angle - np.sin(angle)) / (angle2 * angle))
-    one = 2.0 * half**2
+    corner = 2.0 * half**2
     cross = -np.cross(np.eye(3)[None], turn[:, None]).transpose(0, 2, 1)
-    return np.asarray(np.eye(3) + one * cross + two * (cross @ cross))
+    return np.asarray(np.eye(3) + corner * cross + two * (cross @ cross))

@@ -169,17 +169,17 @@ class _Search:
     @property
     def _level(self) -> float:
         """Bound of a box at which it is left alone."""
-        near = self._found * (1.0 + self._within)
-        return near if self.is_refuted else min(near, self._enough)
+        threshold = self._found * (1.0 + self._within)
+        return threshold if self.is_refuted else min(threshold, self._enough)
 
     @property
     def fraction(self) -> float:
         open_held = self._volume[self._bound <= self._enough].sum()
         return min((self._held + float(open_held)) / self._total, 1.0)
 
-    def step(self, most: int) -> None:
+    def step(self, count: int) -> None:
         """Bound the boxes that matter most, halve those whose bound is too high."""
-        at = self._next(most)
+        at = self._next(count)
         low, high, cover, volume, raised = (
             values[at] for values in (self._low, self._high, self._cover, self._volume, self._raise)
         )
@@ -187,10 +187,10 @@ class _Search:
         bound, cut = np.empty(len(at)), np.empty(len(at), dtype=np.int64)
         for k in np.unique(cover):
             some = np.flatnonzero(cover == k)
-            told = self._enclosers[k].bound(low[some], high[some], raised[some], self._level)
-            bound[some], cut[some] = told.bound, told.cut
-            raised[some] = np.where(np.isnan(told.needs), raised[some], _SHRINKS * told.needs)
-            self._try(self._enclosers[k], told)
+            bounds = self._enclosers[k].bound(low[some], high[some], raised[some], self._level)
+            bound[some], cut[some] = bounds.bound, bounds.cut
+            raised[some] = np.where(np.isnan(bounds.needs), raised[some], _SHRINKS * bounds.needs)
+            self._try(self._enclosers[k], bounds)
         self.boxes += len(at)
         good = bound <= self._level
         self._proved_bound = max(self._proved_bound, bound[good].max(initial=0.0))
@@ -198,9 +198,9 @@ class _Search:
         rows = np.arange(len(at))
         tiny = high[rows, cut] - low[rows, cut] <= _SMALLEST * self._extent[cut]
         self._stuck = max(self._stuck, bound[~good & tiny].max(initial=0.0))
-        left = ~good & ~tiny
+        undecided = ~good & ~tiny
         low, high, cover, bound, raised, cut = (
-            values[left] for values in (low, high, cover, bound, raised, cut)
+            values[undecided] for values in (low, high, cover, bound, raised, cut)
         )
         first, second = halves(low, high, cut)
         for a, b in ((low, first), (second, high)):
@@ -220,13 +220,19 @@ class _Search:
         for name in ("_low", "_high", "_cover", "_volume", "_bound", "_raise"):
             setattr(self, name, getattr(self, name)[at])
 
-    def _try(self, encloser: Encloser, told: Told) -> None:
+    def _try(self, encloser: Encloser, bounds: Told) -> None:
         """Solve the corners that seem to be worse than what was found."""
-        order = np.argsort(-told.estimate)[:_TRIES]
-        order = order[told.estimate[order] > self._found * _BETTER]
-        bad = np.isneginf(told.estimate) & (told.bound > self._level)  # nothing is known of corners
-        unknown = np.argsort(np.where(bad, -told.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
-        tried = [told.worst[order], told.middle[unknown], told.middle[~told.solved][:_TRIES]]
+        order = np.argsort(-bounds.estimate)[:_TRIES]
+        order = order[bounds.estimate[order] > self._found * _BETTER]
+        bad = np.isneginf(bounds.estimate) & (
+            bounds.bound > self._level
+        )  # nothing is known of corners
+        unknown = np.argsort(np.where(bad, -bounds.bound, np.inf))[: min(_TRIES, int(bad.sum()))]
+        tried = [
+            bounds.worst[order],
+            bounds.middle[unknown],
+            bounds.middle[~bounds.solved][:_TRIES],
+        ]
         if not sum(map(len, tried)):
             return
         places = encloser.cover.places(np.concatenate(tried))
@@ -239,12 +245,12 @@ class _Search:
     ) -> None:
         cover = self._enclosers[k].cover
         low, high, corners = cover.cut(low, high)
-        left = (low <= high).all(axis=1)
-        low, high, corners = low[left], high[left], corners[left]
+        undecided = (low <= high).all(axis=1)
+        low, high, corners = low[undecided], high[undecided], corners[undecided]
         more = (
             ("_low", low), ("_high", high), ("_cover", np.full(len(low), k)),
-            ("_volume", cover.share(low, high, corners)), ("_bound", bound[left]),
-            ("_raise", raised[left]),
+            ("_volume", cover.share(low, high, corners)), ("_bound", bound[undecided]),
+            ("_raise", raised[undecided]),
         )  # fmt: skip
         for name, values in more:
             setattr(self, name, np.concatenate([getattr(self, name), values]))

@@ -82,11 +82,11 @@ def servable(robot: Robot, space: Space, budget: Budget) -> Servable | None:
         if part.largest == 0.0:
             break
         boxes += part.step(int(min(_BATCH, budget.boxes - boxes)))
-    whole = sum(part.whole for part in covers)
+    total = sum(part.whole for part in covers)
     impossible, possible = sum(part.no for part in covers), sum(part.yes for part in covers)
     has_border = space.region.volume_m3 is not None and len(covers) == 1
     border = covers[0].border_m() if has_border else np.empty((0, 3, 3))
-    return Servable(impossible / whole, possible / whole, boxes, frozen_array(border))
+    return Servable(impossible / total, possible / total, boxes, frozen_array(border))
 
 
 class _Part:
@@ -116,28 +116,28 @@ class _Part:
             self._cover, _joined(self._no), _joined([*self._yes, (self._low, self._high)])
         )
 
-    def step(self, most: int) -> int:
+    def step(self, count: int) -> int:
         """Decide the largest boxes, halve the others; return how many there were."""
-        at = np.argsort(-self._volume)[:most]
+        at = np.argsort(-self._volume)[:count]
         low, high, volume = self._low[at], self._high[at], self._volume[at]
-        told = self._encloser.bound(low, high, np.zeros(len(at)), 1.0)
-        yes = np.isfinite(told.bound)
-        no = ~yes & self._is_impossible(low, high, ~told.solved)
+        bounds = self._encloser.bound(low, high, np.zeros(len(at)), 1.0)
+        yes = np.isfinite(bounds.bound)
+        no = ~yes & self._is_impossible(low, high, ~bounds.solved)
         self.yes += float(volume[yes].sum())
         self.no += float(volume[no].sum())
         self._no.append((low[no], high[no]))
         self._yes.append((low[yes], high[yes]))
-        left = ~yes & ~no & ((high - low).max(axis=1) > 0.0)
-        cut = np.where(told.solved, told.cut, (high - low)[:, :3].argmax(axis=1))[left]
-        low, high = low[left], high[left]
+        undecided = ~yes & ~no & ((high - low).max(axis=1) > 0.0)
+        cut = np.where(bounds.solved, bounds.cut, (high - low)[:, :3].argmax(axis=1))[undecided]
+        low, high = low[undecided], high[undecided]
         first, second = halves(low, high, cut)
         low, high = np.concatenate([low, second]), np.concatenate([first, high])
         low, high, corners = self._cover.cut(low, high)
-        some = (low <= high).all(axis=1)
+        overlaps = (low <= high).all(axis=1)
         rest = np.delete(np.arange(len(self._volume)), at)
-        self._low = np.concatenate([self._low[rest], low[some]])
-        self._high = np.concatenate([self._high[rest], high[some]])
-        more = self._cover.share(low[some], high[some], corners[some])
+        self._low = np.concatenate([self._low[rest], low[overlaps]])
+        self._high = np.concatenate([self._high[rest], high[overlaps]])
+        more = self._cover.share(low[overlaps], high[overlaps], corners[overlaps])
         self._volume = np.concatenate([self._volume[rest], more])
         return len(at)
 
@@ -172,13 +172,13 @@ class _Part:
         m = len(load)
         # Largest margin z: rays · y + z ≤ 0 and load · y ≥ z, components of y at most one.
         A = np.vstack([np.column_stack([rays, np.ones(len(rays))]), np.append(-load, 1.0)])
-        found = linprog(
+        solution = linprog(
             np.append(np.zeros(m), -1.0), A_ub=A, b_ub=np.zeros(len(A)),
             bounds=[(-1.0, 1.0)] * m + [(None, 1.0)],
         )  # fmt: skip
-        if found.x is None:
+        if solution.x is None:
             return False
-        y = found.x[:m]
+        y = solution.x[:m]
         return bool((rays @ y).max() < -_CLEAR and load @ y > _CLEAR)
 
 

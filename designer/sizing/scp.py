@@ -223,11 +223,13 @@ class _Problem:
 
     def state(self, y: FloatArray) -> _State:
         """Return the cables at scaled pulls, their slopes by central differences."""
-        here, ahead, behind = (self._cables(y * f) for f in (1.0, 1.0 + _ALONG, 1.0 - _ALONG))
+        middle, ahead, behind = (self._cables(y * f) for f in (1.0, 1.0 + _ALONG, 1.0 - _ALONG))
         step = _ALONG * y
         slopes = [(a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True)]
-        bend = (ahead[0] - 2.0 * here[0] + behind[0]) / step**2
-        return _State(here[0], slopes[0], bend, here[1], slopes[1], here[2], slopes[2], here[3])
+        bend = (ahead[0] - 2.0 * middle[0] + behind[0]) / step**2
+        return _State(
+            middle[0], slopes[0], bend, middle[1], slopes[1], middle[2], slopes[2], middle[3]
+        )
 
     def _cables(self, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         strength = self.material.strength_length_m
@@ -284,9 +286,9 @@ class _Problem:
         in_y = np.hstack([state.wrench_y.T, at_full, at_least, -np.eye(n)[:, sags]])
         in_c = [-self.load, np.zeros(len(full)), self.least[least], np.zeros(len(sags))]
         slopes = np.vstack([in_y, np.concatenate(in_c)])
-        wanted = np.eye(n + 1)[n]
+        unit = np.eye(n + 1)[n]
         signed = np.hstack([slopes, -slopes[:, :dof]])
-        return float(np.abs(signed @ nnls(signed, wanted)[0] - wanted).max())
+        return float(np.abs(signed @ nnls(signed, unit)[0] - unit).max())
 
     def answer(self, state: _State, y: FloatArray, c: float, turns: int) -> ScpSizing:
         """Return the result in SI units."""
@@ -373,5 +375,5 @@ def _solve(
         return None
     if programme["step"].value is None:
         return None
-    above, below = (one.dual_value for one in programme["balance"])
+    above, below = (constraint.dual_value for constraint in programme["balance"])
     return _Turn(y + programme["step"].value, float(programme["c"].value), above - below)

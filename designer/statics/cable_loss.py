@@ -105,20 +105,20 @@ def settle(
     position = np.full((count, 3), np.nan)
     rotation = np.array(np.broadcast_to(poses.rotation, (count, 3, 3)))
     every = np.arange(robot.n_cables)
-    others = every if lost is None else np.delete(every, lost - 1)
+    remaining = every if lost is None else np.delete(every, lost - 1)
     start = Poses(poses.position_m[at], rotation[at])
-    left = robot if lost is None else robot.without_cable(lost)
-    length = (1.0 + growth) * before.length_m[at][:, others]
-    forward_statics = solve_forward(left, cable, length, start)
+    reduced = robot if lost is None else robot.without_cable(lost)
+    length = (1.0 + growth) * before.length_m[at][:, remaining]
+    forward_statics = solve_forward(reduced, cable, length, start)
     rests, at = forward_statics.is_stable, at[forward_statics.is_stable]
     tension[at] = 0.0
-    tension[np.ix_(at, others)] = forward_statics.statics.cable_tension_N[rests]
+    tension[np.ix_(at, remaining)] = forward_statics.statics.cable_tension_N[rests]
     position[at] = forward_statics.poses.position_m[rests]
     if not robot.is_point_mass:
         rotation[at] = forward_statics.poses.rotation[rests]
     moved = np.linalg.norm(position - poses.position_m, axis=1)
-    near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
-    fate[at] = np.where(near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
+    is_near = moved[at] <= _NEAR * before.length_m[at].mean(axis=1)
+    fate[at] = np.where(is_near, Fate.HOLDS, Fate.RESTS_ELSEWHERE)
     return CableLoss(
         fate, before, tension, Poses(position, rotation), moved, forward_statics.statics
     )

@@ -64,11 +64,11 @@ def cables_of_length(
         return (force_x, force_z), *leaving(*cable, free, force_x, force_z)
 
     (force_x, force_z), run, gap_rad = over_pulleys(robot, poses, solve)
-    held = np.isfinite(force_x).all(axis=-1) & (gap_rad <= SETTLED_RAD)
+    is_held = np.isfinite(force_x).all(axis=-1) & (gap_rad <= SETTLED_RAD)
     return Statics(
         robot=robot,
         poses=poses,
-        verdict=np.where(held, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8),
+        verdict=np.where(is_held, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8),
         weight_N_per_m=weight_N_per_m,
         axial_stiffness_N=axial_stiffness_N,
         length_m=length_m,

@@ -144,15 +144,15 @@ class _Search:
         mean_work = np.einsum("pi,pi->p", before + after, step)
         closer = np.linalg.norm(after, axis=-1) < np.linalg.norm(before, axis=-1)
         # At rest a step is kept if it comes closer.
-        kept = np.where(rests, closer, mean_work > 0.0)
-        taken = np.minimum(length, radius)
-        wider = np.maximum(radius, np.minimum(2.0 * taken, self.size))
-        self.radius[active] = np.where(rests, radius, np.where(kept, wider, 0.25 * taken))
+        masked = np.where(rests, closer, mean_work > 0.0)
+        step_m = np.minimum(length, radius)
+        wider = np.maximum(radius, np.minimum(2.0 * step_m, self.size))
+        self.radius[active] = np.where(rests, radius, np.where(masked, wider, 0.25 * step_m))
         self.left[active] -= rests
-        moved = np.flatnonzero(active)[kept]
-        self.position[moved] = trial.position_m[kept]
-        self.rotation[moved] = trial.rotation[kept]
-        self.push[moved] = push[kept]
+        moved = np.flatnonzero(active)[masked]
+        self.position[moved] = trial.position_m[masked]
+        self.rotation[moved] = trial.rotation[masked]
+        self.push[moved] = push[masked]
 
 
 def moved_poses(robot: Robot, poses: Poses, step_m: FloatArray) -> Poses:
@@ -192,14 +192,14 @@ def _result(search: _Search, shape: tuple[int, ...], force_N: FloatArray | None)
     everything = np.ones(len(search.length_m), dtype=np.bool_)
     statics = search.statics(everything, Poses(search.position, search.rotation))
     with np.errstate(invalid="ignore"):
-        left = np.abs(_push(statics)).max(axis=-1)
-        close = left <= _TOLERANCE * np.maximum(statics.largest_tension_N, robot.weight_N)
+        imbalance = np.abs(_push(statics)).max(axis=-1)
+        close = imbalance <= _TOLERANCE * np.maximum(statics.largest_tension_N, robot.weight_N)
     solved = close & statics.is_solved
     stable = solved & is_stable(robot, upright_stiffness(statics))
 
     def whole(values: FloatArray) -> FloatArray:
-        kept = np.where(solved.reshape(-1, *[1] * (values.ndim - 1)), values, np.nan)
-        return np.asarray(kept.reshape(*shape, *values.shape[1:]))
+        masked = np.where(solved.reshape(-1, *[1] * (values.ndim - 1)), values, np.nan)
+        return np.asarray(masked.reshape(*shape, *values.shape[1:]))
 
     run = statics.run
     if run.has_wrap:

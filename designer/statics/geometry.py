@@ -70,9 +70,9 @@ def upright_situation(
 
 def one_cable(robot: Robot, cable: Cable, least_tension_N: float = 0.0) -> Figures:
     """Return what kernels are told of one cable for all exit points, weights per length [N/m]."""
-    each, weight = np.ones(robot.n_cables), cable.weight_N_per_m
-    kappa = plain(weight / cable.axial_stiffness_N * each)
-    return Figures(kappa, plain(weight * each), plain(np.inf * each), least_tension_N)
+    ones, weight = np.ones(robot.n_cables), cable.weight_N_per_m
+    kappa = plain(weight / cable.axial_stiffness_N * ones)
+    return Figures(kappa, plain(weight * ones), plain(np.inf * ones), least_tension_N)
 
 
 def cable_geometry(

@@ -83,7 +83,7 @@ def solve_internal(
         found = np.moveaxis(out, -1, 0)
         return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
-    found, run, gap_rad = over_pulleys(robot, poses, solve)
+    forces, run, gap_rad = over_pulleys(robot, poses, solve)
     closes = (rest <= 1e-9) & (gap_rad <= SETTLED_RAD)
     verdict = np.where(closes, Verdict.SOLVED, Verdict.NOT_CONVERGED).astype(np.int8)
-    return statics_with(robot, poses, cable, run, verdict, found, force_N)
+    return statics_with(robot, poses, cable, run, verdict, forces, force_N)

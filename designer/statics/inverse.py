@@ -290,11 +290,11 @@ def statics_of(
     """
     shape = poses.shape
     weight = solution.weight_N_per_m.reshape(*shape, 1) * relative_weights
-    each = *shape, robot.n_cables  # no -1, which says nothing of no poses
+    cable_shape = *shape, robot.n_cables  # no -1, which says nothing of no poses
     stiffness = axial_stiffness_N.reshape(*shape, *(axial_stiffness_N.shape[1:] or (1,)))
-    free = solution.length_m.reshape(each)
-    force_x = solution.force_x_N.reshape(each)
-    force_z = solution.force_z_N.reshape(each)
+    free = solution.length_m.reshape(cable_shape)
+    force_x = solution.force_x_N.reshape(cable_shape)
+    force_z = solution.force_z_N.reshape(cable_shape)
     if run.has_wrap:
         exit_N, _ = catenary.end_tensions_N(free, force_x, force_z, weight)
         run = run.unstrained(exit_N / stiffness)

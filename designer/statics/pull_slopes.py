@@ -152,8 +152,8 @@ def _right(cables: _Cables, radius_m: float) -> FloatArray:
     right[..., 3, _LENGTH] = -_dot(spoke, load)
     right[..., :3, _STIFFNESS], right[..., 3, _STIFFNESS] = cables.stretch, 0.0
     right[..., :3, _WEIGHT], right[..., 3, _WEIGHT] = -sag, -cables.length * _dot(spoke, load)
-    turned = cross_matrix(cables.span) - cables.flexibility @ cross_matrix(cables.pull)
-    right[..., :3, _TURN], right[..., 3, _TURN] = turned, -length * np.cross(load, spoke)
+    turn_slopes = cross_matrix(cables.span) - cables.flexibility @ cross_matrix(cables.pull)
+    right[..., :3, _TURN], right[..., 3, _TURN] = turn_slopes, -length * np.cross(load, spoke)
     return right
 
 

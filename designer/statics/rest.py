@@ -51,12 +51,12 @@ class RestingPlaces:
                 f"({searched})."
             )
         turn = self.nearest_turn_rad
-        turned = f", turned by {np.degrees(turn):.0f}°" if turn > 1e-3 else ""
-        where = "one other place" if self.others == 1 else f"{self.others} other places"
+        relative_rotation = f", turned by {np.degrees(turn):.0f}°" if turn > 1e-3 else ""
+        places = "one other place" if self.others == 1 else f"{self.others} other places"
         nearest = "" if self.others == 1 else "the nearest "
         return (
-            f"The platform rests here, but on the same lengths it could also rest in {where}, "
-            f"{nearest}{self.nearest_m:.2g} m away{turned} ({searched})."
+            f"The platform rests here, but on the same lengths it could also rest in {places}, "
+            f"{nearest}{self.nearest_m:.2g} m away{relative_rotation} ({searched})."
         )
 
 
@@ -81,15 +81,15 @@ def resting_places(
         pose.rotation if robot.is_point_mass else np.concatenate([pose.rotation[None], rotation]),
     )
     equilibria = find_equilibria(robot, cable, length_m, starts)
-    own = equilibria.which[0]
-    others = equilibria.found.is_stable & (equilibria.which != own)
+    own_place = equilibria.which[0]
+    others = equilibria.found.is_stable & (equilibria.which != own_place)
     away = np.linalg.norm(equilibria.found.poses.position_m - pose.position_m, axis=-1)
     nearest = int(np.argmin(np.where(others, away, np.inf)))
     has_other = bool(others.any())
     turn = 0.0
     if not robot.is_point_mass:
-        turned = pose.rotation.T @ equilibria.found.poses.rotation[nearest]
-        turn = float(Rotation.from_matrix(turned).magnitude())
+        relative_rotation = pose.rotation.T @ equilibria.found.poses.rotation[nearest]
+        turn = float(Rotation.from_matrix(relative_rotation).magnitude())
     return RestingPlaces(
         starts=len(others),
         is_stable=bool(equilibria.found.is_stable[0]),
@@ -146,7 +146,7 @@ def find_equilibria(
     flat = places.reshape(-1, *places.shape[-2:])
     size = float(np.linalg.norm(np.ptp(robot.exit_points_m, axis=0)))
     # So near to each other two balances are the same one.
-    which = np.array([_group(one, 1e-6 * size) for one in flat]).reshape(*shape, -1)
+    which = np.array([_group(row, 1e-6 * size) for row in flat]).reshape(*shape, -1)
     stable = np.where(forward_statics.is_stable, which, -1).reshape(-1, places.shape[-2])
     n_stable = np.array([len(set(row) - {-1}) for row in stable.tolist()]).reshape(shape)
     return Equilibria(forward_statics, which, n_stable)
@@ -193,11 +193,13 @@ def _group(places_m: FloatArray, tolerance_m: float) -> list[int]:
     kinds: list[FloatArray] = []
     which = []
     for place in places_m:
-        same = [k for k, kind in enumerate(kinds) if np.abs(place - kind).max() <= tolerance_m]
+        kind_index = [
+            k for k, kind in enumerate(kinds) if np.abs(place - kind).max() <= tolerance_m
+        ]
         if not np.isfinite(place).all():
-            same = [-1]
-        elif not same:
-            same = [len(kinds)]
+            kind_index = [-1]
+        elif not kind_index:
+            kind_index = [len(kinds)]
             kinds.append(place)
-        which.append(same[0])
+        which.append(kind_index[0])
     return which

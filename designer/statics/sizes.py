@@ -111,10 +111,10 @@ def add_slowly(
         The poses to solve; all if left out.
     """
     at = np.arange(len(poses.position_m)) if indices is None else indices
-    some = part_of(poses, at)
-    statics = solve_sagging(robot, some, cable, seeks_better=not is_quick(robot))
+    part = part_of(poses, at)
+    statics = solve_sagging(robot, part, cable, seeks_better=not is_quick(robot))
     if is_quick(robot) and (statics.largest_tension_N > cable.allowable_tension_N).any():
-        statics = solve_sagging(robot, some, cable)
+        statics = solve_sagging(robot, part, cable)
     meets.failed[row, at] = ~statics.is_solved
     left_out = statics.hangs_below & statics.is_solved & leaves_out_hanging
     counts = statics.is_solved & ~left_out

@@ -130,22 +130,22 @@ def utilisation_slopes(
     cables = _cables(statics)
     top, low = _top_tension(cables), _least_tension(cables)
     used, least = top.value / allowable, robot.tension_min_N
-    most = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
+    governing = used >= used.max() * (1.0 - (_ACTIVE if robot.is_redundant else _TIED))
     sags = _largest_sags(statics)
     slack = (low.value <= least * (1.0 + _ACTIVE)) & (robot.is_redundant and least > 0.0)
-    if cable is not None and robot.is_redundant and not most[cable - 1]:
+    if cable is not None and robot.is_redundant and not governing[cable - 1]:
         return ()
     if robot.pulley_radius_m != 0.0 and sags.any():  # that follow the tangent points
         return ()
-    each = np.flatnonzero(most) if cable is None else [cable - 1]
+    each = np.flatnonzero(governing) if cable is None else [cable - 1]
     one_by_one = [np.arange(robot.n_cables) == k for k in each]
-    found = []
-    for tops in [most] if robot.is_redundant else one_by_one:
+    results = []
+    for tops in [governing] if robot.is_redundant else one_by_one:
         solved = _multipliers(robot, cables, (top, low), (tops, slack, sags), allowable)
         if solved is None:
             return ()
-        found.append(_slopes(robot, cables, top, low, solved, used))
-    return tuple(found)
+        results.append(_slopes(robot, cables, top, low, solved, used))
+    return tuple(results)
 
 
 def _multipliers(
@@ -171,8 +171,8 @@ def _multipliers(
     shares[dof : dof + tops] = 1.0
     matrix, right = np.vstack([rows, shares]), np.append(np.zeros(n), 1.0)
     solved, _, rank, _ = np.linalg.lstsq(matrix, right, rcond=_RANK)
-    left = float(np.abs(matrix @ solved - right).max())
-    if rank < len(shares) or not left <= _LEFT or (solved[dof:] < _NEGATIVE).any():
+    residual = float(np.abs(matrix @ solved - right).max())
+    if rank < len(shares) or not residual <= _LEFT or (solved[dof:] < _NEGATIVE).any():
         return None
     each = np.zeros((3, n))
     each[np.nonzero(active)] = solved[dof:]

@@ -192,15 +192,15 @@ def _solve_over_pulleys(
     """Solve with a few turns, and those poses that have not come to rest again with more."""
     from designer.kernel.batch import solve_batch
 
-    each = np.ones(robot.n_cables)
+    ones = np.ones(robot.n_cables)
 
     def solve(run: PulleyRun) -> tuple[Solution, FloatArray, float]:
         solution = solve_batch(
             robot,
             upright_situation(robot, flat, run.exit_points_m, task.force_N),
-            task.kappa_per_m * each,
-            task.relative_weights * each,
-            task.strength_m * each,
+            task.kappa_per_m * ones,
+            task.relative_weights * ones,
+            task.strength_m * ones,
             task.inverse_weight_m_per_N,
             sag_max=task.sag_max,
             is_thorough=is_thorough,
@@ -318,21 +318,21 @@ def _judge_unsolved(robot: Robot, flat: Poses, solution: Solution, task: Task) -
     """Replace the verdicts of poses without a solution by what is proved of them."""
     from designer.kernel.batch import refuse_batch
 
-    left = np.flatnonzero(solution.verdict != Verdict.SOLVED)
-    if len(left) == 0:
+    unsolved = np.flatnonzero(solution.verdict != Verdict.SOLVED)
+    if len(unsolved) == 0:
         return
-    poses = part_of(flat, left)
+    poses = part_of(flat, unsolved)
     points = straight_run(robot, poses).exit_points_m
-    situation = upright_situation(robot, poses, points, task.part(left).force_N)
-    near, least_N = np.zeros(len(left), dtype=np.bool_), robot.tension_min_N
+    situation = upright_situation(robot, poses, points, task.part(unsolved).force_N)
+    is_near, least_N = np.zeros(len(unsolved), dtype=np.bool_), robot.tension_min_N
     if robot.pulley_radius_m > 0.0:  # the cone bounds a cable only beyond its pulley
         level = level_geometry(robot, poses)
-        near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
+        is_near |= (level.horizontal_distance_m < 2.0 * robot.pulley_radius_m).any(axis=1)
         if robot.cable_load_direction is not None:
             situation, least_N = _between_tangents(robot, level, situation), 0.0
     verdict, _, _ = refuse_batch(situation, least_N if robot.is_redundant else 0.0)
-    verdict[near] = Verdict.NOT_CONVERGED
-    solution.verdict[left] = verdict
+    verdict[is_near] = Verdict.NOT_CONVERGED
+    solution.verdict[unsolved] = verdict
 
 
 def _between_tangents(robot: Robot, level: CableGeometry, situation: Situation) -> Situation:

@@ -62,7 +62,7 @@ def solve_underactuated(
     )
 
     n_poses = len(poses.position_m)
-    out, told = np.empty((n_poses, robot.n_cables, 3)), np.empty((n_poses, 3))
+    out, diagnostics = np.empty((n_poses, robot.n_cables, 3)), np.empty((n_poses, 3))
     about_origin = upright_situation(robot, poses, robot.exit_points_m, force_N)
     arm = centre_of_mass_arm_m(robot, poses)
     pull_N, moment = about_origin.load[:, :3], about_origin.load[:, 3:]
@@ -83,17 +83,19 @@ def solve_underactuated(
             one_cable(robot, cable, _SMALLEST_SHARE * robot.weight_N),
             plain(_scale(robot)),
             out,
-            told,
+            diagnostics,
         )
         found = np.moveaxis(out, -1, 0)
         return found, *leaving(cable.axial_stiffness_N, cable.weight_N_per_m, *found)
 
-    found, run, gap_rad = over_pulleys(robot, poses, solve)
+    forces, run, gap_rad = over_pulleys(robot, poses, solve)
     load = np.linalg.norm(pull_N, axis=1)
-    held = (told[:, WRENCH_LEFT] <= 0.9 * load) & (told[:, LONGEST] <= _LONGEST)
-    verdict = np.where(held, Verdict.SOLVED, Verdict.NOT_FOUND).astype(np.int8)
-    verdict[~((told[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = Verdict.NOT_CONVERGED
-    return statics_with(robot, poses, cable, run, verdict, found, force_N)
+    is_held = (diagnostics[:, WRENCH_LEFT] <= 0.9 * load) & (diagnostics[:, LONGEST] <= _LONGEST)
+    verdict = np.where(is_held, Verdict.SOLVED, Verdict.NOT_FOUND).astype(np.int8)
+    verdict[~((diagnostics[:, STEP_LEFT] <= _STILL) & (gap_rad <= SETTLED_RAD))] = (
+        Verdict.NOT_CONVERGED
+    )
+    return statics_with(robot, poses, cable, run, verdict, forces, force_N)
 
 
 def imbalance(statics: Statics) -> FloatArray:

@@ -59,15 +59,15 @@ class Clearance:
         """Yield the four arrays."""
         return (getattr(self, field.name) for field in fields(self))
 
-    def nearer(self, other: Clearance) -> Clearance:
+    def nearer(self, clearance: Clearance) -> Clearance:
         """Return in each pose the one of two whose distance is smaller."""
-        theirs = other.distance_m < np.nan_to_num(self.distance_m, nan=np.inf)
+        theirs = clearance.distance_m < np.nan_to_num(self.distance_m, nan=np.inf)
 
         def smaller(mine: Any, its: Any) -> Any:
             apart = theirs.reshape(theirs.shape + (1,) * (mine.ndim - theirs.ndim))
             return np.where(apart, its, mine)
 
-        return Clearance(*map(smaller, self.each(), other.each()))
+        return Clearance(*map(smaller, self.each(), clearance.each()))
 
 
 def clearance_among_cables(statics: Statics) -> Clearance:
@@ -91,8 +91,8 @@ def _in_chunks(
     """Enter the smallest distance of each pose, of all that may be it in some of the poses."""
     shape = statics.verdict.shape
     n = int(np.prod(shape, dtype=np.int64))
-    none = np.full(n, np.nan), np.full((n, 2), PLATFORM), np.full((n, 3), np.nan)
-    clearance = Clearance(*none, np.full(n, np.nan))
+    missing = np.full(n, np.nan), np.full((n, 2), PLATFORM), np.full((n, 3), np.nan)
+    clearance = Clearance(*missing, np.full(n, np.nan))
     solved = np.flatnonzero(statics.is_solved)
     for at in range(0, len(solved), _CHUNK):
         rows = solved[at : at + _CHUNK]
@@ -160,8 +160,8 @@ def _among_cables(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance
     if len(pairs) == 0:
         return None
     n, count = robot.n_cables, len(statics.verdict)
-    whole = np.zeros(count * n), np.ones(count * n)
-    coarse = curves.polylines(np.arange(count * n), *whole, _COARSE)
+    whole_span = np.zeros(count * n), np.ones(count * n)
+    coarse = curves.polylines(np.arange(count * n), *whole_span, _COARSE)
     row, kind = _candidates(coarse, n, pairs)
     first, second = row * n + pairs[kind, 0], row * n + pairs[kind, 1]
     pieces = [_pick(coarse, first), _pick(coarse, second)]
@@ -193,9 +193,9 @@ def _candidates(coarse: Polylines, n: int, pairs: IntArray) -> tuple[IntArray, I
     chords = np.stack([start, end], axis=-2)
     straight, _, _ = _pieces(chords[:, i].reshape(-1, 2, 3), chords[:, j].reshape(-1, 2, 3))
     straight = straight.reshape(-1, len(pairs))
-    both = sag[:, i] + sag[:, j]
-    surely = (straight + both).min(axis=-1, keepdims=True)
-    row, kind = np.nonzero(straight - both <= surely)
+    sag_sum = sag[:, i] + sag[:, j]
+    surely = (straight + sag_sum).min(axis=-1, keepdims=True)
+    row, kind = np.nonzero(straight - sag_sum <= surely)
     return row, kind
 
 
@@ -205,9 +205,9 @@ def _to_hull(statics: Statics, curves: Curves) -> tuple[IntArray, Clearance] | N
     if hull is None:
         return None
     n, count = robot.n_cables, len(statics.verdict)
-    shown = 1.0 - np.tile(cable_margin_m(robot, hull), count) / curves.length_m
-    which = np.flatnonzero(shown > 0.0)
-    coarse = curves.polylines(which, np.zeros(len(which)), shown[which], _COARSE)
+    share = 1.0 - np.tile(cable_margin_m(robot, hull), count) / curves.length_m
+    which = np.flatnonzero(share > 0.0)
+    coarse = curves.polylines(which, np.zeros(len(which)), share[which], _COARSE)
     poses = upright_poses(robot, statics.poses)
     body = _in_body(coarse.points_m, poses, which // n)
     at, segment = _near_hull(hull, body, coarse.sagitta_m, which // n)

@@ -105,8 +105,8 @@ def settled(loaded: Loaded, poses: Poses, *, seeks_better: bool = True) -> Cable
 
 def length_demand(statics: Statics, counts: BoolArray) -> FloatArray:
     """Return lengths and negated lengths (n, 2 n_cables) [m], -inf where a pose does not count."""
-    both = np.hstack([statics.length_m, -statics.length_m])
-    return np.where(counts[:, None], both, -np.inf)
+    lengths = np.hstack([statics.length_m, -statics.length_m])
+    return np.where(counts[:, None], lengths, -np.inf)
 
 
 def massless_demand(
@@ -132,11 +132,11 @@ def massless_demand(
 def massless_demand_of(sizing: Sizing, hangs_below: HangsBelow) -> FloatArray:
     """Return the largest tension of straight cables (...) as demands; see `massless_demand`."""
     tension = sizing.massless_tension_N
-    asked = np.where(np.isnan(tension), np.inf, tension)
-    return np.where(is_left_out(sizing.statics, hangs_below), -np.inf, asked)
+    demand = np.where(np.isnan(tension), np.inf, tension)
+    return np.where(is_left_out(sizing.statics, hangs_below), -np.inf, demand)
 
 
 def demand_of(value: FloatArray, statics: Statics, hangs_below: HangsBelow) -> FloatArray:
     """Return values (...) as demands: inf where a pose is not solved, -inf where it is left out."""
-    asked = np.where(statics.is_solved, value, np.inf)
-    return np.where(is_left_out(statics, hangs_below), -np.inf, asked)
+    demand = np.where(statics.is_solved, value, np.inf)
+    return np.where(is_left_out(statics, hangs_below), -np.inf, demand)

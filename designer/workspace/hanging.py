@@ -62,12 +62,12 @@ class HangingCables:
             ("long cables", self.long, "times its chord"),
             ("below floor", self.below_floor, "m"),
         )
-        for heading, found, unit in kinds:
-            if found is not None:
-                share = f"{found.samples / self.samples:.2%} of the samples"
+        for heading, hanging, unit in kinds:
+            if hanging is not None:
+                share = f"{hanging.samples / self.samples:.2%} of the samples"
                 yield (
                     heading,
-                    f"{share}, cable {found.cable} at the worst {found.extreme:.4g} {unit}",
+                    f"{share}, cable {hanging.cable} at the worst {hanging.extreme:.4g} {unit}",
                 )
 
 
@@ -92,16 +92,16 @@ def look_at(
 def survey_hanging(robot: Robot, workspace: Workspace, cable: Cable | Cables) -> HangingCables:
     """Return which samples of the workspace have such a cable, with these cables on the machine."""
     hanging_cables = HangingCables()
-    for some in workspace.places():
-        statics = solve_sagging(robot, Poses.at(some), cable)
+    for places in workspace.places():
+        statics = solve_sagging(robot, Poses.at(places), cable)
         counts = statics.is_solved & ~is_left_out(statics, workspace.hangs_below)
-        hanging_cables = look_at(hanging_cables, some, statics, counts, workspace.floor_m)
+        hanging_cables = look_at(hanging_cables, places, statics, counts, workspace.floor_m)
     return hanging_cables
 
 
 def _add(
     before: Hanging | None,
-    some: FloatArray,
+    places: FloatArray,
     values: FloatArray,
     counts: BoolArray,
     limit: float,
@@ -115,9 +115,9 @@ def _add(
         return before
     at, cable = np.unravel_index(np.where(beyond, excess, 0.0).argmax(), excess.shape)
     samples = int(beyond.any(axis=1).sum())
-    hanging = Hanging(samples, float(values[at, cable]), int(cable) + 1, tuple(some[at].tolist()))
+    hanging = Hanging(samples, float(values[at, cable]), int(cable) + 1, tuple(places[at].tolist()))
     if before is None:
         return hanging
-    farthest = max(before, hanging, key=lambda one: sign * one.extreme)
+    farthest = max(before, hanging, key=lambda candidate: sign * candidate.extreme)
     total = before.samples + samples
     return Hanging(total, farthest.extreme, farthest.cable, farthest.place)

@@ -79,8 +79,12 @@ class Interference:
     @property
     def worst(self) -> Nearest | None:
         """The nearer of the two."""
-        found = [one for one in (self.among_cables, self.to_platform) if one is not None]
-        return min(found, key=lambda one: one.distance_m, default=None)
+        clearances = [
+            clearance
+            for clearance in (self.among_cables, self.to_platform)
+            if clearance is not None
+        ]
+        return min(clearances, key=lambda clearance: clearance.distance_m, default=None)
 
     @property
     def is_violated(self) -> bool:
@@ -107,14 +111,14 @@ def survey(
         if np.isnan(sampled.distance_m).all():
             return None
         (worst,) = refine_over_branches(workspace.space, nearness_with, thinned, LIGHT)
-        found = clearance(worst.place[None])
-        first, second = (int(number) for number in found.pair[0])
+        clearances = clearance(worst.place[None])
+        first, second = (int(number) for number in clearances.pair[0])
         return Nearest(
-            distance_m=float(found.distance_m[0]),
-            error_m=float(found.error_m[0]),
+            distance_m=float(clearances.distance_m[0]),
+            error_m=float(clearances.error_m[0]),
             pair=(first, second),
             place=worst.place,
-            point_m=found.place_m[0],
+            point_m=clearances.place_m[0],
         )
 
     return Interference(

@@ -131,8 +131,8 @@ def worst_over_samples(workspace: Workspace, demand_with: Callable[..., Demand])
     Starts are the samples that ask for most of the first demand; see `refine_over_branches`.
     """
     pool, demand = Pool(workspace.space), demand_with()
-    for some in workspace.places():
-        pool.add(some, demand(some).reshape(len(some), -1)[:, 0])
+    for rows in workspace.places():
+        pool.add(rows, demand(rows).reshape(len(rows), -1)[:, 0])
     return refine_over_branches(workspace.space, demand_with, pool.places)
 
 
@@ -181,12 +181,12 @@ class _Search:
 
     def _near_the_best(self) -> FloatArray:
         """Return places about each of the best, at all distances."""
-        found = np.array([worst.place for worst in self._best])
-        found = found[np.isfinite(found).all(axis=1)]
+        places = np.array([worst.place for worst in self._best])
+        places = places[np.isfinite(places).all(axis=1)]
         of_each = (len(_NEAR_SCALES), 24, len(self._size))
         cloud = self._rng.uniform(-1.0, 1.0, of_each)
         cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, len(self._size))
-        return self._space.nearest((found[:, None] + cloud).reshape(-1, len(self._size)))
+        return self._space.nearest((places[:, None] + cloud).reshape(-1, len(self._size)))
 
     def _ask(self, places: FloatArray) -> FloatArray:
         """Return what places ask for (n, n_extremes), and remember the largest."""
@@ -226,8 +226,8 @@ class _Search:
             return
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
-        both = self._finalists(np.concatenate([climbs, beside]).view(np.recarray))
-        self._climb(both, effort.tolerance, slides=True)  # those at their end stay there
+        finalists = self._finalists(np.concatenate([climbs, beside]).view(np.recarray))
+        self._climb(finalists, effort.tolerance, slides=True)  # those at their end stay there
 
     def _beside(self, climbs: _Climbs) -> _Climbs:
         """Return starts about the ends of climbs, closer together than the parts of the space.
@@ -241,17 +241,17 @@ class _Search:
         reach = 1.5 / CELLS_A_SIDE
         offsets = self._rng.uniform(-reach, reach, (len(tops), effort.tried_beside, n))
         trials = self._space.nearest(tops.at[:, None] + offsets * self._size)
-        asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], len(self._best))
+        demand = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], len(self._best))
         out = []
-        for top, places, values in zip(tops, trials, asked, strict=True):
-            own = values[:, top.extreme]
-            taken = [top.at]
-            for k in np.argsort(-own, kind="stable"):
-                if np.isneginf(own[k]) or len(taken) > effort.beside:
+        for top, places, values in zip(tops, trials, demand, strict=True):
+            own_demand = values[:, top.extreme]
+            used = [top.at]
+            for k in np.argsort(-own_demand, kind="stable"):
+                if np.isneginf(own_demand[k]) or len(used) > effort.beside:
                     break
-                if (np.abs(np.array(taken) - places[k]) > _APART * self._size).any(axis=1).all():
-                    taken.append(places[k])
-                    out.append((places[k], top.extreme, own[k], _APART, 0.0))
+                if (np.abs(np.array(used) - places[k]) > _APART * self._size).any(axis=1).all():
+                    used.append(places[k])
+                    out.append((places[k], top.extreme, own_demand[k], _APART, 0.0))
         return np.array(out, dtype=climbs.dtype).view(np.recarray)
 
     def _are_close_to_best(self, climbs: _Climbs) -> BoolArray:
@@ -286,21 +286,21 @@ class _Search:
             trials = self._space.nearest(climb.at[:, None] + self._directions(len(active)) * reach)
             onward = self._space.nearest(climb.at + 2.0 * climb.step)[:, None]
             trials = np.concatenate([trials, onward], axis=1)
-            asked = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
-            own = np.take_along_axis(asked, climb.extreme[:, None, None], axis=2)[..., 0]
-            rises = own.max(axis=1) > climb.value
-            outside = np.isneginf(own)
+            demand = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
+            own_demand = np.take_along_axis(demand, climb.extreme[:, None, None], axis=2)[..., 0]
+            rises = own_demand.max(axis=1) > climb.value
+            outside = np.isneginf(own_demand)
             on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
-                slid = self._slide(climb[on_border], trials[on_border], own[on_border])
-                trials[on_border, -1], own[on_border, -1] = slid
-            best = own.argmax(axis=1)
+                slid = self._slide(climb[on_border], trials[on_border], own_demand[on_border])
+                trials[on_border, -1], own_demand[on_border, -1] = slid
+            best = own_demand.argmax(axis=1)
             rows = np.arange(len(active))
-            better = own[rows, best] > climb.value
+            better = own_demand[rows, best] > climb.value
             to = np.where(better[:, None], trials[rows, best], climb.at)
             climbs.step[active] = to - climb.at
             climbs.at[active] = to
-            climbs.value[active] = np.where(better, own[rows, best], climb.value)
+            climbs.value[active] = np.where(better, own_demand[rows, best], climb.value)
             climbs.radius[active] = climb.radius * np.where(better, 1.1, 0.5)
 
     def _slide(
@@ -329,17 +329,17 @@ class _Search:
             )
             places = self._space.nearest(climbs.at[:, None, None] + steps * size)
             asked = self._ask(places.reshape(-1, n)).reshape(*places.shape[:3], -1)
-            own = np.take_along_axis(asked, climbs.extreme[:, None, None, None], axis=3)
-            return places, own[..., 0]
+            own_demand = np.take_along_axis(asked, climbs.extreme[:, None, None, None], axis=3)
+            return places, own_demand[..., 0]
 
         for _ in range(4):
             outside_there = np.isneginf(at(low + part * np.arange(1, 8) / 8.0)[1])
             low = low + part / 8.0 * outside_there.sum(axis=2, keepdims=True)
             part /= 8.0
-        places, asked = (values[:, :, 0] for values in at(low + part))
-        best = asked.argmax(axis=1)
+        places, demand = (values[:, :, 0] for values in at(low + part))
+        best = demand.argmax(axis=1)
         rows = np.arange(len(places))
-        return places[rows, best], asked[rows, best]
+        return places[rows, best], demand[rows, best]
 
     def _directions(self, count: int) -> FloatArray:
         """Return directions (count, n_trials, n_coordinates) along the axes, and random ones.

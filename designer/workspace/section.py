@@ -69,9 +69,9 @@ def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], W
     DesignerError
         If that does not come to an end.
     """
-    section, tried = 0.0, FIRST_TRIED_M
+    section, trial = 0.0, FIRST_TRIED_M
     for _ in range(_MOST_TURNS):
-        worst = worst_of(family_at(tried))
+        worst = worst_of(family_at(trial))
         if not np.isfinite(worst.place).all():  # every pose is left out
             return math.nan
         if worst.demand <= section * (1.0 + _STILL):
@@ -79,7 +79,7 @@ def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], W
         needed = section_at(robot, Poses.at(worst.place), family_at)
         if math.isnan(needed) or needed <= section:
             return math.nan  # not even with what serves it alone
-        section = tried = needed
+        section = trial = needed
     raise DesignerError(
         "the declared effects differ so much between sections that none was found which serves "
         "the workspace with its own figures"

@@ -55,14 +55,14 @@ def survey_stiffness(
     """
     demand_with = partial(displacement_demand, robot, workspace, cable)
     thinned = workspace.thinned(MOST_SAMPLES)
-    asked = demand_with()(thinned)
-    counts = ~np.isneginf(asked[:, 0])
-    if np.isneginf(asked[:, 1]).all():
+    demand = demand_with()(thinned)
+    counts = ~np.isneginf(demand[:, 0])
+    if np.isneginf(demand[:, 1]).all():
         return None
     softest, stiffest = refine_over_branches(workspace.space, demand_with, thinned)
     return StiffnessSurvey(
         samples=int(counts.sum()),
-        unstable=int(np.isposinf(asked[:, 0]).sum()),
+        unstable=int(np.isposinf(demand[:, 0]).sum()),
         softest_m_per_N=softest.demand,
         stiffest_m_per_N=-stiffest.demand,
         softest_place=softest.place,

@@ -60,9 +60,9 @@ def map_workspace(
     kept = sweep_file(file, robot.n_cables, attributes) if file else nullcontext(lambda *_: None)
     with kept as store:
         for positions in workspace.positions_m():
-            some, sizing = size_worst(robot, workspace, positions, material)
-            gathered.add(some, sizing)
-            store(some, sizing)
+            places, sizing = size_worst(robot, workspace, positions, material)
+            gathered.add(places, sizing)
+            store(places, sizing)
             progress(len(positions))
     return _summarise(robot, workspace, material, gathered, file)
 
@@ -81,26 +81,26 @@ class _Gathered:
         self.sampled: Extreme | None = None
         self.infeasible_example: FloatArray | None = None
 
-    def add(self, some: FloatArray, sizing: Sizing) -> None:
+    def add(self, places: FloatArray, sizing: Sizing) -> None:
         statics = sizing.statics
         left_out = is_left_out(statics, self._workspace.hangs_below)
         self.verdicts.update(dict(enumerate(np.bincount(statics.verdict).tolist())))
         self.hangs_below += int(statics.hangs_below.sum())
         self.excluded += int(left_out.sum())
         counts = statics.is_solved & ~left_out
-        self.hanging = look_at(self.hanging, some, statics, counts, self._workspace.floor_m)
+        self.hanging = look_at(self.hanging, places, statics, counts, self._workspace.floor_m)
         diameter = np.where(counts, sizing.diameter_m, -np.inf)
-        self.starts.add(some, diameter)
+        self.starts.add(places, diameter)
         straight = massless_demand_of(sizing, self._workspace.hangs_below)
-        self.massless_starts.add(some, straight)
+        self.massless_starts.add(places, straight)
         at = int(np.argmax(diameter))
         diameter_m = -np.inf if self.sampled is None else self.sampled.diameter_m
         if diameter[at] > diameter_m:
             tension = float(statics.largest_tension_N[at])
-            self.sampled = Extreme.at(some[at], float(diameter[at]), tension)
+            self.sampled = Extreme.at(places[at], float(diameter[at]), tension)
         served = statics.is_solved | left_out
         if self.infeasible_example is None and not served.all():
-            self.infeasible_example = some[int(np.argmin(served))]
+            self.infeasible_example = places[int(np.argmin(served))]
 
     def census(self) -> Census:
         statuses = {v.label: self.verdicts[int(v)] for v in Verdict}

@@ -1,4 +1,4 @@
-"""A kind of region that no report knows is searched, drawn and described all the same."""
+"""A kind of region that nobody knows is searched, drawn and described; the rest is declined."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ import pytest
 
 import designer
 from designer.arrays import FloatArray
+from designer.explore.grids import map_grids
 from designer.model.border import Border
+from designer.model.prism import Prism
 from designer.model.region import Region
+from designer.proof.encloser import why_not
 from designer.report.design.report import design_report
 from designer.report.render import render_html
 
@@ -53,19 +56,44 @@ class Segment(Region):
         return Border(self.ends_m, self.ends_m[None], [])
 
 
+LINE = Segment(np.array([[8.0, 5.0, 1.0], [22.0, 7.0, 8.0]]))
+
+
+def test_what_a_region_does_not_say_is_declined(fast_robot: designer.Robot) -> None:
+    assert "not covered by boxes" in why_not(fast_robot, LINE)
+    assert not LINE.has_sides
+    assert not LINE.outward(LINE.ends_m[0]).any()
+    assert LINE.section_m() is None
+    assert (LINE.cutaway_m(LINE.ends_m[0]), LINE.opening_azimuth_rad(LINE.ends_m[0])) == ({}, None)
+    assert np.allclose(LINE.centre_m, [15.0, 6.0])
+    grids = map_grids(LINE, 0.5, fine=False)  # as the window asks
+    assert list(grids) == ["points"]
+    assert LINE.contains(grids["points"]).all()
+
+
+def test_a_box_has_all_of_it(fast_robot: designer.Robot) -> None:
+    box = Prism.box((0.0, 4.0), (0.0, 3.0), (1.0, 2.0))
+    assert why_not(fast_robot, box) == ""
+    assert box.outward(np.array([4.0, 3.0, 1.5])) == pytest.approx([1.0, 1.0, 0.0])
+    assert box.grown(0.5).bounds_m == pytest.approx(np.array([[-0.5, -0.5, 1], [4.5, 3.5, 2]]))
+    grids = map_grids(box, 0.25, fine=True)
+    assert set(grids) == {"top", "bottom", "wall", "slice"}
+    assert all(box.contains(grid).all() for grid in grids.values())
+    assert grids["slice"][..., 2] == pytest.approx(1.25)
+
+
 @pytest.mark.slow
 def test_a_line_is_a_region() -> None:
     study = designer.read_study(designer.example_file("yard"))
     assert study.workspace is not None
-    line = Segment(np.array([[8.0, 5.0, 1.0], [22.0, 7.0, 8.0]]))
-    workspace = replace(study.workspace, region=line, samples=100)
+    workspace = replace(study.workspace, region=LINE, samples=100)
     analysis = designer.analyse(replace(study, workspace=workspace))
     assert analysis.workspace is not None
     assert analysis.workspace.sagging is not None
     # Nothing on the line, far more densely than the samples, needs more.
     from designer.sizing.newton import size_poses
 
-    dense = size_poses(study.robot, designer.Poses.at(line.at(np.linspace(0, 1, 5001))),
+    dense = size_poses(study.robot, designer.Poses.at(LINE.at(np.linspace(0, 1, 5001))),
                        study.material)  # fmt: skip
     told = analysis.workspace.sagging.diameter_m
     assert dense.diameter_m.max() <= told * (1 + 1e-9)

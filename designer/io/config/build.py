@@ -81,7 +81,7 @@ def build_study(
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
         uncertainty=uncertainty(section.uncertainty),
-        effects=tuple(one for _, one in declared.effects),
+        effects=tuple(setting for _, setting in declared.effects),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
         family=family,

@@ -147,7 +147,7 @@ def each_cable_in_one_group(parts: Parts) -> Iterator[Fault]:
     if not groups or not anchors:
         return
     n_cables = len(anchors)
-    first: dict[int, str] = {}
+    first_use: dict[int, str] = {}
     once = "every cable in exactly one group"
     for name, cables in groups.items():
         for index, cable in enumerate(cables):
@@ -155,11 +155,11 @@ def each_cable_in_one_group(parts: Parts) -> Iterator[Fault]:
                 problem = f"there is no cable {cable}, the robot has {n_cables}"
                 expected = f"a cable from 1 to {n_cables}"
                 yield parts.fault(_GROUPS, problem, expected, name, index)
-            elif cable in first:
-                problem = f"cable {cable} is in group '{first[cable]}' already"
+            elif cable in first_use:
+                problem = f"cable {cable} is in group '{first_use[cable]}' already"
                 yield parts.fault(_GROUPS, problem, once, name, index)
-            first.setdefault(cable, name)
-    missing = [str(cable) for cable in range(1, n_cables + 1) if cable not in first]
+            first_use.setdefault(cable, name)
+    missing = [str(cable) for cable in range(1, n_cables + 1) if cable not in first_use]
     if len(missing) == 1:
         yield parts.fault(_GROUPS, f"cable {missing[0]} is in no group", once)
     elif missing:
@@ -208,10 +208,10 @@ def effects_are_known(parts: Parts) -> Iterator[Fault]:
 
 def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
     """Each column goes to a place of its own that the robot has, and a point mass to no turn."""
-    first: dict[str, str] = {}
+    first_use: dict[str, str] = {}
     columns = parts.raw(_COLUMNS)
-    for name, given in columns.items() if isinstance(columns, dict) else ():
-        section = valid(reader_of(ColumnSection), given)
+    for name, column in columns.items() if isinstance(columns, dict) else ():
+        section = valid(reader_of(ColumnSection), column)
         if section is None or section.to in (IGNORE, COVARIATE):
             continue
         target: str = section.to
@@ -222,21 +222,21 @@ def columns_fit_the_robot(parts: Parts) -> Iterator[Fault]:
             expected = f"robot.platform.attachments, or '{IGNORE}'"
             problem = f"{target} has no meaning for a point mass"
             yield parts.fault(_COLUMNS, problem, expected, name)
-        if target in first:
-            problem = f"{target} is already the column '{first[target]}'"
+        if target in first_use:
+            problem = f"{target} is already the column '{first_use[target]}'"
             yield parts.fault(_COLUMNS, problem, f"another name of ours, or '{IGNORE}'", name)
-        first.setdefault(target, name)
+        first_use.setdefault(target, name)
 
 
 def unknowns_are_known(parts: Parts) -> Iterator[Fault]:
     """What is fitted from the start is an effect, or all exit points together; each once."""
     path, seen = _UNKNOWN, set()
     together = [effect.also_called for effect in parts.effects.values() if effect.also_called]
-    known = (*parts.effects, *together, POSES)
+    unknowns = (*parts.effects, *together, POSES)
     for index, name in _texts(parts, path):
-        if name not in known:
+        if name not in unknowns:
             listed = f"{', '.join((*together, POSES))}, or an effect: {', '.join(parts.effects)}"
-            expected = listed + did_you_mean(name, known)
+            expected = listed + did_you_mean(name, unknowns)
             yield parts.fault(path, f"{describe(name)} is not known", expected, index)
         if name in seen:
             yield parts.fault(path, f"'{name}' is given twice", "once", index)

@@ -14,12 +14,14 @@ from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, descri
 _TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
 
 
-def _target(given: object) -> str:
-    if not isinstance(given, str):
-        raise refusal(f"{describe(given)} is not a name", _TARGET)
-    if given not in (IGNORE, COVARIATE) and dimension_of(given) is None:
-        raise refusal(f"{describe(given)} is no column of ours", _TARGET + column_hint(given))
-    return given
+def _target(fields_set: object) -> str:
+    if not isinstance(fields_set, str):
+        raise refusal(f"{describe(fields_set)} is not a name", _TARGET)
+    if fields_set not in (IGNORE, COVARIATE) and dimension_of(fields_set) is None:
+        raise refusal(
+            f"{describe(fields_set)} is no column of ours", _TARGET + column_hint(fields_set)
+        )
+    return fields_set
 
 
 class ColumnSection(Section):
@@ -50,9 +52,9 @@ class ColumnSection(Section):
         """Return scale and offset from the log's numbers to ours."""
         dimension = dimension_of(self.to)
         if dimension is None:
-            given = self.model_fields_set - {"to"}
-            if given:
-                raise refusal(f"'{self.to}' takes no {sorted(given)[0]}", f"'{self.to}' alone")
+            fields_set = self.model_fields_set - {"to"}
+            if fields_set:
+                raise refusal(f"'{self.to}' takes no {sorted(fields_set)[0]}", f"'{self.to}' alone")
             return 1.0, 0.0
         scale, offset = self._scale(dimension)
         return scale, offset + self._offset(dimension)
@@ -74,13 +76,13 @@ class ColumnSection(Section):
         if self.unit is None:
             return 1.0 if self.scale is None else self.scale, 0.0
         try:
-            zero, one = (read_quantity(f"{number} {self.unit}", dimension) for number in (0, 1))
+            zero, unit_SI = (read_quantity(f"{number} {self.unit}", dimension) for number in (0, 1))
         except QuantityError as error:
             _, mark, hint = error.expected.partition("; did you mean")
             expected = f"a unit as in '{dimension.example}'" if dimension.unit else "none"
             problem = f"{describe(self.unit)} is no unit of {dimension.noun}"
             raise refusal(problem, f"{expected}{mark}{hint}") from None
-        return one - zero, zero
+        return unit_SI - zero, zero
 
     def _offset(self, dimension: Dimension) -> float:
         # '5 K' as a difference is not 5 K as a temperature

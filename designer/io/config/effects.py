@@ -43,97 +43,105 @@ class Found:
         """Add something that is wrong."""
         self.refusals.append(Refusal(place, problem, expected))
 
-    def read(self, place: Place, kind: QuantityField | WholeNumber, given: Data) -> float | None:
+    def read(self, place: Place, kind: QuantityField | WholeNumber, content: Data) -> float | None:
         """Return a value; None, and a refusal, for one that is none of its kind."""
         try:
-            return kind.read(given)
+            return kind.read(content)
         except PydanticCustomError as error:
             context = error.context or {}
             self.refuse(place, context["problem"], context["expected"])
             return None
 
 
-def read_effects(data: Data, n_cables: int, known: Mapping[str, Effect]) -> Found:
+def read_effects(data: Data, n_cables: int, effects_by_id: Mapping[str, Effect]) -> Found:
     """Return what the section ``effects`` says, of all effects that are known by their ids."""
-    found = Found(n_cables)
-    for effect_id, given in data.items() if isinstance(data, dict) else ():
-        effect = known.get(effect_id)
+    declared_effects = Found(n_cables)
+    for effect_id, content in data.items() if isinstance(data, dict) else ():
+        effect = effects_by_id.get(effect_id)
         if effect is None:
             problem = f"unknown effect '{printable(effect_id)}'"
-            expected = f"one of {', '.join(known)}{did_you_mean(effect_id, known)}"
-            found.refuse((_SECTION, effect_id), problem, expected)
+            expected = f"one of {', '.join(effects_by_id)}{did_you_mean(effect_id, effects_by_id)}"
+            declared_effects.refuse((_SECTION, effect_id), problem, expected)
         else:
-            _read_all(found, effect, given)
-    return found
+            _read_all(declared_effects, effect, content)
+    return declared_effects
 
 
 def effect_entries(
-    data: Data, node: Node, n_cables: int, known: Mapping[str, Effect]
+    data: Data, node: Node, n_cables: int, effects_by_id: Mapping[str, Effect]
 ) -> Iterator[Entry]:
     """Yield the rows of the table of inputs for a section without faults."""
-    for place, declared in read_effects(data, n_cables, known).effects:
+    for place, declared in read_effects(data, n_cables, effects_by_id).effects:
         if declared.cable is not None:
             yield Entry(path_text((*place, "cable")), str(declared.cable), str(declared.cable))
-        for parameter in known[declared.id].parameters_for(n_cables):
+        for parameter in effects_by_id[declared.id].parameters_for(n_cables):
             at = (*place, parameter.name)
-            shown = format_SI(declared.parameters[parameter.name], parameter.dimension)
-            yield Entry(path_text(at), as_given(node.at(at[1:])), shown)
+            value_text = format_SI(declared.parameters[parameter.name], parameter.dimension)
+            yield Entry(path_text(at), as_given(node.at(at[1:])), value_text)
 
 
-def _read_all(found: Found, effect: Effect, data: Data) -> None:
+def _read_all(declared_effects: Found, effect: Effect, data: Data) -> None:
     place: Place = (_SECTION, effect.id)
     if not effect.takes_cable or not isinstance(data, list):
-        _read_one(found, effect, place, data)
+        _read_one(declared_effects, effect, place, data)
         return
     if not data:
-        found.refuse(place, "an empty list", "one mapping for each cable that has this effect")
+        declared_effects.refuse(
+            place, "an empty list", "one mapping for each cable that has this effect"
+        )
     for index, item in enumerate(data):
-        _read_one(found, effect, (*place, index), item)
+        _read_one(declared_effects, effect, (*place, index), item)
     seen: set[int] = set()
-    for each, declared in found.effects:
+    for earlier, declared in declared_effects.effects:
         if declared.id == effect.id and declared.cable is not None:
             if declared.cable in seen:
                 problem = f"cable {declared.cable} has this effect already"
-                found.refuse((*each, "cable"), problem, "each cable once")
+                declared_effects.refuse((*earlier, "cable"), problem, "each cable once")
             seen.add(declared.cable)
 
 
-def _read_one(found: Found, effect: Effect, place: Place, data: Data) -> None:
-    parameters = effect.parameters_for(found.n_cables)
+def _read_one(declared_effects: Found, effect: Effect, place: Place, data: Data) -> None:
+    parameters = effect.parameters_for(declared_effects.n_cables)
     keys = ["cable"] * effect.takes_cable + [parameter.name for parameter in parameters]
     if not isinstance(data, dict) or not data:
         problem = f"{'an empty mapping' if data == {} else describe(data)} is not a mapping"
-        found.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
+        declared_effects.refuse(place, f"{problem} with values", f"a mapping with {_listed(keys)}")
         return
     misspelt = set()  # what was probably meant by names that are no parameters
     for key in data:
         if key not in keys:
             problem = f"unknown parameter '{printable(key)}'"
             expected = f"one of {_listed(keys)}{did_you_mean(key, keys)}"
-            found.refuse((*place, key), problem, expected)
+            declared_effects.refuse((*place, key), problem, expected)
             misspelt.add(nearest_name(key, keys) or key)
     cable = None
     if effect.takes_cable and "cable" not in misspelt:
         at = (*place, "cable")
         if "cable" in data:
-            number = found.read(at, WholeNumber(1, found.n_cables), data["cable"])
+            number = declared_effects.read(
+                at, WholeNumber(1, declared_effects.n_cables), data["cable"]
+            )
             cable = None if number is None else int(number)
         else:
-            found.refuse(at, "is missing", f"the number of the cable, 1 to {found.n_cables}")
+            declared_effects.refuse(
+                at, "is missing", f"the number of the cable, 1 to {declared_effects.n_cables}"
+            )
     values = {
-        parameter.name: _value(found, (*place, parameter.name), data, parameter)
+        parameter.name: _value(declared_effects, (*place, parameter.name), data, parameter)
         for parameter in parameters
         if parameter.name not in misspelt
     }
-    found.effects.append((place, DeclaredEffect(effect.id, cable, values)))
+    declared_effects.effects.append((place, DeclaredEffect(effect.id, cable, values)))
 
 
-def _value(found: Found, place: Place, given: Mapping[str, Data], parameter: Parameter) -> float:
-    if parameter.name not in given:
+def _value(
+    declared_effects: Found, place: Place, content: Mapping[str, Data], parameter: Parameter
+) -> float:
+    if parameter.name not in content:
         if not parameter.is_optional:
-            found.refuse(place, "is missing", parameter.dimension.expected)
+            declared_effects.refuse(place, "is missing", parameter.dimension.expected)
         return parameter.neutral
-    return found.read(place, field_of(parameter), given[parameter.name]) or 0.0
+    return declared_effects.read(place, field_of(parameter), content[parameter.name]) or 0.0
 
 
 def field_of(parameter: Parameter) -> QuantityField:

@@ -50,9 +50,11 @@ def field_node(node: Node | None, name: str, section: BaseModel) -> Node | None:
         return None
     is_shorthand = isinstance(node.content, tuple)
     is_first = name == next(iter(type(section).model_fields))
-    found = node if is_shorthand and is_first else node.child(name)
-    is_empty = found is None or (isinstance(found.content, str) and found.data() is None)
-    return None if is_empty else found
+    part_node = node if is_shorthand and is_first else node.child(name)
+    is_empty = part_node is None or (
+        isinstance(part_node.content, str) and part_node.data() is None
+    )
+    return None if is_empty else part_node
 
 
 def _entries(
@@ -87,8 +89,8 @@ def _in_words(section: BaseModel, node: Node | None) -> str:
     """Return what a section in a list gives, in SI units."""
     if isinstance(section, OrientationSection):
         return str(section)
-    given = (entry for entry in all_entries(section, node) if entry.given != DEFAULT)
-    return ", ".join(f"{entry.field} {entry.value_SI}" for entry in given)
+    written = (entry for entry in all_entries(section, node) if entry.given != DEFAULT)
+    return ", ".join(f"{entry.field} {entry.value_SI}" for entry in written)
 
 
 def _in_SI(value: Any, dimension: Dimension) -> str:
@@ -106,7 +108,7 @@ def _in_SI(value: Any, dimension: Dimension) -> str:
 def _quantity_in(parts: tuple[Any, ...]) -> QuantityField | None:
     """Return the annotation of a field's numbers, wherever in its type it stands."""
     for part in parts:
-        found = part if isinstance(part, QuantityField) else _quantity_in(get_args(part))
-        if found is not None:
-            return found
+        part_node = part if isinstance(part, QuantityField) else _quantity_in(get_args(part))
+        if part_node is not None:
+            return part_node
     return None

@@ -38,8 +38,8 @@ def study_schema(effects: Mapping[str, Effect]) -> JsonSchema:
     sections = generated.pop("$defs")
     for section in _SHORTHANDS:
         whole = sections[section.__name__]
-        first = next(iter(whole["properties"].values()))
-        sections[section.__name__] = {"anyOf": [first, whole]}
+        shorthand = next(iter(whole["properties"].values()))
+        sections[section.__name__] = {"anyOf": [shorthand, whole]}
     schema: JsonSchema = _plain(generated, sections)
     schema["properties"]["effects"] = {
         "type": ["object", "null"],
@@ -60,7 +60,7 @@ def _plain(node: Any, sections: Mapping[str, Any]) -> Any:
     A field that may be left out may also stand with nothing after it.
     """
     if isinstance(node, list):
-        return [_plain(one, sections) for one in node]
+        return [_plain(item, sections) for item in node]
     if not isinstance(node, dict):
         return node
     if "$ref" in node:
@@ -84,11 +84,11 @@ def _or_nothing(schema: JsonSchema) -> JsonSchema:
     outside = {} if default is None or isinstance(default, dict) else {"default": default}
     outside |= {"x-unit": schema["x-unit"]} if "x-unit" in schema else {}
     inside = _without(schema, "default", "title")
-    nothing = {"type": "null"}
+    null = {"type": "null"}
     if not inside:
         return outside
     kinds = inside["anyOf"] if set(inside) <= {"anyOf", "x-unit"} else [inside]
-    return {"anyOf": [*(kind for kind in kinds if kind != nothing), nothing], **outside}
+    return {"anyOf": [*(kind for kind in kinds if kind != null), null], **outside}
 
 
 def _effect(effect: Effect) -> JsonSchema:

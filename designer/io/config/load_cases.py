@@ -64,18 +64,18 @@ def load_cases_fit(parts: Parts) -> Iterator[Fault]:
             "thickness in different directions, and all cables are solved with one"
         )
         yield parts.fault("selection.groups", problem, "load_cases or groups, not both")
-    first: dict[str, int] = {}
+    first_use: dict[str, int] = {}
     for index, case in enumerate(cases):
         if isinstance(case, dict):
-            yield from _case_fits(parts, index, case, first)
+            yield from _case_fits(parts, index, case, first_use)
 
 
 def _case_fits(
-    parts: Parts, index: int, case: Mapping[str, object], first: dict[str, int]
+    parts: Parts, index: int, case: Mapping[str, object], first_use: dict[str, int]
 ) -> Iterator[Fault]:
     name, lost = case.get("name"), case.get("cable_lost")
-    if isinstance(name, str) and first.setdefault(name, index) != index:
-        problem = f"load_cases[{first[name]}] has the name '{name}' already"
+    if isinstance(name, str) and first_use.setdefault(name, index) != index:
+        problem = f"load_cases[{first_use[name]}] has the name '{name}' already"
         yield parts.fault(_CASES, problem, "a name of its own", index, "name")
     if isinstance(lost, int) and not isinstance(lost, bool) and lost > parts.n_cables:
         problem = f"there is no cable {lost}, the robot has {parts.n_cables}"
@@ -84,10 +84,12 @@ def _case_fits(
         yield parts.fault(
             _CASES, "too few cables are left", "a robot with more", index, "cable_lost"
         )
-    for own in ("safety_factor", "termination_efficiency"):
-        if case.get(own) is not None and parts.raw("selection") is None:
+    for factor_name in ("safety_factor", "termination_efficiency"):
+        if case.get(factor_name) is not None and parts.raw("selection") is None:
             problem = "there is no selection whose figure it could replace"
-            yield parts.fault(_CASES, problem, "a selection, or a case without it", index, own)
+            yield parts.fault(
+                _CASES, problem, "a selection, or a case without it", index, factor_name
+            )
     region = case.get("region")
     if parts.is_planar and isinstance(region, dict) and ("prism" in region or "box" in region):
         problem = "is a solid region, but the robot is planar"

@@ -38,9 +38,9 @@ def _convention(value: object) -> str:
 def only_one_of(value: object, names: tuple[str, ...] = FORMS, owner: str = "the pose") -> object:
     """Return a mapping unchanged, or refuse it if it has several of these fields."""
     if isinstance(value, dict):
-        found = [name for name in names if value.get(name) is not None]
-        if len(found) > 1:
-            raise refusal(f"{owner} has {' and '.join(found)}", f"one of {', '.join(names)}")
+        given_kinds = [name for name in names if value.get(name) is not None]
+        if len(given_kinds) > 1:
+            raise refusal(f"{owner} has {' and '.join(given_kinds)}", f"one of {', '.join(names)}")
     return value
 
 
@@ -102,7 +102,7 @@ class OrientationRangeSection(Section):
     @property
     def bounds_rad(self) -> FloatArray:
         """Lowest and highest rotation vector (2, 3) [rad]."""
-        return np.array([one or (0.0, 0.0) for one in (self.rx, self.ry, self.rz)]).T
+        return np.array([component or (0.0, 0.0) for component in (self.rx, self.ry, self.rz)]).T
 
 
 def rotation_vector_rad(

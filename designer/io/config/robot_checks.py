@@ -43,9 +43,9 @@ def distinct_cables(parts: Parts) -> Iterator[Fault]:
             return
         attachments = np.zeros_like(anchors)
     ends = np.hstack([anchors, attachments])
-    near = _COINCIDENT * np.linalg.norm(np.ptp(ends, axis=0))
+    tolerance_m = _COINCIDENT * np.linalg.norm(np.ptp(ends, axis=0))
     for first, second in combinations(range(len(ends)), 2):
-        if np.linalg.norm(ends[first] - ends[second]) <= near:
+        if np.linalg.norm(ends[first] - ends[second]) <= tolerance_m:
             alike = ", and so are their attachments" if attachments.any() else ""
             problem = f"is the same point as robot.anchors[{first}]{alike}"
             yield parts.fault(_ANCHORS, problem, "distinct cables", second)
@@ -88,8 +88,8 @@ def attachments_fit(parts: Parts) -> Iterator[Fault]:
         expected = "one attachment for each anchor, in their order"
         yield parts.fault(_ATTACHMENTS, problem, expected)
     if rank(attachments) < (1 if parts.is_planar else 2):
-        where = "on one line" if rank(attachments) else "at one point"
-        problem = f"all attachments lie {where}, so nothing keeps the platform from turning"
+        place = "on one line" if rank(attachments) else "at one point"
+        problem = f"all attachments lie {place}, so nothing keeps the platform from turning"
         yield parts.fault(_ATTACHMENTS, problem, "attachments apart, or none for a point mass")
 
 
@@ -135,9 +135,9 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
     if force is None or mass_kg is None:
         return
     mass_kg += sum(
-        one.parameters.get("offset_kg", 0.0)
-        for _, one in parts.declared.effects
-        if one.id == "platform_mass"
+        single.parameters.get("offset_kg", 0.0)
+        for _, single in parts.declared.effects
+        if single.id == "platform_mass"
     )
     weight = mass_kg * STANDARD_GRAVITY_M_PER_S2 * parts.down / np.linalg.norm(parts.down)
     moment, lever = (
@@ -147,8 +147,8 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
         )
     )
     size_N = 1e-9 * float(np.linalg.norm(weight))  # counts as none
-    left = (force + weight, moment + np.cross(lever, weight))
-    if all(np.linalg.norm(part) <= size_N for part in left):
+    imbalance = (force + weight, moment + np.cross(lever, weight))
+    if all(np.linalg.norm(part) <= size_N for part in imbalance):
         problem = "cancels the platform's weight, so there is nothing for the cables to hold"
         yield parts.fault("robot.platform.wrench.force", problem, "a load that is left")
 
@@ -247,11 +247,11 @@ def _turns(parts: Parts) -> Iterator[tuple[str, FloatArray]]:
             rotation_vector=pose.rotation_vector, quaternion=pose.quaternion, euler=pose.euler
         )
         yield "pose", turn.turn_rad[None]
-    one, several, between = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
-    if one is not None:
-        yield "workspace.orientation", one.turn_rad[None]
+    single, several, between = (parts.read(f"workspace.{kind}") for kind in ORIENTATION_KINDS)
+    if single is not None:
+        yield "workspace.orientation", single.turn_rad[None]
     if several is not None:
-        yield "workspace.orientations", np.array([each.turn_rad for each in several])
+        yield "workspace.orientations", np.array([section.turn_rad for section in several])
     if between is not None:
         yield "workspace.orientation_range", between.bounds_rad
     moment = parts.array("robot.platform.wrench.moment")

@@ -242,8 +242,8 @@ def _of_one_kind(value: object) -> object:
         raise refusal(f"{describe(value)} is not a mapping", f"one of {_KINDS} in it")
     kinds = _kinds_named(value)
     if len(kinds) != 1:
-        found = " and ".join(kinds) or "none of the kinds"
-        raise refusal(f"the region has {found}", f"exactly one of {_KINDS}")
+        kinds_text = " and ".join(kinds) or "none of the kinds"
+        raise refusal(f"the region has {kinds_text}", f"exactly one of {_KINDS}")
     return value
 
 

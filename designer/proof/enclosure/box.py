@@ -155,8 +155,8 @@ def _bend(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> bool
         p = around(boxes.pull[at, i], reach)
         ex, ey, ez = get(work.at[i, EX]), get(work.at[i, EY]), get(work.at[i, EZ])
         rx, ry, rz = get(work.at[i, RX]), get(work.at[i, RY]), get(work.at[i, RZ])
-        found = enclose(p, add(square(ex), square(ey)), ez, scene.kappa)
-        worked, length, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D = found
+        enclosure = enclose(p, add(square(ex), square(ey)), ez, scene.kappa)
+        worked, length, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D = enclosure
         if not worked:
             return False
         row = work.cable[i]
@@ -195,9 +195,9 @@ def _level_slope(work: Work, i: int, row: int, d: int) -> Interval:
     if row == 4:
         return add(multiply(get(s[RZ]), get(a[EX])), multiply(get(a[RZ]), get(s[EX])))
     if row == 5:
-        one = add(multiply(get(s[RX]), get(a[EY])), multiply(get(a[RX]), get(s[EY])))
+        cable = add(multiply(get(s[RX]), get(a[EY])), multiply(get(a[RX]), get(s[EY])))
         two = add(multiply(get(s[RY]), get(a[EX])), multiply(get(a[RY]), get(s[EX])))
-        return subtract(one, two)
+        return subtract(cable, two)
     return 0.0, 0.0
 
 
@@ -289,24 +289,24 @@ def _slopes(scene: Scene, boxes: Boxes, at: int, share: float, work: Work) -> No
                 bent = share * boxes.bent[at, n] + scene.fuzz
                 total = scale(around(-slope, bent), c)
             for i in range(n):
-                one = work.cable[i]
+                cable = work.cable[i]
                 level, lift = get(work.level[i, row]), get(work.lift[i, row])
                 term = add(
                     scale(level, work.P[i, d]),
-                    multiply(get(one[PULL]), _level_slope(work, i, row, d)),
+                    multiply(get(cable[PULL]), _level_slope(work, i, row, d)),
                 )
                 if row >= 2 and row < 5:
-                    up_slope = add(scale(get(one[V_P]), work.P[i, d]), along(work, i, d, V))
+                    up_slope = add(scale(get(cable[V_P]), work.P[i, d]), along(work, i, d, V))
                     term = add(term, multiply(up_slope, lift))
-                    term = add(term, multiply(get(one[V]), _lift_slope(work, i, row, d)))
+                    term = add(term, multiply(get(cable[V]), _lift_slope(work, i, row, d)))
                 total = add(total, term)
             put(work.of_x[j, d], total)
         for e in range(m):
             total = point(1.0 if e == j else 0.0)
             for i in range(n):
-                one = work.cable[i]
+                cable = work.cable[i]
                 level, lift = get(work.level[i, row]), get(work.lift[i, row])
-                slope = add(level, multiply(get(one[V_P]), lift))
+                slope = add(level, multiply(get(cable[V_P]), lift))
                 total = subtract(total, scale(slope, work.Z[i, e]))
             put(work.of_u[j, e], total)
 

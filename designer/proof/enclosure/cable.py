@@ -129,10 +129,10 @@ def _length(p: float, X2: float, D: float, kappa: float, side: float) -> float:
     """Return a number proved to be above (side 1) or below (-1) the length; NaN where none was."""
     length = rough_length(p, X2, D, kappa)
     for margin in _MARGINS:
-        tried = length * (1.0 + side * margin)
-        rest = _closure(tried, p, X2, D, kappa)
-        if (side > 0.0 and rest[1] <= 0.0) or (side < 0.0 and rest[0] >= 0.0 and tried > 0.0):
-            return tried
+        trial = length * (1.0 + side * margin)
+        rest = _closure(trial, p, X2, D, kappa)
+        if (side > 0.0 and rest[1] <= 0.0) or (side < 0.0 and rest[0] >= 0.0 and trial > 0.0):
+            return trial
     return math.nan
 
 
@@ -159,35 +159,49 @@ def enclose(
     l, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D : Interval
         Per weight per length. They hold everywhere in the box.
     """
-    none = point(math.nan)
-    failed = (False, none, none, none, none, none, none, none, none, none, none, none, none)
+    unknown = point(math.nan)
+    failed = (
+        False,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+        unknown,
+    )
     if not (p[0] >= PULL_FLOOR and p[1] < math.inf):
         return failed
-    one, high = point(1.0), absolute(D)
+    unit, high = point(1.0), absolute(D)
     length = (
         _length(p[1], X2[0], high[0], kappa, -1.0),
         _length(p[0], X2[1], high[1], kappa, 1.0),
     )
     if not (length[0] > 0.0 and length[1] < math.inf):
         return failed
-    theta = scale(subtract(divide(one, p), scale(length, kappa)), 0.5)
+    theta = scale(subtract(divide(unit, p), scale(length, kappa)), 0.5)
     if not (theta[0] > 0.0 and theta[1] <= LARGEST_THETA):
         return failed
     S_low, C1_low = sag(theta[0])
     S_high, C1_high = sag(theta[1])
     S, C1 = (S_low[0], S_high[1]), (C1_low[0], C1_high[1])
-    A_low = divide(add(one, C1_high), point(theta[1]))
-    A_high = divide(add(one, C1_low), point(theta[0]))
+    A_low = divide(add(unit, C1_high), point(theta[1]))
+    A_high = divide(add(unit, C1_low), point(theta[0]))
     A = A_low[0], A_high[1]
-    B_low = divide(one, multiply(square(point(theta[1])), S_high))
-    B_high = divide(one, multiply(square(point(theta[0])), S_low))
+    B_low = divide(unit, multiply(square(point(theta[1])), S_high))
+    B_high = divide(unit, multiply(square(point(theta[0])), S_low))
     B = B_low[0], B_high[1]
-    r = add(one, divide(scale(length, kappa), scale(theta, 2.0)))
+    r = add(unit, divide(scale(length, kappa), scale(theta, 2.0)))
     r2 = square(r)
     across = divide(S, r2)  # (2 p sinh θ)²
     steep = divide(r2, S)
     y = scale(multiply(length, A), 0.5)
-    q = divide(one, add(one, scale(y, kappa)))
+    q = divide(unit, add(unit, scale(y, kappa)))
     q2 = square(q)
     y_p = multiply(length, steep)
     y_l = add(scale(A, 0.5), scale(scale(multiply(length, B), kappa), 0.25))
@@ -199,7 +213,7 @@ def enclose(
     l_X2 = divide(across, n)
     l_D = divide(scale(multiply(D, q2), 2.0), n)
     Dq2 = multiply(D, q2)
-    half = scale(add(one, scale(scale(Dq2, kappa), 0.5)), 0.5)
+    half = scale(add(unit, scale(scale(Dq2, kappa), 0.5)), 0.5)
     qA = scale(multiply(q, A), 0.5)
     v = subtract(multiply(D, qA), scale(length, 0.5))
     lift = subtract(scale(steep, 2.0), scale(scale(l_p, kappa), 0.5))
@@ -207,7 +221,7 @@ def enclose(
     v_X2 = negate(multiply(half, l_X2))
     v_D = subtract(qA, multiply(half, l_D))
     t = add(y, scale(multiply(high, q), 0.5))
-    part = subtract(one, scale(scale(multiply(high, q2), kappa), 0.5))
+    part = subtract(unit, scale(scale(multiply(high, q2), kappa), 0.5))
     t_p = multiply(part, add(y_p, multiply(y_l, l_p)))
     t_X2 = multiply(part, multiply(y_l, l_X2))
     t_D = add(multiply(part, multiply(y_l, l_D)), scale(multiply(q, sign(D)), 0.5))

@@ -83,8 +83,8 @@ def divide(a: Interval, b: Interval) -> Interval:
 def square(a: Interval) -> Interval:
     """Return a²; not below zero."""
     least = 0.0 if a[0] <= 0.0 <= a[1] else min(abs(a[0]), abs(a[1]))
-    most = max(abs(a[0]), abs(a[1]))
-    return max(down(least * least), 0.0), up(most * most)
+    largest = max(abs(a[0]), abs(a[1]))
+    return max(down(least * least), 0.0), up(largest * largest)
 
 
 @exact

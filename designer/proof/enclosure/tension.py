@@ -139,15 +139,15 @@ def _rise(scene: Scene, boxes: Boxes, at: int, work: Work, slope_u: float, i: in
             flat = up(flat + up(abs(work.tilt[d]) * half[d]))
     for j in range(work.U.size):
         spread = up(spread + up(up(slope_u * abs(work.Z[i, j])) * work.U[j]))
-    best, where = -np.inf, 0
+    best, worst_corner = -np.inf, 0
     for c in range(corners.shape[0]):
         a = scale(point(work.tilt[0]), corners[c, 0])
         value = add(a, scale(point(work.tilt[1]), corners[c, 1]))[1]
         if value > best:
-            best, where = value, c
+            best, worst_corner = value, c
     rounding = up(scene.fuzz * up(abs(work.tilt[0]) + abs(work.tilt[1])))
     at_corner = up(best + flat)
-    return up(up(at_corner + spread) + rounding), at_corner, where
+    return up(up(at_corner + spread) + rounding), at_corner, worst_corner
 
 
 @exact
@@ -170,14 +170,14 @@ def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArr
         for d in range(k):
             slope = add(scale(t_p, work.P[i, d]), along(work, i, d, T))
             _set_tilt(work, d, slope, 1.0)
-        rise, at_corner, where = _rise(scene, boxes, at, work, size(t_p), i)
-        most = up(work.start_t[i] + rise)
-        if not most <= worst:
-            worst = most
+        rise, at_corner, worst_corner = _rise(scene, boxes, at, work, size(t_p), i)
+        highest = up(work.start_t[i] + rise)
+        if not highest <= worst:
+            worst = highest
             out[CABLE] = i
         if work.start_t[i] + at_corner > estimate:
             estimate = work.start_t[i] + at_corner
-            out[TOLD], out[TOLD + 1] = boxes.corners[at, where]
+            out[TOLD], out[TOLD + 1] = boxes.corners[at, worst_corner]
             for d in range(2, k):
                 out[TOLD + d] = boxes.half[at, d] if work.tilt[d] > 0.0 else -boxes.half[at, d]
         if scene.least > 0.0:
@@ -190,9 +190,9 @@ def bound_tension(scene: Scene, boxes: Boxes, at: int, work: Work, out: FloatArr
             is_tight = is_tight and left >= least
             spare = min(spare, 0.5 * (left / least - 1.0))
         if scene.sag < np.inf:
-            most = _most_sag(work, i)
-            is_tight = is_tight and most <= scene.sag
-            spare = min(spare, scene.sag / most - 1.0)
+            highest = _most_sag(work, i)
+            is_tight = is_tight and highest <= scene.sag
+            spare = min(spare, scene.sag / highest - 1.0)
     out[SPARE] = spare
     out[ESTIMATE] = estimate / scene.strength
     if is_tight and worst < np.inf:

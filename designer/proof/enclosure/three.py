@@ -148,10 +148,10 @@ def _root(scene: Scene, work: Work, c: Interval, start: float, side: float) -> f
         X2, D = _squares(work, i), work.at[i, EZ]
         mu = work.share[i, 0] if side > 0.0 else work.share[i, 1]
         wide, drop = (X2[1], D[0]) if side > 0.0 else (X2[0], D[1])
-        found = enclose(multiply(point(s), point(mu)), point(wide), point(drop), scene.kappa)
-        if not found[0]:
+        enclosure = enclose(multiply(point(s), point(mu)), point(wide), point(drop), scene.kappa)
+        if not enclosure[0]:
             return math.nan
-        total = add(total, found[5])
+        total = add(total, enclosure[5])
     if (side > 0.0 and total[0] >= 0.0) or (side < 0.0 and total[1] <= 0.0):
         return s
     return math.nan
@@ -171,8 +171,8 @@ def _top_tension(p: Interval, X2: Interval, D: Interval, kappa: float) -> float:
             at = point(p[1])
         elif turn > 0 and slope[1] <= 0.0:
             at = point(p[0])
-        found = enclose(at, point(X2[1]), point(D[1]), kappa)
-        if not found[0]:
+        enclosure = enclose(at, point(X2[1]), point(D[1]), kappa)
+        if not enclosure[0]:
             return math.inf
-        worst, slope = found[9][1], found[10]
+        worst, slope = enclosure[9][1], enclosure[10]
     return worst

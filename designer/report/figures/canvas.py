@@ -175,8 +175,10 @@ def names_of(points_m: FloatArray, apart_m: float) -> list[tuple[str, FloatArray
     """
     groups: dict[int, list[int]] = {}
     for index, point in enumerate(points_m):
-        near = (first for first in groups if np.linalg.norm(points_m[first] - point) < apart_m)
-        groups.setdefault(next(near, index), []).append(index)
+        groups_near = (
+            first for first in groups if np.linalg.norm(points_m[first] - point) < apart_m
+        )
+        groups.setdefault(next(groups_near, index), []).append(index)
     return [
         (", ".join(f"A{index + 1}" for index in group), points_m[group].mean(axis=0))
         for group in groups.values()
@@ -192,10 +194,10 @@ def svg(figure: Figure, key: str, title: str) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     stream = io.StringIO()
-    nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+    no_metadata = dict.fromkeys(("Creator", "Date", "Format", "Type"))
     sheet = figure.canvas
     assert isinstance(sheet, FigureCanvasSVG)
-    sheet.print_svg(stream, metadata=nothing)  # `savefig` would draw everything twice
+    sheet.print_svg(stream, metadata=no_metadata)  # `savefig` would draw everything twice
     text = stream.getvalue()
     return _standalone(text[text.index("<svg") :].strip(), key, title, _words(figure))
 
@@ -204,8 +206,8 @@ def _words(figure: Figure) -> str:
     """All that is written on a figure beside bare numbers, for those who cannot see it."""
     from matplotlib.text import Text
 
-    found = [artist for artist in figure.findobj(Text) if artist.get_visible()]
-    words = dict.fromkeys(str(artist.get_text()) for artist in found if isinstance(artist, Text))
+    texts = [artist for artist in figure.findobj(Text) if artist.get_visible()]
+    words = dict.fromkeys(str(artist.get_text()) for artist in texts if isinstance(artist, Text))
     return "; ".join(word for word in words if not re.fullmatch(r"[−\d.]*", word))
 
 

@@ -26,7 +26,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     if profile is None:
         return None
     start, top = _window(profile), _top(profile, focus)
-    shown = "Needed diameter from the centre of the region through the worst pose to the edge"
+    diameters = "Needed diameter from the centre of the region through the worst pose to the edge"
     with canvas.drawing():
         figure = canvas.sheet(62.0, width_mm=palette.HALF_WIDTH_MM)
         axes = figure.subplots()
@@ -49,27 +49,27 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
         axes.set_xlabel("distance to the exit points' hull [m]")
-        return canvas.svg(figure, "edge", shown)
+        return canvas.svg(figure, "edge", diameters)
 
 
 def _window(profile: EdgeProfile) -> float:
     """Where the horizontal axis starts, so that the last stretch has room [m]."""
-    whole = float(profile.distance_m[0])
+    reach_m = float(profile.distance_m[0])
     marks = [profile.region_distance_m, profile.limit_distance_m]
-    stretch = max(6.0 * max((m for m in marks if m is not None), default=0.0), 0.3 * whole)
-    return min(max(stretch, 1.3 * profile.focus_distance_m), whole)
+    stretch = max(6.0 * max((m for m in marks if m is not None), default=0.0), 0.3 * reach_m)
+    return min(max(stretch, 1.3 * profile.focus_distance_m), reach_m)
 
 
 def _top(profile: EdgeProfile, focus: Focus) -> float:
     """Where the vertical axis ends: the diameter grows without bound [mm]."""
-    shown = np.concatenate([profile.field.diameter_m, profile.field.massless_diameter_m])
-    shown = shown[np.isfinite(shown)]
-    if len(shown) == 0:
+    diameters = np.concatenate([profile.field.diameter_m, profile.field.massless_diameter_m])
+    diameters = diameters[np.isfinite(diameters)]
+    if len(diameters) == 0:
         return 1.0
-    middle, worst = float(np.median(shown)), float(focus.field.diameter_m)
+    middle, worst = float(np.median(diameters)), float(focus.field.diameter_m)
     if not np.isfinite(worst) or worst > 4.0 * middle:
         worst = 1.3 * middle
-    return 1e3 * min(1.15 * float(shown.max()), 2.0 * worst)
+    return 1e3 * min(1.15 * float(diameters.max()), 2.0 * worst)
 
 
 def _curves(axes: Axes, profile: EdgeProfile, start: float, top: float) -> None:
@@ -103,8 +103,8 @@ def _zones(axes: Axes, profile: EdgeProfile, start: float) -> None:
         return
     axes.axvline(end, color=palette.WARNING, linewidth=0.9)
     distance = f"{canvas.significant(end, 2 if end < 100.0 else 3)} m"
-    none = "no cable holds" if profile.is_proved else "none found"
-    text = f"{none} within {distance} of the edge"
+    no_cable = "no cable holds" if profile.is_proved else "none found"
+    text = f"{no_cable} within {distance} of the edge"
     if profile.holds_again:
         text = f"first failure, {distance} from the edge"
     _upright(axes, end, text, palette.WARNING, 3.0 if end > 0.02 * start else -3.0)

@@ -38,29 +38,29 @@ def candidates_chart(selection: SelectionResult) -> str:
     first; then those of which no section holds. Where nothing was chosen, the grades outside the
     study's list that would hold follow. The figure says how many more there are than it shows.
     """
-    others = rank(selection.alternatives)[: _MOST_GRADES // 2]
-    own = rank(selection.outcomes)[: _MOST_GRADES - len(others)]
-    shown = own + others
-    left_out = len(selection.outcomes) + len(selection.alternatives) - len(shown)
+    alternatives = rank(selection.alternatives)[: _MOST_GRADES // 2]
+    allowed = rank(selection.outcomes)[: _MOST_GRADES - len(alternatives)]
+    outcomes = allowed + alternatives
+    left_out = len(selection.outcomes) + len(selection.alternatives) - len(outcomes)
     with canvas.drawing():
-        figure = canvas.sheet(20.0 + 4.2 * max(len(shown), 1))
+        figure = canvas.sheet(20.0 + 4.2 * max(len(outcomes), 1))
         axes = figure.subplots()
-        right = _right_end(shown)
-        axes.set(xlim=(0.0, right), ylim=(len(shown) - 0.4, -0.6))
-        for row, outcome in enumerate(shown):
+        right = _right_end(outcomes)
+        axes.set(xlim=(0.0, right), ylim=(len(outcomes) - 0.4, -0.6))
+        for row, outcome in enumerate(outcomes):
             is_chosen = selection.chosen is not None and outcome.best is selection.chosen
             _row(axes, row, outcome, right)
             _ending(axes, row, outcome, is_chosen=is_chosen)
             if is_chosen:
                 axes.axhspan(row - 0.5, row + 0.5, color=palette.SAG, alpha=0.12, linewidth=0)
-        names = [o.grade.id for o in own] + [f"{o.grade.id} *" for o in others]
-        axes.set_yticks(range(len(shown)), names)
+        names = [o.grade.id for o in allowed] + [f"{o.grade.id} *" for o in alternatives]
+        axes.set_yticks(range(len(outcomes)), names)
         axes.tick_params(axis="y", length=0)
         axes.spines["left"].set_visible(False)
         more = f"; {left_out} more grades are not shown" if left_out > 0 else ""
         axes.set_xlabel(f"diameter [mm]{more}")
         canvas.grid_lines(axes, "x")
-        _candidates_legend(figure, shown)
+        _candidates_legend(figure, outcomes)
         return canvas.svg(figure, "candidates", "Sizes of each grade and what it would need")
 
 
@@ -80,13 +80,13 @@ def rank(outcomes: Sequence[GradeOutcome]) -> list[GradeOutcome]:
 def _right_end(outcomes: Sequence[GradeOutcome]) -> float:
     """Right end of the axis: thick sizes that nobody needs may run out of the chart [mm]."""
     needs = [o.continuous_diameter_m for o in outcomes if np.isfinite(o.continuous_diameter_m)]
-    tried = [c.size.diameter_m for o in outcomes for c in _marked(o)]
+    diameters = [c.size.diameter_m for o in outcomes for c in _marked(o)]
     best = [o.best.size.diameter_m for o in outcomes if o.best is not None]
     sold = [o.grade.thickest.diameter_m for o in outcomes]
     if not needs:
         return 1.05e3 * max(sold, default=1e-3)
-    wanted = max(2.2 * float(np.median(needs)), 1.1 * max(needs), 1.1 * max(best, default=0.0))
-    return 1e3 * min(1.05 * max(needs + tried + sold), wanted)
+    widest = max(2.2 * float(np.median(needs)), 1.1 * max(needs), 1.1 * max(best, default=0.0))
+    return 1e3 * min(1.05 * max(needs + diameters + sold), widest)
 
 
 def _row(axes: Axes, row: int, outcome: GradeOutcome, right: float) -> None:
@@ -142,8 +142,8 @@ def _ending(axes: Axes, row: int, outcome: GradeOutcome, *, is_chosen: bool) -> 
     )  # fmt: skip
 
 
-def _candidates_legend(figure: Figure, shown: Sequence[GradeOutcome]) -> None:
-    one_each = {class_of(outcome.grade): outcome.grade for outcome in shown}
+def _candidates_legend(figure: Figure, outcomes: Sequence[GradeOutcome]) -> None:
+    one_each = {class_of(outcome.grade): outcome.grade for outcome in outcomes}
     need: Style = {"marker": "|", "markersize": 8, "markeredgewidth": 1.6, "linestyle": "none"}
     looks: list[tuple[str, Style]] = [
         (f"sizes sold, {kind}", {"color": _pale(one_each[kind]), "linewidth": 5.0})
@@ -181,15 +181,15 @@ def pareto_chart(selection: SelectionResult) -> str | None:
     Sizes that no other beats have a dark rim. None where there is one objective only, or nothing
     holds.
     """
-    first, *others = selection.objectives
-    if not others or not selection.front:
+    first, *alternatives = selection.objectives
+    if not alternatives or not selection.front:
         return None
     up = _Along.of(first, selection)
     with canvas.drawing():
         figure = canvas.sheet(60.0)
-        panels = figure.subplots(1, len(others), sharey=True, squeeze=False)[0]
-        for axes, other in zip(panels, others, strict=True):
-            _panel(axes, selection, _Along.of(other, selection), up)
+        panels = figure.subplots(1, len(alternatives), sharey=True, squeeze=False)[0]
+        for axes, label_place in zip(panels, alternatives, strict=True):
+            _panel(axes, selection, _Along.of(label_place, selection), up)
         panels[0].set_title(up.label, loc="left")
         _pareto_legend(figure, selection)
         return canvas.svg(figure, "pareto", "Sizes that hold, by what they are compared by")
@@ -202,13 +202,13 @@ def _holding(selection: SelectionResult) -> list[Candidate]:
 def _panel(axes: Axes, selection: SelectionResult, across: _Along, up: _Along) -> None:
     holding, front = _holding(selection), list(selection.front)
     size = _BEATEN["markersize"] * (1.5 if len(holding) < 60 else 1.0)
-    for some, style in (
+    for group, style in (
         ([c for c in holding if c not in front], _BEATEN | {"markersize": size}),
         (front[1:], _FRONT),
         (front[:1], _CHOSEN),
     ):
         for kind in CLASSES:
-            points = _points([c for c in some if class_of(c.grade) == kind], across, up)
+            points = _points([c for c in group if class_of(c.grade) == kind], across, up)
             axes.plot(*points.T, **palette.look_of(kind), **style)
     axes.set_xlabel(across.label)
     _scales(axes, [*_points(holding, across, up).T])
@@ -218,19 +218,19 @@ def _panel(axes: Axes, selection: SelectionResult, across: _Along, up: _Along) -
 
 def _number(axes: Axes, front: list[Candidate], across: _Along, up: _Along) -> None:
     """Write the row of the table beside each point, as far as there is room."""
-    taken: list[FloatArray] = []
+    label_places: list[FloatArray] = []
     for number, candidate in enumerate(front[:MOST_ROWS], start=1):
         for x, y in _points([candidate], across, up):
             place = axes.transData.transform((x, y))
-            if any(np.hypot(*(place - other)) < 14.0 for other in taken):
+            if any(np.hypot(*(place - label_place)) < 14.0 for label_place in label_places):
                 continue
-            taken.append(place)
+            label_places.append(place)
             style = {"ha": "right", "fontweight": "bold", "path_effects": canvas.halo()}
             canvas.note(axes, f"{number}", (x, y), (-5, 5), **style)
 
 
 def _points(candidates: list[Candidate], across: _Along, up: _Along) -> FloatArray:
-    values = [[c.figures.value(one.objective) for one in (across, up)] for c in candidates]
+    values = [[c.figures.value(axis.objective) for axis in (across, up)] for c in candidates]
     points = np.array(values, dtype=np.float64).reshape(-1, 2) * [across.scale, up.scale]
     return points[np.isfinite(points).all(axis=1) & (points > 0.0).all(axis=1)]
 
@@ -252,11 +252,11 @@ def _scales(axes: Axes, values: list[FloatArray]) -> None:
 
 
 def _pareto_legend(figure: Figure, selection: SelectionResult) -> None:
-    there = {class_of(c.grade) for c in _holding(selection)}
+    classes = {class_of(c.grade) for c in _holding(selection)}
     looks: list[tuple[str, Style]] = [
         (kind, _BEATEN | palette.look_of(kind) | {"markersize": 5.0})
         for kind in CLASSES
-        if kind in there
+        if kind in classes
     ]
     looks.append(("chosen", _CHOSEN | palette.look_of(class_of(selection.front[0].grade))))
     if len(selection.front) > 1:

@@ -48,14 +48,14 @@ def _served_range(served: Served) -> tuple[float, float]:
     """Horizontal limits [mm]; the last few poses near the boundary may need any diameter."""
     sag = served.needed_m, served.diameter_m, served.share
     straight = served.massless_needed_m, served.massless_diameter_m, served.massless_share
-    both = np.concatenate([sag[1], straight[1]])
-    if len(both) == 0:
+    diameters = np.concatenate([sag[1], straight[1]])
+    if len(diameters) == 0:
         return 0.0, 1.0
-    most = [served.needed_m, served.massless_needed_m]
+    needed = [served.needed_m, served.massless_needed_m]
     for k, (needed_m, diameter_m, share) in enumerate((sag, straight)):
         if not np.isfinite(needed_m) and len(diameter_m) > 0:
-            most[k] = 1.4 * float(diameter_m[np.searchsorted(share, 0.97 * share[-1])])
-    low, high = 1e3 * float(both.min()), 1e3 * float(np.nanmax(most))
+            needed[k] = 1.4 * float(diameter_m[np.searchsorted(share, 0.97 * share[-1])])
+    low, high = 1e3 * float(diameters.min()), 1e3 * float(np.nanmax(needed))
     room = max(0.06 * (high - low), 0.01 * high)
     return max(low - 3.0 * room, 0.0), high + room
 
@@ -76,10 +76,10 @@ def _curve(
     canvas.note(axes, name, place, (6 * side, -4 * side), **style)
 
 
-def _needed(axes: Axes, needed_m: float, what: str, colour: str, side: int) -> None:
+def _needed(axes: Axes, needed_m: float, label: str, colour: str, side: int) -> None:
     if np.isfinite(needed_m):
         axes.axvline(1e3 * needed_m, color=colour, linewidth=0.9, linestyle=canvas.DASHES)
-        text = f"{what}: {canvas.significant(1e3 * needed_m, 3)} mm"
+        text = f"{label}: {canvas.significant(1e3 * needed_m, 3)} mm"
         style: Style = {"ha": "left" if side > 0 else "right", "va": "bottom", "color": colour}
         canvas.note(axes, text, (1e3 * needed_m, 3.0), (3 * side, 0), rotation=90, **style)
 
@@ -110,8 +110,8 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
         axes.plot(x, y, color=palette.SAG, linewidth=1.0, alpha=0.6)
         axes.plot(x, y, **canvas.DOTS, markersize=4.2, color=palette.SAG)
         _name_sizes(axes, usable, x, y)
-        for k, one in enumerate(usable.sizes):
-            if chosen is not None and one.size is chosen.size:
+        for k, size in enumerate(usable.sizes):
+            if chosen is not None and size.size is chosen.size:
                 ring = canvas.RING | {"markerfacecolor": "none", "markeredgewidth": 1.2}
                 axes.plot(x[k], y[k], **ring, markersize=8.0)
                 style = {"ha": "center", "va": "bottom", "fontweight": "bold"}
@@ -125,10 +125,10 @@ def usable_chart(usable: Usable, chosen: Candidate | None) -> str:
 
 def _usable_range(usable: Usable, diameters: FloatArray) -> tuple[float, float]:
     """From the last size before any serves to a few above the one from which on all serve all."""
-    serving = [k for k, one in enumerate(usable.sizes) if one.fraction > 0.0]
+    serving = [k for k, size in enumerate(usable.sizes) if size.fraction > 0.0]
     low = diameters[max(serving[0] - 1, 0)] if serving else diameters[0]
-    whole = usable.first_for_good
-    high = diameters[-1] if whole is None else min(1.5 * diameters[whole], diameters[-1])
+    serves_all = usable.first_for_good
+    high = diameters[-1] if serves_all is None else min(1.5 * diameters[serves_all], diameters[-1])
     room = max(0.05 * (high - low), 0.02 * high)
     return low - room, high + room
 
@@ -137,14 +137,14 @@ def _name_sizes(axes: Axes, usable: Usable, x: FloatArray, y: FloatArray) -> Non
     """Name the sizes along the curve, as far as there is room."""
     left, right = axes.get_xlim()
     last = -1.0
-    for one, at, share in zip(usable.sizes, x, y, strict=True):
+    for size, at, share in zip(usable.sizes, x, y, strict=True):
         place = (at - left) / (right - left)
         if not 0.0 <= place <= 1.0 or place - last < 0.03:
             continue
         last = place
         side, va = (-1, "top") if share > 50.0 else (1, "bottom")
         canvas.note(
-            axes, one.size.id, (at, share), (3, 4 * side), rotation=60 * side, ha="left", va=va,
+            axes, size.size.id, (at, share), (3, 4 * side), rotation=60 * side, ha="left", va=va,
             rotation_mode="anchor", fontsize=palette.FONT_POINTS - 1.0, path_effects=canvas.halo(),
         )  # fmt: skip
 
@@ -162,7 +162,7 @@ class Part:
 def parts(census: Census) -> tuple[Part, ...]:
     """Return the parts of the bar that are not empty; together they hold every sample."""
     status = dict(census.statuses)
-    held = status["solved"] - census.hangs_below
+    above = status["solved"] - census.hangs_below
     below, label, colour = census.hangs_below, "held, a cable hangs below", palette.SAG_PALE
     if census.excluded > 0:
         below += status.pop("no_finite_cable")
@@ -174,17 +174,17 @@ def parts(census: Census) -> tuple[Part, ...]:
         (Verdict.RANK_DEFICIENT, palette.LEFT_OUT, ""),
         (Verdict.NOT_CONVERGED, palette.INK, ""),
     )
-    everything = [Part("held", held, palette.SAG), Part(label, below, colour)]
+    everything = [Part("held", above, palette.SAG), Part(label, below, colour)]
     everything += [Part(v.reason, status.get(v.label, 0), *look) for v, *look in refused]
     return tuple(part for part in everything if part.count > 0)
 
 
 def verdict_chart(census: Census) -> str:
     """Return all samples by their verdict as one stacked bar with labels, as SVG."""
-    found = parts(census)
-    shares = [part.count / census.samples for part in found]
+    bar_parts = parts(census)
+    shares = [part.count / census.samples for part in bar_parts]
     texts = []
-    for part, share in zip(found, shares, strict=True):
+    for part, share in zip(bar_parts, shares, strict=True):
         percent = "< 0.1" if share < 0.001 else f"{100.0 * share:.1f}"
         texts.append(f"{part.label}\n{percent} %, {fmt.count(part.count)}")
     starts = [sum(shares[:index]) for index in range(len(shares))]
@@ -193,9 +193,9 @@ def verdict_chart(census: Census) -> str:
         axes = figure.subplots()
         axes.set(xlim=(0.0, 1.0), ylim=(-1.9, 0.5))
         axes.set_axis_off()
-        for part, start, share in zip(found, starts, shares, strict=True):
+        for part, start, share in zip(bar_parts, starts, shares, strict=True):
             _bar(axes, part, start, share, 0.0, 0.9)
-        for part, at, text in zip(found, spread(starts, texts), texts, strict=True):
+        for part, at, text in zip(bar_parts, spread(starts, texts), texts, strict=True):
             _bar(axes, part, at, 0.012, -0.98, 0.42)
             axes.text(at + 0.018, -0.78, text, va="top")
         return canvas.svg(figure, "verdicts", "Poses of the workspace by verdict")

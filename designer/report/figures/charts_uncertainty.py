@@ -27,13 +27,13 @@ def odds_chart(sizes: Sequence[Size]) -> str:
     with canvas.drawing():
         figure = canvas.sheet(14.0 + 17.0 * len(sizes))
         rows = figure.subplots(len(sizes), 1, sharex=True, squeeze=False)[:, 0]
-        held = [100.0 * used[np.isfinite(used)] for _, used, _ in sizes]
+        finite = [100.0 * used[np.isfinite(used)] for _, used, _ in sizes]
         ends = np.concatenate(
-            [*(np.percentile(one, [0.1, _TAIL]) for one in held if len(one)), [100.0]]
+            [*(np.percentile(share, [0.1, _TAIL]) for share in finite if len(share)), [100.0]]
         )
         room = 0.04 * max(float(np.ptp(ends)), 1.0)
         edges = np.linspace(ends.min() - room, ends.max() + room, _BARS * len(sizes) + 1)
-        for axes, (name, _, is_chosen), used in zip(rows, sizes, held, strict=True):
+        for axes, (name, _, is_chosen), used in zip(rows, sizes, finite, strict=True):
             _histogram(axes, name, used, edges, is_chosen)
         rows[0].set_title("how often the size is used so much", loc="left")
         rows[-1].set_xlabel("used of what the safety factor allows [%]")
@@ -68,8 +68,8 @@ def shares_chart(shares: Sequence[tuple[str, Share]]) -> str:
         )
         for k, (off, colour, _) in enumerate(looks):
             kinds = ("first_order", "total_order")[k]
-            value = 100.0 * np.array([getattr(one, kinds) for _, one in shares])
-            ends = 100.0 * np.array([getattr(one, f"{kinds}_95") for _, one in shares]).T
+            value = 100.0 * np.array([getattr(share, kinds) for _, share in shares])
+            ends = 100.0 * np.array([getattr(share, f"{kinds}_95") for _, share in shares]).T
             error = np.maximum([value - ends[0], ends[1] - value], 0.0)
             bars: Style = {"color": colour, "height": 0.36, "capsize": 2.0}
             line: Style = {"ecolor": palette.INK, "elinewidth": 0.8}

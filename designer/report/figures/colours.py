@@ -133,9 +133,9 @@ class Steps:
         """Draw the scale as a bar, beside the axes ``ax`` or into the axes ``cax``."""
         from matplotlib.cm import ScalarMappable
 
-        shown = ScalarMappable(self.norm, self.colormap)
+        mappable = ScalarMappable(self.norm, self.colormap)
         layout = {"ticks": self.ticks, "extendfrac": 0.04, "label": label, **place}
-        bar = figure.colorbar(shown, **layout)
+        bar = figure.colorbar(mappable, **layout)
         bar.outline.set_linewidth(0.4)
         bar.ax.tick_params(length=2)
 
@@ -150,9 +150,9 @@ def steps_over_decades(values: FloatArray) -> Steps | None:
         return steps_for(values)
     decades = np.arange(np.floor(np.log10(finite.min())), np.ceil(np.log10(high)) + 1.0)
     marks = np.sort(np.outer(10.0**decades, [1.0, 2.0, 5.0]).ravel())
-    first = np.searchsorted(marks, finite.min(), side="right") - 1
+    lowest = np.searchsorted(marks, finite.min(), side="right") - 1
     last = np.searchsorted(marks, high, side="left")
-    levels = marks[first : last + 1]
+    levels = marks[lowest : last + 1]
     return Steps(levels, "max" if finite.max() > levels[-1] else "neither")
 
 

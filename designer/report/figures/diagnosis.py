@@ -48,8 +48,8 @@ def carriers_chart(diagnosis: Diagnosis, names: Sequence[str], key: str, layout:
         for column, name in enumerate(names):
             values = diagnosis.covariates[name]
             channel = strongest_channel(_looks(diagnosis)[rows[0][0]][0], values)
-            for axes, shown in zip(grid[:, column], rows, strict=True):
-                _carrier(axes, diagnosis, values, channel, shown)
+            for axes, stage_names in zip(grid[:, column], rows, strict=True):
+                _carrier(axes, diagnosis, values, channel, stage_names)
             grid[-1, column].set_xlabel(words.covariate_axis(name), parse_math=False)
         figure.supylabel("residual [times the noise]", fontsize=palette.FONT_POINTS)
         return canvas.svg(figure, key, "Residual against what it goes with most")
@@ -64,27 +64,30 @@ def _looks(diagnosis: Diagnosis) -> dict[str, tuple[FloatArray, str]]:
 
 
 def _carrier(
-    axes: Axes, diagnosis: Diagnosis, covariate: FloatArray, channel: int, shown: list[str]
+    axes: Axes, diagnosis: Diagnosis, covariate: FloatArray, channel: int, stage_names: list[str]
 ) -> None:
     from matplotlib.ticker import FixedLocator, MaxNLocator
 
     rows = thinned(len(covariate))
     _noise_band(axes)
     residuals = []
-    for residual, colour in (_looks(diagnosis)[stage] for stage in shown):
+    for residual, colour in (_looks(diagnosis)[stage] for stage in stage_names):
         y = residual[:, channel]
         _points(axes, covariate[rows], y[rows], diagnosis.heldout[rows], colour)
-        trend: Style = {"color": palette.WARNING if len(shown) == 1 else colour, "linewidth": 1.4}
+        trend: Style = {
+            "color": palette.WARNING if len(stage_names) == 1 else colour,
+            "linewidth": 1.4,
+        }
         axes.plot(*running_median(covariate, y), **trend, path_effects=canvas.halo())
         residuals.append(y)
     axes.set_ylim(window(np.concatenate(residuals)))
     reading = channel_names(diagnosis.machine.robot.n_cables)[channel]
-    stages = f", {' and '.join(shown)}" if diagnosis.findings else ""
+    stages = f", {' and '.join(stage_names)}" if diagnosis.findings else ""
     axes.set_title(f"{reading}{stages}", loc="left")
     # Few labels, so that they keep apart; a covariate of few values has one for each.
     values = np.unique(covariate[np.isfinite(covariate)])
-    few = FixedLocator(values.tolist()) if len(values) <= 3 else None
-    axes.xaxis.set_major_locator(few or MaxNLocator(3, min_n_ticks=2))
+    locator = FixedLocator(values.tolist()) if len(values) <= 3 else None
+    axes.xaxis.set_major_locator(locator or MaxNLocator(3, min_n_ticks=2))
     axes.tick_params(labelsize=_SMALL)
 
 
@@ -93,8 +96,8 @@ def running_median(covariate: FloatArray, residual: FloatArray) -> tuple[FloatAr
 
     A covariate of few values, such as a direction, has a bin for each.
     """
-    known = np.isfinite(covariate) & np.isfinite(residual)
-    x, y = covariate[known], residual[known]
+    finite = np.isfinite(covariate) & np.isfinite(residual)
+    x, y = covariate[finite], residual[finite]
     if len(np.unique(x)) <= _BINS:
         parts = [np.flatnonzero(x == value) for value in np.unique(x)]
     else:
@@ -132,8 +135,8 @@ def rows_chart(diagnosis: Diagnosis) -> str:
         dots = canvas.DOTS | {"markersize": 3.5}
         looks = [("before", dots | {"color": _BEFORE}), ("after", dots | {"color": _AFTER})]
         grounds = [("held out", {"facecolor": _HELDOUT}), ("± 2 times the noise", _BAND)]
-        shown = [*(looks if diagnosis.findings else []), *grounds]
-        canvas.legend(figure, shown, "outside upper center", ncols=4)
+        entries = [*(looks if diagnosis.findings else []), *grounds]
+        canvas.legend(figure, entries, "outside upper center", ncols=4)
         title = "Residual of every reading over the rows, before and after"
         return canvas.svg(figure, "diagnosis-rows", title)
 
@@ -147,10 +150,10 @@ def _row_panel(axes: Axes, diagnosis: Diagnosis, channel: int) -> None:
         first, last = x[start] - 0.5, x[end - 1] + 0.5
         axes.axvspan(first, last, color=_HELDOUT, linewidth=0, zorder=-1)
     _noise_band(axes)
-    none = np.zeros(len(rows), dtype=bool)
+    no_rows = np.zeros(len(rows), dtype=bool)
     for stage, (residual, colour) in _looks(diagnosis).items():
         if diagnosis.findings or stage == "after":
-            _points(axes, x[rows], residual[rows, channel], none, colour)
+            _points(axes, x[rows], residual[rows, channel], no_rows, colour)
     axes.set_xlim(x[0], x[-1])
 
 
@@ -161,10 +164,10 @@ def thinned(n_rows: int) -> IntArray:
 
 def window(values: FloatArray) -> tuple[float, float]:
     """Return limits that show the bulk: a single wild reading must not flatten the rest."""
-    known = values[np.isfinite(values)]
-    if known.size == 0:
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
         return -3.0, 3.0
-    low, high = np.percentile(known, [1.0, 99.0])
+    low, high = np.percentile(finite, [1.0, 99.0])
     room = 0.35 * max(high - low, 1.0)
     return min(float(low - room), -3.0), max(float(high + room), 3.0)
 
@@ -203,27 +206,27 @@ def errors_chart(diagnosis: Diagnosis) -> str:
 
 
 def _error_panel(axes: Axes, diagnosis: Diagnosis, kind: Quantity) -> None:
-    shown = [kind.noise]
+    levels = [kind.noise]
     for row, stage in enumerate(diagnosis.stages):
         error = kind.error_of(stage)
         if error is None:
             continue
         colour = _BEFORE if row == 0 else _AFTER
-        held = error.heldout
-        low, value, high = (kind.scale * x for x in (held.low, held.value, held.high))
+        heldout = error.heldout
+        low, value, high = (kind.scale * x for x in (heldout.low, heldout.value, heldout.high))
         axes.plot([low, high], [row, row], color=colour, linewidth=4.0, alpha=0.45)
         axes.plot(value, row, marker="o", markersize=5.0, color=colour)
-        text, style = f"{kind.shown(held.value)} {kind.unit}", {"path_effects": canvas.halo()}
+        text, style = f"{kind.shown(heldout.value)} {kind.unit}", {"path_effects": canvas.halo()}
         canvas.note(axes, text, (high, row), (5, 0), va="center", fontsize=_SMALL, **style)
-        shown += [held.low, held.high]
+        levels += [heldout.low, heldout.high]
     noise = kind.scale * kind.noise
     axes.axvline(noise, color=palette.INK, linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
-    least, most = kind.scale * min(shown), kind.scale * max(shown)
-    if least <= 0.0 or most / least < 6.0:
-        axes.set_xlim(0.0, 1.4 * most)
+    least, highest = kind.scale * min(levels), kind.scale * max(levels)
+    if least <= 0.0 or highest / least < 6.0:
+        axes.set_xlim(0.0, 1.4 * highest)
     else:  # with plain numbers on the logarithmic axis
         axes.set_xscale("log")
-        axes.set_xlim(least / 1.5, most * (most / least) ** 0.25)
+        axes.set_xlim(least / 1.5, highest * (highest / least) ** 0.25)
         axes.xaxis.set_major_formatter(lambda value, _: fmt.trimmed(value, 6))
         axes.xaxis.set_minor_formatter(lambda *_: "")
     axes.set_title(f"error of {kind.name} [{kind.unit}]; dashed: noise", loc="left")

@@ -25,8 +25,8 @@ def groups_plan(robot: Robot, region: Region, assignment: Assignment) -> str:
     The platform stands where the most used group is used most. A planar robot is seen from the
     side.
     """
-    met = assignment.verification
-    ends = Poses.at(met.worst_place[met.most_used]).attachment_points_m(robot)
+    verification = assignment.verification
+    ends = Poses.at(verification.worst_place[verification.most_used]).attachment_points_m(robot)
     exits, plane = robot.exit_points_m, [0, 1]
     if robot.is_planar:
         plane = [int(np.argmax(np.ptp(exits[:, :2], axis=0))), 2]
@@ -34,7 +34,7 @@ def groups_plan(robot: Robot, region: Region, assignment: Assignment) -> str:
     # Okabe and Ito again; vermilion stays a warning.
     palette_of_groups = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#222222")
     looks = cycle(product(("-", "--", ":"), palette_of_groups))
-    used = met.utilisation
+    used = verification.utilisation
     with canvas.drawing():
         figure = canvas.sheet(104.0, keeps_aspect=True)
         axes = figure.subplots()

@@ -84,9 +84,9 @@ def _page(scene: bytes, title: str, overlay: str) -> str:
     stream = io.StringIO()
     write_html(scene, stream)
     page = _without_web(stream.getvalue())
-    here = Path(__file__)
-    style = here.with_name("interactive.css").read_text(encoding="utf-8")
-    script = here.with_name("interactive.js").read_text(encoding="utf-8")
+    folder_file = Path(__file__)
+    style = folder_file.with_name("interactive.css").read_text(encoding="utf-8")
+    script = folder_file.with_name("interactive.js").read_text(encoding="utf-8")
     head, rest = page.split("<title>", 1)
     rest = rest.split("</title>", 1)[1]
     page = f"{head}<title>{escape(title)}</title>\n<style>{style}</style>{rest}"
@@ -102,8 +102,8 @@ def _without_web(page: str) -> str:
         ("https://kitware.github.io/vtk-js/icon/", "`"),
         ("data:image/jpeg;base64,", ")"),
     ):
-        before, found, after = page.partition(begins)
-        if found:
+        before, note, after = page.partition(begins)
+        if note:
             page = f"{before}data:,{after[after.index(ends) :]}"
     return page
 
@@ -123,8 +123,8 @@ def _overlay(maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None, vi
         f'<i style="background:{colour}"></i><span>{text}</span>'
         for colour, text in overlay.meanings(maps.shown) + overlay.proved(maps.impossible_m)
     )
-    found = "".join(notes)
-    parts.append(f'<p class="notes">{found}</p>' if found else "")
+    note = "".join(notes)
+    parts.append(f'<p class="notes">{note}</p>' if note else "")
     parts.append('<div id="near" hidden></div><div id="mark" hidden></div>')
     parts.append('<p id="pointed" hidden></p>')
     parts.append('<p id="picked" role="status"></p>')
@@ -150,8 +150,10 @@ def _poses(maps: WorkspaceMaps, quantity: MapQuantity) -> str:
         columns = values.shape[1] if values.ndim > 1 else 1  # of one column are points, not faces
         rounded = [[float(f"{x:.5g}") for x in point] for point in points]
         grids.append({"columns": columns, "points": rounded})
-    known = {"title": quantity.title, "unit": quantity.unit, "reasons": reasons}
-    text = json.dumps({**known, "grids": grids}, separators=(",", ":")).replace("<", "\\u003c")
+    shown_quantity = {"title": quantity.title, "unit": quantity.unit, "reasons": reasons}
+    text = json.dumps({**shown_quantity, "grids": grids}, separators=(",", ":")).replace(
+        "<", "\\u003c"
+    )
     return f'\n<script type="application/json" id="poses">{text}</script>'
 
 

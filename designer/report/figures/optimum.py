@@ -39,8 +39,8 @@ def robots(before: Robot, after: Robot, region: Region | None, where_m: FloatArr
     if before.is_planar:
         views = [(int(np.argmax(np.ptp(before.exit_points_m[:, :2], axis=0))), 2)]
     with canvas.drawing():
-        both = np.concatenate([before.exit_points_m, after.exit_points_m])
-        tallest = max(float(np.ptp(both[:, v]) / np.ptp(both[:, u])) for u, v in views)
+        everything = np.concatenate([before.exit_points_m, after.exit_points_m])
+        tallest = max(float(np.ptp(everything[:, v]) / np.ptp(everything[:, u])) for u, v in views)
         figure = canvas.sheet(min(24.0 + 62.0 * max(tallest, 0.4), 110.0))
         for axes, plane in zip(
             figure.subplots(1, len(views), squeeze=False)[0], views, strict=True
@@ -78,9 +78,11 @@ def _view(
         arrow = {"arrowstyle": "->", "color": palette.INK, "shrinkA": 4.0, "shrinkB": 4.0}
         axes.annotate("", b[plane], a[plane], arrowprops=arrow, zorder=5)
     centre = where_m[plane]
-    each = np.stack([robot.exit_points_m[:, plane] for robot in (before, after)])
-    is_outer = np.linalg.norm(each[0] - centre, axis=1) > np.linalg.norm(each[1] - centre, axis=1)
-    outer = np.where(is_outer[:, None], each[0], each[1])
+    exits_of_both = np.stack([robot.exit_points_m[:, plane] for robot in (before, after)])
+    is_outer = np.linalg.norm(exits_of_both[0] - centre, axis=1) > np.linalg.norm(
+        exits_of_both[1] - centre, axis=1
+    )
+    outer = np.where(is_outer[:, None], exits_of_both[0], exits_of_both[1])
     for text, place in canvas.names_of(outer, 0.06 * float(np.ptp(outer, axis=0).max())):
         away = (place - centre) / max(float(np.linalg.norm(place - centre)), 1e-9)
         canvas.note(axes, text, tuple(place), tuple(13.0 * away), ha="center", va="center")
@@ -115,13 +117,13 @@ def convergence(
         axes.plot(number[holds], values[holds], **canvas.DOTS, color=palette.FAINT, markersize=2.0)
         looks: list[tuple[str, Style]] = []
         for start in [k for k in np.unique(starts).tolist() if k] + [0]:
-            own = (starts == start) & holds
-            if not own.any():
+            of_start = (starts == start) & holds
+            if not of_start.any():
                 continue
-            best = np.minimum.accumulate(values[own])
+            best = np.minimum.accumulate(values[of_start])
             colour = palette.INK if start == 0 else _STARTS[(start - 1) % len(_STARTS)]
             look: Style = {"color": colour, "linewidth": 1.4}
-            axes.step(number[own], best, where="post", **look)
+            axes.step(number[of_start], best, where="post", **look)
             looks.append((f"start {start}" if start else "about the best", look))
         if before is not None:
             axes.axhline(before, **_BEFORE)

@@ -101,13 +101,13 @@ def png(image: Image) -> bytes:
 
 def meanings(fields: Iterable[Field]) -> list[tuple[str, str]]:
     """Return colours that are not on the colour bar, and what they mean, where they occur."""
-    shown = list(fields)
+    field_list = list(fields)
     found = []
-    reasons = {field.why_infeasible for field in shown} - {""}
+    reasons = {field.why_infeasible for field in field_list} - {""}
     if reasons:
         text = reasons.pop() if len(reasons) == 1 else "no cable was found to hold the platform"
         found.append((palette.WARNING, text))
-    if any(field.is_left_out.any() for field in shown):
+    if any(field.is_left_out.any() for field in field_list):
         found.append((palette.LEFT_OUT, "left out: a cable hangs below the platform"))
     return found
 
@@ -125,21 +125,21 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     """
     low, high = bounds_m
     middle, corner = 0.5 * (low + high), leftmost_corner(view, bounds_m)
-    near = np.where(view.toward_camera > 0.0, high, low)
+    near_corner = np.where(view.toward_camera > 0.0, high, low)
     small = {"fontsize": palette.FONT_POINTS - 1.0}
     points = axes.figure.dpi / 72.0
-    taken = view.pixels(np.array([*corner, low[2]]))  # where the upright axis has its own label
+    occupied = view.pixels(np.array([*corner, low[2]]))  # where the upright axis has its own label
     for axis, across in ((0, 1), (1, 0)):
         name = np.array([*middle[:2], low[2]])
-        name[across] = near[across]
+        name[across] = near_corner[across]
         beyond = name.copy()
-        beyond[across] += near[across] - middle[across]
+        beyond[across] += near_corner[across] - middle[across]
         outward = (view.pixels(beyond) - view.pixels(name)) * [1.0, -1.0]
         outward /= max(float(np.hypot(*outward)), 1e-9)
         for tick in _ticks_along(view, bounds_m, axis, 27.0 * points):
             point = name.copy()
             point[axis] = tick
-            if np.hypot(*(view.pixels(point) - taken)) >= 13.5 * points:
+            if np.hypot(*(view.pixels(point) - occupied)) >= 13.5 * points:
                 _write(axes, view, point, fmt.trimmed(tick, 6), 9.0 * outward, **small)
         # The name of an axis begins beyond its numbers, wherever these stand.
         side = "left" if outward[0] > 0.0 else "right"
@@ -195,11 +195,11 @@ def box_ticks(view: View, bounds_m: FloatArray) -> list[tuple[FloatArray, str]]:
     low, high = bounds_m
     beyond = 0.05 * float(np.ptp(bounds_m, axis=0).max())
     out = np.where(view.toward_camera > 0.0, 1.0, -1.0)
-    near = np.where(out > 0.0, high, low)
+    near_corner = np.where(out > 0.0, high, low)
     corner = leftmost_corner(view, bounds_m)
     found = []
     for axis, name in enumerate("xyz"):
-        edge = np.array([*(corner if axis == 2 else near[:2]), low[2]])
+        edge = np.array([*(corner if axis == 2 else near_corner[:2]), low[2]])
         side = np.zeros(3)
         if axis == 2:
             side[:2] = np.sign(corner - 0.5 * (low + high)[:2])
@@ -262,7 +262,7 @@ def write_clear(
     """
     looks = {"bbox": canvas.paper(1.2, 0.8), "annotation_clip": False, **style}
     label = canvas.note(axes, text, (0, 0), (0, 0), **looks)
-    taken = _boxes(
+    occupied = _boxes(
         *(bar.get_tightbbox() for bar in axes.figure.axes[1:]),
         *(_extent(other) for other in axes.texts if other is not label),
     )
@@ -277,7 +277,7 @@ def write_clear(
 
     anchors_px = view.pixels(np.atleast_2d(anchors_m))
     places = [(a, side, d) for d, a, side in product(distances, anchors_px, _SIDES)]
-    costs = [_cost(box(*place), taken, obstacles_px) for place in places]
+    costs = [_cost(box(*place), occupied, obstacles_px) for place in places]
     best = places[int(np.argmin(costs + _BY_ORDER * np.arange(len(costs))))]
     anchor, ((right, up), ha, va), distance = best
     along = distance / np.hypot(right, up)
@@ -325,13 +325,13 @@ def _boxes(*boxes: Any) -> FloatArray:
     return np.array(edges).reshape(-1, 4)
 
 
-def _cost(box: FloatArray, taken: FloatArray, obstacles_px: FloatArray) -> float:
+def _cost(box: FloatArray, occupied: FloatArray, obstacles_px: FloatArray) -> float:
     """How bad a place is: texts below it or the rim beyond it, then lines that it covers."""
     left, top, right, bottom = box + 3.0 * np.array([-1.0, -1.0, 1.0, 1.0])
     if left < 0.0 or top < 0.0 or right > WIDTH_PX or bottom > HEIGHT_PX:
         return 10.0 * _OVER_TEXT
-    wide = np.minimum(right, taken[:, 2]) - np.maximum(left, taken[:, 0])
-    high = np.minimum(bottom, taken[:, 3]) - np.maximum(top, taken[:, 1])
+    wide = np.minimum(right, occupied[:, 2]) - np.maximum(left, occupied[:, 0])
+    high = np.minimum(bottom, occupied[:, 3]) - np.maximum(top, occupied[:, 1])
     x, y = obstacles_px.T
     covered = (x > left) & (x < right) & (y > top) & (y < bottom)
     texts = np.count_nonzero((wide > 0.0) & (high > 0.0))

@@ -143,10 +143,10 @@ def base_outline_m(robot: Robot) -> FloatArray:
 
 
 def _label_robot(
-    axes: Axes, view: View, statics: Statics, curves: FloatArray, others: Sequence[FloatArray]
+    axes: Axes, view: View, statics: Statics, curves: FloatArray, lines: Sequence[FloatArray]
 ) -> None:
     """Write mass, largest sag and tensions at the exit points beside what they belong to."""
-    clear = overlay.obstacles(view, [*curves, *body_lines_m(statics), *others])
+    clear = overlay.obstacles(view, [*curves, *body_lines_m(statics), *lines])
     overlay.write_exits(axes, view, statics.robot.exit_points_m, clear)
     body = statics.poses.position_m
     x, y, z = (fmt.trimmed(round(float(v), 2), 5) for v in body)
@@ -224,9 +224,9 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
     for number, colour in enumerate(colours(layers)):  # what it serves beyond the size before it
         if rest.n_points == 0:  # the sizes before it serve all that is drawn
             break
-        where: Style = {"scalars": f"size {number}", "value": 0.0}
-        stage.add(rest.clip_scalar(**where, invert=True), colour)
-        rest = rest.clip_scalar(**where, invert=False)
+        scalar: Style = {"scalars": f"size {number}", "value": 0.0}
+        stage.add(rest.clip_scalar(**scalar, invert=True), colour)
+        rest = rest.clip_scalar(**scalar, invert=False)
     stage.add(rest, palette.WARNING_PALE)
     stage.lines(edges_m(maps), palette.INK, stage.pen.edge, 1.5)
     stage.balls(exits, 0.006 * size_m(maps), palette.INK)
@@ -271,16 +271,16 @@ def view_of(maps: WorkspaceMaps, frame: Frame = _PAGE.frame) -> View:
     low, high = bounds = bounds_m(maps)
     top = maps.section.position_m[-1] if maps.has_area else maps.section.position_m
     exits = maps.study.robot.exit_points_m
-    shown = exits[np.all((exits >= low) & (exits <= high), axis=1)]
+    visible = exits[np.all((exits >= low) & (exits <= high), axis=1)]
     azimuth = float(np.radians(-60.0))
     into = maps.region.opening_azimuth_rad(maps.focus.position_m)
     if maps.region.is_upright:
         azimuth = facing_azimuth_rad(maps.region.along)
     elif into is not None:
         off_axis = (into + 0.25 * np.pi) % (0.5 * np.pi) - 0.25 * np.pi
-        wanted = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
-        azimuth = float(into + wanted - off_axis)
-    everything = np.concatenate([overlay.floor_corners(bounds), top, shown])
+        angle = np.copysign(max(abs(off_axis), np.radians(15.0)), off_axis)
+        azimuth = float(into + angle - off_axis)
+    everything = np.concatenate([overlay.floor_corners(bounds), top, visible])
     return fitting(everything, azimuth, float(np.radians(28.0)), frame)
 
 
@@ -291,10 +291,10 @@ def bounds_m(maps: WorkspaceMaps) -> FloatArray:
     """
     region, exits = maps.region.bounds_m, maps.study.robot.exit_points_m
     everything = np.concatenate([region, exits])
-    whole = np.array([everything.min(axis=0), everything.max(axis=0)])
+    box = np.array([everything.min(axis=0), everything.max(axis=0)])
     size = float(np.ptp(region, axis=0).max())
-    is_speck = maps.has_area and size < 0.2 * float(np.ptp(whole, axis=0).max())
-    return region if is_speck else whole
+    is_speck = maps.has_area and size < 0.2 * float(np.ptp(box, axis=0).max())
+    return region if is_speck else box
 
 
 def size_m(maps: WorkspaceMaps) -> float:
@@ -314,9 +314,11 @@ def add_workspace(
     else:
         section, position = maps.section, maps.section.position_m
         values = quantity.of(section)
-        some = np.isfinite(values)
+        finite = np.isfinite(values)
         if steps is not None:
-            stage.balls(position[some], 0.008 * size, steps.colours_of(steps.norm(values[some])))
+            stage.balls(
+                position[finite], 0.008 * size, steps.colours_of(steps.norm(values[finite]))
+            )
         stage.balls(position[section.is_infeasible], 0.007 * size, palette.WARNING)
         stage.balls(position[section.is_left_out], 0.007 * size, palette.LEFT_OUT)
         stage.posts(position, floor, 1.0)

@@ -64,32 +64,32 @@ def slice_panels(maps: WorkspaceMaps, quantities: Sequence[MapQuantity] = (TENSI
 
 def stiffness_map(analysis: Analysis) -> str | None:
     """Return a map of the largest displacement under a unit force; None without an area."""
-    found = displacement_section(analysis)
-    if found is None:
+    section = displacement_section(analysis)
+    if section is None:
         return None
-    shown = replace(found, values=1e6 * found.values)
+    scaled = replace(section, values=1e6 * section.values)
     label = "largest displacement [mm/kN]"
-    return section_map(shown, "stiffness", label, "not held, or not stably")
+    return section_map(scaled, "stiffness", label, "not held, or not stably")
 
 
 def clearance_map(analysis: Analysis) -> str | None:
     """Return a map of the smallest clearance; None without an area or anything to compare."""
-    found = clearance_section(analysis)
-    if found is None or analysis.qualities is None or analysis.qualities.interference is None:
+    section = clearance_section(analysis)
+    if section is None or analysis.qualities is None or analysis.qualities.interference is None:
         return None
-    shown = replace(found, values=1e3 * found.values)
+    scaled = replace(section, values=1e3 * section.values)
     limit = 1e3 * analysis.qualities.interference.clearance_m
-    return section_map(shown, "clearance", "smallest clearance [mm]", "not held", limit)
+    return section_map(scaled, "clearance", "smallest clearance [mm]", "not held", limit)
 
 
 def section_map(
-    shown: Section, key: str, label: str, why_bad: str, limit: float | None = None
+    section: Section, key: str, label: str, why_bad: str, limit: float | None = None
 ) -> str:
     """Return a map of any value over a level section, as SVG.
 
     Parameters
     ----------
-    shown : Section
+    section : Section
         Values in the unit of the colour bar's label.
     key : str
         Short name, put before every id of the drawing.
@@ -98,16 +98,16 @@ def section_map(
     limit : float or None
         The value that is asked for, whose contour is drawn boldly.
     """
-    flat, corners = shown.position_m[..., :2], shown.exit_points_m[:, :2]
-    place = f"z = {fmt.trimmed(shown.position_m[0, 0, 2], 6)} m"
-    finite = shown.values[np.isfinite(shown.values)]
+    flat, corners = section.position_m[..., :2], section.exit_points_m[:, :2]
+    place = f"z = {fmt.trimmed(section.position_m[0, 0, 2], 6)} m"
+    finite = section.values[np.isfinite(section.values)]
     has_limit = limit is not None and len(finite) > 0 and finite.min() < limit < finite.max()
-    values, steps = np.ma.masked_invalid(shown.values), steps_over_decades(shown.values)
+    values, steps = np.ma.masked_invalid(section.values), steps_over_decades(section.values)
     with canvas.drawing():
         height_mm = 20.0 + min(80.0 * _height_over_width(flat, corners), 56.0)
         figure = canvas.sheet(height_mm, width_mm=_NARROW_MM, keeps_aspect=True)
         axes = figure.subplots()
-        _paint(axes, flat, values, shown.is_bad, steps)
+        _paint(axes, flat, values, section.is_bad, steps)
         if has_limit:
             bold: Style = {"colors": palette.WARNING, "linewidths": 1.6}
             axes.contour(*np.moveaxis(flat, -1, 0), values, levels=[limit], **bold)
@@ -120,11 +120,11 @@ def section_map(
             steps.bar(figure, label, ax=axes, shrink=0.9, aspect=26, **form)
         looks: list[tuple[str, Style]] = []
         if has_limit:
-            asked: Style = {"color": palette.WARNING, "linewidth": 1.6}
-            looks.append(("the clearance that is asked for", asked))
-        if shown.is_bad.any():
+            look: Style = {"color": palette.WARNING, "linewidth": 1.6}
+            looks.append(("the clearance that is asked for", look))
+        if section.is_bad.any():
             looks.append((why_bad, _HATCHED))
-        if (np.isnan(shown.values) & ~shown.is_bad).any():
+        if (np.isnan(section.values) & ~section.is_bad).any():
             looks.append(("left out", _GREY))
         canvas.legend(figure, looks, "outside lower center", ncols=3)
         return canvas.svg(figure, key, f"{label}, {place}")
@@ -232,9 +232,9 @@ def _scatter(
     order = np.argsort(np.nan_to_num(values, nan=-1.0))
     x, y = flat.T
     if steps is not None:
-        shown = order[np.isfinite(values[order])]
-        scale: Style = {"c": values[shown], "cmap": steps.colormap, "norm": steps.norm}
-        axes.scatter(x[shown], y[shown], s=26, linewidths=0.4, edgecolors=palette.INK, **scale)
+        finite = order[np.isfinite(values[order])]
+        scale: Style = {"c": values[finite], "cmap": steps.colormap, "norm": steps.norm}
+        axes.scatter(x[finite], y[finite], s=26, linewidths=0.4, edgecolors=palette.INK, **scale)
     bad, left = (order[mask[order]] for mask in (field.is_infeasible, field.is_left_out))
     axes.scatter(x[bad], y[bad], marker="x", s=16, linewidths=1.0, color=palette.WARNING)
     axes.scatter(x[left], y[left], marker="o", s=10, color=palette.LEFT_OUT)
@@ -265,8 +265,8 @@ def _frame(points: FloatArray, corners: FloatArray) -> tuple[FloatArray, FloatAr
     everything = np.concatenate([flat, corners])
     wide = np.ptp(everything, axis=0).max()
     shows_corners = bool(np.ptp(flat, axis=0).max() > _ZOOM * wide or len(flat) == 1)
-    shown = everything if shows_corners else flat
-    low, high = shown.min(axis=0), shown.max(axis=0)
+    shown_m = everything if shows_corners else flat
+    low, high = shown_m.min(axis=0), shown_m.max(axis=0)
     half = 0.5 * (high - low) + 0.12 * max((high - low).max(), 1e-3)
     half = np.maximum(half, 0.35 * half.max())  # no slivers
     return 0.5 * (low + high), half, shows_corners

@@ -167,14 +167,14 @@ class Stage:
         if len(centres_m) == 0:
             return
         cloud = pyvista.PolyData(centres_m.astype(np.float64))
-        one = isinstance(colour, str)
-        if not one:
+        is_single = isinstance(colour, str)
+        if not is_single:
             cloud["colour"] = colour
         ball = pyvista.Sphere(radius=radius_m, theta_resolution=16, phi_resolution=16)
         balls = cloud.glyph(geom=ball, scale=False, orient=False)
-        if not one:
+        if not is_single:
             balls.set_active_scalars("colour")
-        self.add(balls, colour if one else None)
+        self.add(balls, colour if is_single else None)
 
     def hull(self, points_m: FloatArray, colour: str) -> None:
         """Add the hull of points (n, 3) [m] with its edges; flat where they lie in one plane."""

@@ -46,7 +46,7 @@ class Axis:
         title = f"{name} [{unit}]" if unit else name
         if values.dtype.kind == "f":
             return cls(title, np.where(np.isfinite(values), values, np.nan))
-        labels, places = np.unique([str(one) for one in values.tolist()], return_inverse=True)
+        labels, places = np.unique([str(axis) for axis in values.tolist()], return_inverse=True)
         return cls(title, places.astype(float), tuple(map(str, labels)))
 
     def tick(self, axes: Axes) -> None:
@@ -59,12 +59,14 @@ class Axis:
         axes.set_xticks(places, short, rotation=25 * tilted, ha="right" if tilted else "center")
 
 
-def influences(varied: Sequence[Axis], kept: Sequence[Axis], front: BoolArray) -> str:
+def influences(varied: Sequence[Axis], kept_axes: Sequence[Axis], front: BoolArray) -> str:
     """Return every kept number over every varied field, the front marked, as SVG."""
     with canvas.drawing():
-        figure = canvas.sheet(14.0 + 30.0 * len(kept))
-        grid = figure.subplots(len(kept), len(varied), squeeze=False, sharex="col", sharey="row")
-        for row, result in zip(grid, kept, strict=True):
+        figure = canvas.sheet(14.0 + 30.0 * len(kept_axes))
+        grid = figure.subplots(
+            len(kept_axes), len(varied), squeeze=False, sharex="col", sharey="row"
+        )
+        for row, result in zip(grid, kept_axes, strict=True):
             for axes, field in zip(row, varied, strict=True):
                 axes.plot(field.values, result.values, **_pale(len(front)))
                 axes.plot(field.values[front], result.values[front], **_FRONT)
@@ -108,20 +110,20 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
             for one, (low, high) in zip(axes_of, ranges, strict=True)
         ]
     )
-    whole = np.flatnonzero(np.isfinite(shares).all(axis=1))
-    if not len(whole):
+    complete = np.flatnonzero(np.isfinite(shares).all(axis=1))
+    if not len(complete):
         return ""
-    shown = whole[:: -(-max(len(whole), 1) // _MOST_LINES)]
-    shown = np.concatenate([shown, np.flatnonzero(front)])
-    places = np.broadcast_to(np.arange(len(axes_of), dtype=float), (len(shown), len(axes_of)))
+    rows = complete[:: -(-max(len(complete), 1) // _MOST_LINES)]
+    rows = np.concatenate([rows, np.flatnonzero(front)])
+    places = np.broadcast_to(np.arange(len(axes_of), dtype=float), (len(rows), len(axes_of)))
     with canvas.drawing():
         figure = canvas.sheet(85.0)
         axes = figure.subplots()
         lines: Any = LineCollection(
-            np.stack([places, shares[shown]], axis=2).tolist(),
-            array=colour.values[shown],
+            np.stack([places, shares[rows]], axis=2).tolist(),
+            array=colour.values[rows],
             cmap=mpl.colormaps[palette.COLORMAP],
-            linewidths=np.where(front[shown], 1.4, 0.4),
+            linewidths=np.where(front[rows], 1.4, 0.4),
             alpha=0.8,
             rasterized=True,
         )
@@ -129,9 +131,11 @@ def parallel(axes_of: Sequence[Axis], colour: Axis, front: BoolArray) -> str:
         axes.set(xlim=(-0.15, len(axes_of) - 0.85), ylim=(-0.09, 1.06), yticks=[])
         axes.set_xticks(range(len(axes_of)), [_wrapped(one.title) for one in axes_of])
         axes.spines["left"].set_visible(False)
-        for place, (one, (low, high)) in enumerate(zip(axes_of, ranges, strict=True)):
+        for place, (axis, (low, high)) in enumerate(zip(axes_of, ranges, strict=True)):
             axes.axvline(place, color=palette.INK, linewidth=0.6)
-            ends = (one.labels[0], one.labels[-1]) if one.labels else (f"{low:.4g}", f"{high:.4g}")
+            ends = (
+                (axis.labels[0], axis.labels[-1]) if axis.labels else (f"{low:.4g}", f"{high:.4g}")
+            )
             for text, at in zip(ends, (-0.05, 1.04), strict=True):
                 ground = canvas.paper(0.5, 0.8)
                 axes.text(place, at, _shortened(text), ha="center", va="center", bbox=ground)
