@@ -62,22 +62,23 @@ def adrift_in(
         space = workspace.of_case(case)
         places = np.concatenate([space.space.landmarks(), space.thinned(samples)])
         places = places[_holds(robot, places)]
-        found = [
-            _adrift(robot, one, places) for one in replace(case, cable_lost=None).on(robot, cable)
+        surveys = [
+            _adrift(robot, loaded, places)
+            for loaded in replace(case, cable_lost=None).on(robot, cable)
         ]
-        most = max(found, key=lambda one: one.share)
-        if most.share > 0.0:
-            yield most
+        worst = max(surveys, key=lambda survey: survey.share)
+        if worst.share > 0.0:
+            yield worst
 
 
 def _holds(robot: Robot, places: FloatArray) -> BoolArray:
     return np.isfinite(solve_massless(robot, Poses.at(places)).largest_tension_N)
 
 
-def _adrift(robot: Robot, one: Loaded, places: FloatArray) -> Adrift:
-    is_held = _holds(one.robot, places)
-    before, body = robot.platform, one.robot.platform
+def _adrift(robot: Robot, loaded: Loaded, places: FloatArray) -> Adrift:
+    is_held = _holds(loaded.robot, places)
+    before, body = robot.platform, loaded.robot.platform
     push = body.wrench_N[:3] - before.wrench_N[:3] + body.centre_force_N - before.centre_force_N
-    first = places[int(is_held.argmin())] if len(places) else np.full(3, np.nan)
+    example = places[int(is_held.argmin())] if len(places) else np.full(3, np.nan)
     share = float((~is_held).mean()) if len(places) else 0.0
-    return Adrift(one, share, first, float(np.linalg.norm(push)))
+    return Adrift(loaded, share, example, float(np.linalg.norm(push)))

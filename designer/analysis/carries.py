@@ -71,8 +71,8 @@ class Carries:
     def nearest(self) -> FirstFailure | None:
         """The nearest of the failures."""
         return min(
-            (one for one in self.failures if one.distance_m >= 0.0),
-            key=lambda one: one.distance_m,
+            (failure for failure in self.failures if failure.distance_m >= 0.0),
+            key=lambda failure: failure.distance_m,
             default=None,
         )
 

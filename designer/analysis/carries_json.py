@@ -15,39 +15,39 @@ from designer.arrays import FloatArray
 Json = dict[str, Any]
 
 
-def carries_dict(found: Carries | None, groups: Sequence[GroupSlopes]) -> Json:
+def carries_dict(carries: Carries | None, groups: Sequence[GroupSlopes]) -> Json:
     """Return sensitivities, reserves, sizes and first failures; empty where none is chosen.
 
     Of ``groups`` there are sensitivities alone, each with the name of its group.
     """
-    if found is None:
+    if carries is None:
         of_groups = (
-            _sensitivities(one.each, one.exit_points_per_m, "adjoint", one.group.name)
-            for one in groups
+            _sensitivities(group.each, group.exit_points_per_m, "adjoint", group.group.name)
+            for group in groups
         )
         rows = [row for rows in of_groups for row in rows]
         return {"sensitivities": rows, "reserve": None, "sizes_beside": [], "first_failures": []}
-    slopes = found.sensitivities
+    slopes = carries.sensitivities
     return {
         "sensitivities": _sensitivities(slopes.each, slopes.exit_points_per_m, slopes.method),
         "reserve": {
-            "payload_factor": math.nan if found.payload is None else found.payload.value,
-            "region_margin_m": math.nan if found.region is None else found.region.value,
-            "payload": found.payload,
-            "region": found.region,
+            "payload_factor": math.nan if carries.payload is None else carries.payload.value,
+            "region_margin_m": math.nan if carries.region is None else carries.region.value,
+            "payload": carries.payload,
+            "region": carries.region,
         },
-        "sizes_beside": found.sizes,
-        "first_failures": found.failures,
+        "sizes_beside": carries.sizes,
+        "first_failures": carries.failures,
     }
 
 
 def _sensitivities(
-    each: Sequence[Sensitivity],
+    inputs: Sequence[Sensitivity],
     exit_points_per_m: FloatArray,
     method: str,
     group: str | None = None,
 ) -> list[Json]:
-    rows: list[Json] = [asdict(one) for one in each]
+    rows: list[Json] = [asdict(sensitivity) for sensitivity in inputs]
     for cable, slopes in enumerate(exit_points_per_m, start=1):
         rows += [
             {

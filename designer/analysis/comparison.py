@@ -70,7 +70,7 @@ class Line:
     @property
     def relative(self) -> float | None:
         """Change from A to B over A; None for what is no number, or from zero."""
-        a, b = (_with_unit(one) for one in (self.a, self.b))
+        a, b = (_with_unit(value) for value in (self.a, self.b))
         if a is None or b is None or a[1] != b[1] or not a[0]:
             return None
         return (b[0] - a[0]) / abs(a[0])
@@ -139,7 +139,7 @@ class Comparison:
 
 def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
     """Compare what two ``result.json`` hold."""
-    has_inputs = all(isinstance(one.get("inputs"), Mapping) for one in (a, b))
+    has_inputs = all(isinstance(result.get("inputs"), Mapping) for result in (a, b))
     inputs = _lines(a["inputs"], b["inputs"]) if has_inputs else iter(())
     of_a, of_b = dict(_flat(a)), dict(_flat(b))
     answers = tuple(
@@ -147,7 +147,7 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
         for path, label in _ANSWERS.items()
         if of_a.get(path) is not None or of_b.get(path) is not None
     )
-    others = (line for line in _lines(of_a, of_b) if line.path not in _ANSWERS)
+    remaining = (line for line in _lines(of_a, of_b) if line.path not in _ANSWERS)
     return Comparison(
         a,
         b,
@@ -156,7 +156,7 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
         answers,
         tuple(_unmet(a, b)),
         tuple(line for line in _lines(_products(a), _products(b)) if line.differs),
-        tuple(line for line in others if line.differs),
+        tuple(line for line in remaining if line.differs),
     )
 
 
@@ -168,7 +168,9 @@ def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
 def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
     """Yield each requirement that one of the two does not meet; None where it is not asked."""
     # Of groups of cables several have one name: the one that does not hold counts.
-    each = (sorted(one.get("checks", []), key=lambda c: c["state"] != "holds") for one in (a, b))
+    each = (
+        sorted(result.get("checks", []), key=lambda c: c["state"] != "holds") for result in (a, b)
+    )
     checks_a, checks_b = ({_key(check): check for check in checks} for checks in each)
     for key in dict.fromkeys([*checks_a, *checks_b]):
         checks = checks_a.get(key), checks_b.get(key)
@@ -191,16 +193,16 @@ def _check_words(check: Mapping[str, Any] | None) -> str | None:
 
 def _flat(value: Mapping[str, Any], lead: str = "") -> Iterator[tuple[str, Any]]:
     """Yield path and value of everything below; lists of plain values are one value."""
-    for key, one in value.items():
+    for key, part in value.items():
         path = f"{lead}{key}"
         if path in _APART or "residual" in key or (lead == "selection." and key in _LISTS):
             continue
-        if isinstance(one, Mapping):
-            yield from _flat(one, f"{path}.")
-        elif isinstance(one, list) and any(isinstance(each, Mapping) for each in one):
-            yield from _flat({str(k): each for k, each in enumerate(one)}, f"{path}.")
+        if isinstance(part, Mapping):
+            yield from _flat(part, f"{path}.")
+        elif isinstance(part, list) and any(isinstance(item, Mapping) for item in part):
+            yield from _flat({str(k): item for k, item in enumerate(part)}, f"{path}.")
         else:
-            yield path, one
+            yield path, part
 
 
 def _products(result: Mapping[str, Any]) -> dict[str, str]:
@@ -208,10 +210,10 @@ def _products(result: Mapping[str, Any]) -> dict[str, str]:
     selection = result.get("selection")
     candidates = selection.get("candidates", []) if isinstance(selection, Mapping) else []
     return {
-        f"{one['grade']}, {one['size_id']}": (
-            "does not hold" if one["standing"] in ("too_thin", "not_held") else "holds"
+        f"{candidate['grade']}, {candidate['size_id']}": (
+            "does not hold" if candidate["standing"] in ("too_thin", "not_held") else "holds"
         )
-        for one in candidates
+        for candidate in candidates
     }
 
 

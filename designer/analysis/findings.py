@@ -184,48 +184,48 @@ def _adrift(analysis: Analysis) -> tuple[Adrift, ...]:
 
 def modulus_utilisation(candidate: Candidate) -> tuple[float, float]:
     """Return the utilisation at the worst pose with the lowest and the highest modulus."""
-    most, doubt = candidate.governing, candidate.grade.elasticity.uncertainty
-    one, cable = most.loaded, most.loaded.cable
+    governing, doubt = candidate.governing, candidate.grade.elasticity.uncertainty
+    loaded, cable = governing.loaded, governing.loaded.cable
 
     def at(scale: float) -> float:
-        other = replace(cable, axial_stiffness_N=scale * cable.axial_stiffness_N)
-        return most.tension_N(replace(one, cable=other)) / cable.allowable_tension_N
+        stretched = replace(cable, axial_stiffness_N=scale * cable.axial_stiffness_N)
+        return governing.tension_N(replace(loaded, cable=stretched)) / cable.allowable_tension_N
 
     return at(1.0 - doubt), at(1.0 + doubt)
 
 
 def _massless_choice(analysis: Analysis, outcome: GradeOutcome) -> MasslessChoice | None:
-    workspace, found = analysis.study.workspace, analysis.workspace
-    if workspace is None or found is None or found.massless is None:
+    workspace, survey = analysis.study.workspace, analysis.workspace
+    if workspace is None or survey is None or survey.massless is None:
         return None
     if analysis.study.load_cases or analysis.assignment.has_groups:
         return None
-    needed_N = found.massless.max_tension_N
-    for first in outcome.candidates:
-        if first.cable.allowable_tension_N >= needed_N:
-            proved = first.verification
+    needed_N = survey.massless.max_tension_N
+    for candidate in outcome.candidates:
+        if candidate.cable.allowable_tension_N >= needed_N:
+            proved = candidate.verification
             if not proved.is_refined:
-                proved = verify(analysis.built.robot, workspace, first.cable)
-            return MasslessChoice(first, proved)
+                proved = verify(analysis.built.robot, workspace, candidate.cable)
+            return MasslessChoice(candidate, proved)
     return None
 
 
 def _other_policy(analysis: Analysis) -> OtherPolicy | None:
-    workspace, found, built = analysis.study.workspace, analysis.workspace, analysis.built
-    if workspace is None or found is None or found.census.hangs_below == 0:
+    workspace, survey, built = analysis.study.workspace, analysis.workspace, analysis.built
+    if workspace is None or survey is None or survey.census.hangs_below == 0:
         return None
-    other: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
-    changed = replace(_few(built.robot, workspace), hangs_below=other)
+    policy: HangsBelow = "exclude" if workspace.hangs_below == "include" else "include"
+    changed = replace(_few(built.robot, workspace), hangs_below=policy)
     material = built.material(analysis.study.material)
-    return OtherPolicy(other, map_workspace(built.robot, changed, material))
+    return OtherPolicy(policy, map_workspace(built.robot, changed, material))
 
 
 def _hanging(analysis: Analysis) -> float | None:
-    workspace, found = analysis.study.workspace, analysis.workspace
-    if workspace is None or found is None:
+    workspace, survey = analysis.study.workspace, analysis.workspace
+    if workspace is None or survey is None:
         return None
     if analysis.qualities is None or not analysis.assignment.is_found:
-        return found.census.hangs_below / found.census.samples
+        return survey.census.hangs_below / survey.census.samples
     robot, cable = analysis.built.robot, analysis.qualities.cable.cable
     hangs = [
         is_left_out(solve_sagging(robot, Poses.at(positions), cable), "exclude")
@@ -237,18 +237,18 @@ def _hanging(analysis: Analysis) -> float | None:
 def _few(robot: Robot, workspace: Workspace) -> Workspace:
     """Return the same with fewer positions where each pose takes long."""
     if is_quick(robot):
-        most = _MOST_SAMPLES
+        largest = _MOST_SAMPLES
     else:
-        most = max(_FEW_PLACES // workspace.orientations.count, _FEW_POSITIONS)
-    return replace(workspace, samples=min(workspace.samples, most))
+        largest = max(_FEW_PLACES // workspace.orientations.count, _FEW_POSITIONS)
+    return replace(workspace, samples=min(workspace.samples, largest))
 
 
 def _unserved(analysis: Analysis) -> Unserved | None:
-    workspace, found = analysis.study.workspace, analysis.workspace
-    if workspace is None or found is None or analysis.sweep_file is None:
+    workspace, survey = analysis.study.workspace, analysis.workspace
+    if workspace is None or survey is None or analysis.sweep_file is None:
         return None
     region = workspace.region
-    if found.is_feasible:
+    if survey.is_feasible:
         return None
     fine = [Verdict.SOLVED]
     if workspace.hangs_below == "exclude":

@@ -49,21 +49,23 @@ class FirstFailure:
     reach_m: float = field(metadata={"json": "looked_m"})
 
 
-def first_failures(found: CaseResult) -> tuple[FirstFailure, ...]:
+def first_failures(case: CaseResult) -> tuple[FirstFailure, ...]:
     """Return the first failure in each direction, in a load case, as turned at its worst pose.
 
     Ways lead from corners, edges and sides of the region straight outward. Empty for a list of
     points, and where lengths are kept.
     """
-    region, one = found.workspace.region, found.loaded
-    if region.is_discrete or one.keeps_lengths:
+    region, loaded = case.workspace.region, case.loaded
+    if region.is_discrete or loaded.keeps_lengths:
         return ()
-    turn = found.verification.worst_place[3:]
-    return tuple(_along(region, one, turn, name, way) for name, way in _directions(region, one))
+    turn = case.verification.worst_place[3:]
+    return tuple(
+        _along(region, loaded, turn, name, along) for name, along in _directions(region, loaded)
+    )
 
 
-def _directions(region: Region, one: Loaded) -> list[tuple[str, FloatArray]]:
-    robot = one.bare[0]
+def _directions(region: Region, loaded: Loaded) -> list[tuple[str, FloatArray]]:
+    robot = loaded.bare[0]
     up = robot.level[2]
     if robot.is_planar or region.is_upright:
         across = np.append(region.along, 0.0) if region.is_upright else robot.level[0]
@@ -72,22 +74,22 @@ def _directions(region: Region, one: Loaded) -> list[tuple[str, FloatArray]]:
         x, y = np.eye(3)[:2]
         level = {"+x": x, "+x +y": x + y, "+y": y, "-x +y": y - x}
         level |= {"-x": -x, "-x -y": -x - y, "-y": -y, "+x -y": x - y}
-    each = {**level, "up": up, "down": -up}
-    return [(name, way / np.linalg.norm(way)) for name, way in each.items()]
+    axes = {**level, "up": up, "down": -up}
+    return [(name, along / np.linalg.norm(along)) for name, along in axes.items()]
 
 
 def _along(
-    region: Region, one: Loaded, turn_rad: FloatArray, name: str, way: FloatArray
+    region: Region, loaded: Loaded, turn_rad: FloatArray, name: str, along: FloatArray
 ) -> FirstFailure:
     """March out from the border until the first pose fails, and halve the last step."""
-    reach = float(np.ptp(one.bare[0].exit_points_m, axis=0).max())
+    reach = float(np.ptp(loaded.bare[0].exit_points_m, axis=0).max())
     border = region.border()
     starts = border.samples_m(np.random.default_rng(0), _PER_EDGE, _PER_FACE)
     starts = np.concatenate([border.landmarks_m(), starts])
-    starts = starts[~region.contains(starts + _OUT * reach * way)]
+    starts = starts[~region.contains(starts + _OUT * reach * along)]
 
     def fails(start_m: FloatArray, distance_m: FloatArray) -> BoolArray:
-        return _failure(one, start_m + distance_m[:, None] * way, turn_rad)[0]
+        return _failure(loaded, start_m + distance_m[:, None] * along, turn_rad)[0]
 
     before = 0.0
     for far in reach * (np.arange(1, _TURNS + 1) / _TURNS) ** 2:
@@ -97,28 +99,28 @@ def _along(
             break
         before = far
     else:
-        return FirstFailure(name, way, np.nan, np.full(3, np.nan), "", reach)
+        return FirstFailure(name, along, np.nan, np.full(3, np.nan), "", reach)
     low, high = np.full(len(starts), before), np.full(len(starts), far)
     for _ in range(_HALVES):
         middle = 0.5 * (low + high)
         hit = fails(starts, middle)
         low, high = np.where(hit, low, middle), np.where(hit, middle, high)
-        near = low <= high.min()  # what fails farther out for sure is not the first
-        starts, low, high = starts[near], low[near], high[near]
-    first = int(high.argmin())
-    place = starts[first] + high[first] * way
-    why = _failure(one, place[None], turn_rad)[1][0]
-    return FirstFailure(name, way, float(high[first]), place, why, reach)
+        candidates = low <= high.min()  # what fails farther out for sure is not the first
+        starts, low, high = starts[candidates], low[candidates], high[candidates]
+    nearest = int(high.argmin())
+    place = starts[nearest] + high[nearest] * along
+    why = _failure(loaded, place[None], turn_rad)[1][0]
+    return FirstFailure(name, along, float(high[nearest]), place, why, reach)
 
 
 def _failure(
-    one: Loaded, position_m: FloatArray, turn_rad: FloatArray
+    loaded: Loaded, position_m: FloatArray, turn_rad: FloatArray
 ) -> tuple[BoolArray, list[str]]:
     """Tell which positions fail (n,), and why the first of them does, or the last does not."""
-    turned = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))
-    places = np.hstack([position_m, turned])
-    statics = solve_sagging(one.robot, Poses.at(places), one.cable, seeks_better=False)
-    over = statics.largest_tension_N > one.cable.allowable_tension_N
+    turns = np.broadcast_to(turn_rad, (len(position_m), len(turn_rad)))
+    places = np.hstack([position_m, turns])
+    statics = solve_sagging(loaded.robot, Poses.at(places), loaded.cable, seeks_better=False)
+    over = statics.largest_tension_N > loaded.cable.allowable_tension_N
     why = ["overloaded" if s else Verdict(int(v)).label for s, v in
            zip(statics.is_solved, statics.verdict, strict=True)]  # fmt: skip
     return np.asarray(~statics.is_solved | over), why

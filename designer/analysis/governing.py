@@ -78,7 +78,7 @@ class GoverningPose:
     @property
     def left_N(self) -> FloatArray:
         """What all forces on the platform add up to (3,) [N]."""
-        pulls = [one.pull_N for one in self.cables]
+        pulls = [cable.pull_N for cable in self.cables]
         return np.asarray(np.sum([*pulls, *(force for _, force in self.loads)], axis=0))
 
     @property
@@ -112,21 +112,21 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
 
     ``safety_factor`` is that of the study, for load cases without their own.
     """
-    found = chosen.governing
-    statics = found.statics
+    case = chosen.governing
+    statics = case.statics
     if statics is None or not statics.is_solved.all():
         return None
     pulls = _pulls_N(statics)
-    factor = found.case.safety_factor or safety_factor
-    strength_N = factor * found.loaded.cable.allowable_tension_N
+    factor = case.case.safety_factor or safety_factor
+    strength_N = factor * case.loaded.cable.allowable_tension_N
     tension = statics.cable_tension_N[0]
     ends = statics.exit_tension_N[0], statics.platform_tension_N[0]
-    frequency = string_frequency_Hz(found.loaded, statics)[0]
+    frequency = string_frequency_Hz(case.loaded, statics)[0]
     rows = zip(
-        found.cables.tolist(),
+        case.cables.tolist(),
         statics.length_m[0].tolist(),
         *(end.tolist() for end in ends),
-        np.arcsin(pulls @ _up(found.loaded) / np.linalg.norm(pulls, axis=1)).tolist(),
+        np.arcsin(pulls @ _up(case.loaded) / np.linalg.norm(pulls, axis=1)).tolist(),
         sag_m(statics)[0].tolist(),
         stretch_m(statics)[0].tolist(),
         (strength_N / tension).tolist(),
@@ -135,11 +135,11 @@ def governing_pose(chosen: Candidate, safety_factor: float) -> GoverningPose | N
         strict=True,
     )
     cables = tuple(CableThere(*row) for row in rows)
-    return GoverningPose(found, statics, cables, tuple(_loads(found.loaded)))
+    return GoverningPose(case, statics, cables, tuple(_loads(case.loaded)))
 
 
-def _up(one: Loaded) -> FloatArray:
-    return np.asarray(one.bare[0].level[2])
+def _up(loaded: Loaded) -> FloatArray:
+    return np.asarray(loaded.bare[0].level[2])
 
 
 def _pulls_N(statics: Statics) -> FloatArray:
@@ -149,17 +149,17 @@ def _pulls_N(statics: Statics) -> FloatArray:
     return np.asarray(-on_cable @ statics.robot.upright)
 
 
-def _loads(one: Loaded) -> list[tuple[str, FloatArray]]:
+def _loads(loaded: Loaded) -> list[tuple[str, FloatArray]]:
     """Return what acts on the platform beside the cables, by its name."""
-    body, case = one.robot.platform, one.case
-    named = [("weight", -one.robot.weight_N * _up(one))]
+    body, case = loaded.robot.platform, loaded.case
+    named = [("weight", -loaded.robot.weight_N * _up(loaded))]
     wind = np.zeros(3)
-    if case.wind is not None and one.wind is not None:
-        wind = case.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * one.wind
+    if case.wind is not None and loaded.wind is not None:
+        wind = case.wind.pressure_Pa * (body.drag_area_m2 or 0.0) * loaded.wind
         named.append(("wind on the platform", wind))
     if body.centre_force_N.any():
         named.append(("inertia force", body.centre_force_N))
-    other = body.wrench_N[:3] - wind
-    if other.any():
-        named.append(("force of the study or load case", other))
+    constant_N = body.wrench_N[:3] - wind
+    if constant_N.any():
+        named.append(("force of the study or load case", constant_N))
     return named

@@ -62,9 +62,9 @@ class Lengths:
         """
         n_cables = self.statics.robot.n_cables
         rows = [[*names, *length_names(n_cables), *tension_names(n_cables), "verdict"]]
-        found = np.hstack([self.statics.length_m, self.statics.exit_tension_N])
-        for given, row, verdict in zip(values, found, self.statics.verdict, strict=True):
-            exactly = ["" if np.isnan(x) else repr(float(x)) for x in given]
+        figures = np.hstack([self.statics.length_m, self.statics.exit_tension_N])
+        for coordinates, row, verdict in zip(values, figures, self.statics.verdict, strict=True):
+            exactly = ["" if np.isnan(x) else repr(float(x)) for x in coordinates]
             solved = ["" if np.isnan(x) else f"{x:.10g}" for x in row]
             rows.append([*exactly, *solved, Verdict(int(verdict)).label])
         return csv_text(rows)

@@ -19,25 +19,25 @@ def load_cases_dict(analysis: Analysis) -> Json:
     checks = analysis.requirements
     if chosen is None or study.selection is None:
         needs = [
-            _case(one.governing) | {"diameter_m": one.diameter_m, "holds": one.is_held}
-            for one in analysis.needs
+            _case(case.governing) | {"diameter_m": case.diameter_m, "holds": case.is_held}
+            for case in analysis.needs
         ]
         return {"load_cases": needs, "checks": checks, "governing": None}
     pose = analysis.governing
     return {
-        "load_cases": [_case(one) for one in chosen.cases],
+        "load_cases": [_case(case) for case in chosen.cases],
         "checks": checks,
         "governing": None if pose is None else _governing(pose),
     }
 
 
 def _governing(pose: GoverningPose) -> Json:
-    found = pose.found
-    place = found.verification.worst_place
+    case = pose.found
+    place = case.verification.worst_place
     return {
-        "load_case": found.case.name,
-        "cable": found.most_used,
-        "lost_cable": found.loaded.lost_cable,
+        "load_case": case.case.name,
+        "cable": case.most_used,
+        "lost_cable": case.loaded.lost_cable,
         **named_place(place),
         "at_m": pose.statics.poses.position_m[0],
         "cables": pose.cables,
@@ -48,27 +48,27 @@ def _governing(pose: GoverningPose) -> Json:
     }
 
 
-def _case(found: CaseResult) -> Json:
-    met, loaded, loss = found.verification, found.loaded, found.loss
-    place = met.worst_place
+def _case(case: CaseResult) -> Json:
+    verification, loaded, loss = case.verification, case.loaded, case.loss
+    place = verification.worst_place
     after = {
         "fate": None if loss is None else Fate(int(loss.fate[0])).label,
         "rest": None if loss is None else loss.rest.position_m[0],
         "moved_m": None if loss is None else loss.moved_m[0],
     }
-    asked = {
-        "name": found.case.name,
-        "holds": met.holds,
-        "utilisation": met.utilisation,
-        "max_tension_N": met.max_tension_N,
+    figures = {
+        "name": case.case.name,
+        "holds": verification.holds,
+        "utilisation": verification.utilisation,
+        "max_tension_N": verification.max_tension_N,
         "allowable_tension_N": loaded.cable.allowable_tension_N,
         "axial_stiffness_N": loaded.cable.axial_stiffness_N,
-        "cable": found.most_used,
+        "cable": case.most_used,
         **named_place(place),
         "lost_cable": loaded.lost_cable,
-        "temperature_change_K": found.case.temperature_change_K,
+        "temperature_change_K": case.case.temperature_change_K,
         "wind_direction": loaded.wind,
         "inertia_direction": loaded.inertia,
-        "refined": met.is_refined,
+        "refined": verification.is_refined,
     }
-    return asked | after
+    return figures | after

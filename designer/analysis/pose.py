@@ -58,14 +58,14 @@ class PoseAnalysis:
         if not (statics.is_solved and statics.hangs_below):
             return ""
         chord_m = statics.geometry().chord_m
-        each = [
+        sentences = [
             f"Cable {k + 1} hangs below the platform, {statics.length_m[k]:.4g} m long over a "
             f"distance of {chord_m[k]:.4g} m."
             for k in np.flatnonzero(statics.hanging_cables)
         ]
         if not np.isfinite(self.sizing.massless_tension_N):
-            each.append("Straight cables cannot hold this pose: what hangs there is a weight.")
-        return " ".join(each)
+            sentences.append("Straight cables cannot hold this pose: what hangs there is a weight.")
+        return " ".join(sentences)
 
 
 def analyse_pose(study: Study) -> PoseAnalysis:

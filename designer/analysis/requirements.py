@@ -115,23 +115,23 @@ def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> 
 
 
 def _need(need: CaseNeed) -> Requirement:
-    found = need.governing
+    case = need.governing
     state, remark = State.HOLDS, ""
     if not need.is_held:
-        held = equilibrium_of(found)
+        equilibrium = equilibrium_of(case)
         # A cable that is in balance there and too weak, at every diameter that was tried.
-        state = State.FAILS if held.holds else held.state
-        remark = held.remark or "no diameter of the configured family is strong enough there"
+        state = State.FAILS if equilibrium.holds else equilibrium.state
+        remark = equilibrium.remark or "no diameter of the configured family is strong enough there"
     return Requirement(
         id="workspace",
         title="Configured family",
         formula=f"{_FAMILY} every pose that counts in the load case",
         source="cable, load_cases",
         state=state,
-        load_case=found.case.name,
-        cable=found.most_used if need.is_held else None,
-        place=found.verification.worst_place,
-        loaded=found.loaded,
+        load_case=case.case.name,
+        cable=case.most_used if need.is_held else None,
+        place=case.verification.worst_place,
+        loaded=case.loaded,
         remark=remark,
     )
 
@@ -172,9 +172,13 @@ def _no_ropes(groups: GroupChoice) -> Requirement:
 
 def _of_groups(selection: Selection, assignment: Assignment) -> Iterator[Requirement]:
     """Yield what groups of cables are used to."""
-    met = assignment.verification
+    verification = assignment.verification
     for group, rope, used, place in zip(
-        assignment.groups, assignment.ropes, met.utilisation, met.worst_place, strict=True
+        assignment.groups,
+        assignment.ropes,
+        verification.utilisation,
+        verification.worst_place,
+        strict=True,
     ):
         allowable_N = rope.cable.allowable_tension_N
         yield Requirement(

@@ -117,36 +117,36 @@ def _end(
             way[:3] = change(case, at)[1].region.outward(place[:3])
         return _Carried(case, place, at, way)
 
-    def used(one: _Carried, value: float) -> float:
-        loaded, workspace = change(one.case, value)
-        demand = _tension(loaded, workspace.hangs_below)(one.place_at(value)[None])
+    def used_at(pose: _Carried, value: float) -> float:
+        loaded, workspace = change(pose.case, value)
+        demand = _tension(loaded, workspace.hangs_below)(pose.place_at(value)[None])
         return float(demand[0]) / loaded.cable.allowable_tension_N
 
-    known = [carried(one, one.verification.worst_place, span[0]) for one in cases]
+    poses = [carried(case, case.verification.worst_place, span[0]) for case in cases]
 
     def worst(value: float) -> float:
-        return max(used(one, value) for one in known)
+        return max(used_at(pose, value) for pose in poses)
 
     for _ in range(_MOST_TURNS):
         value = _root(worst, *span)
         if value is None:
             return None
-        most = max(known, key=lambda one: used(one, value))
-        found = [
-            carried(case, *_searched(case, change, value, [o for o in known if o.case is case]))
-            for case in {id(o.case): o.case for o in known if used(o, value) > _NEAR}.values()
+        highest = max(poses, key=lambda pose: used_at(pose, value))
+        candidates = [
+            carried(case, *_searched(case, change, value, [o for o in poses if o.case is case]))
+            for case in {id(o.case): o.case for o in poses if used_at(o, value) > _NEAR}.values()
         ]
-        worse = [one for one in found if used(one, value) > 1.0 + _FULL]
-        if not worse:
-            top = max(used(one, value) for one in (*known, *found))
-            beyond = used(most, value + 1e-6 * max(abs(value), span[2]))
-            name = most.case.case.name
-            return Reserve(value, top, name, most.place_at(value), math.isfinite(beyond))
-        known += worse
+        beyond_full = [pose for pose in candidates if used_at(pose, value) > 1.0 + _FULL]
+        if not beyond_full:
+            top = max(used_at(pose, value) for pose in (*poses, *candidates))
+            beyond = used_at(highest, value + 1e-6 * max(abs(value), span[2]))
+            name = highest.case.case.name
+            return Reserve(value, top, name, highest.place_at(value), math.isfinite(beyond))
+        poses += beyond_full
     return None
 
 
-def _root(of: Callable[[float], float], start: float, most: float, step: float) -> float | None:
+def _root(of: Callable[[float], float], start: float, farthest: float, step: float) -> float | None:
     """Return the last value at which the utilisation is within 100 %; None up to the most."""
     from scipy.optimize import brentq
 
@@ -159,7 +159,7 @@ def _root(of: Callable[[float], float], start: float, most: float, step: float) 
     while beyond(high) < 0.0:
         low, step = high, 1.6 * step
         high = low + step
-        if high > most:
+        if high > farthest:
             return None
     tolerance = 1e-9 * max(high, step)
     root = float(brentq(beyond, low, high, xtol=tolerance, rtol=1e-12))
@@ -167,11 +167,11 @@ def _root(of: Callable[[float], float], start: float, most: float, step: float) 
 
 
 def _searched(
-    case: CaseResult, change: _Changed, value: float, known: Sequence[_Carried]
+    case: CaseResult, change: _Changed, value: float, poses: Sequence[_Carried]
 ) -> tuple[FloatArray, float]:
     """Return the worst pose of a case that a search from the known ones finds, with the value."""
     loaded, workspace = change(case, value)
-    starts = np.array([one.place_at(value) for one in known])
+    starts = np.array([pose.place_at(value) for pose in poses])
     if loaded.keeps_lengths:
         return starts[0], value
 
@@ -182,9 +182,9 @@ def _searched(
     return worst.place, value
 
 
-def _tension(one: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
+def _tension(loaded: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:
     """Return the demand for tension [N]."""
-    if one.keeps_lengths:
-        return settled_demand(one, hangs_below, seeks_better=seeks_better)
-    all_of_it = rope_demand(one.robot, one.cable, hangs_below, seeks_better=seeks_better)
+    if loaded.keeps_lengths:
+        return settled_demand(loaded, hangs_below, seeks_better=seeks_better)
+    all_of_it = rope_demand(loaded.robot, loaded.cable, hangs_below, seeks_better=seeks_better)
     return lambda places: all_of_it(places)[:, 0]

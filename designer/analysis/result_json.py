@@ -98,14 +98,14 @@ def result_part(analysis: Analysis, keep: Iterable[str]) -> Json:
 
 def _reader(paths: Iterable[str]) -> IsRead:
     """Return the test whether a part is read: it is one of ``paths``, or one lies in it."""
-    kept = [f"{path}." for path in paths]
-    return lambda part: any(path.startswith(f"{part}.") for path in kept)
+    prefixes = [f"{path}." for path in paths]
+    return lambda part: any(path.startswith(f"{part}.") for path in prefixes)
 
 
 def evaluates_answer(keep: Iterable[str]) -> bool:
     """Tell whether what is kept takes the answer of a study, and not a part of it alone."""
     paths = [name.split(".") for name in keep]
-    of_the_choice = any(path[1:2] == [each] for path in paths for each in _OF_THE_CHOICE)
+    of_the_choice = any(path[1:2] == [quality] for path in paths for quality in _OF_THE_CHOICE)
     return of_the_choice or not {path[0] for path in paths} <= {"pose", "workspace", "name"}
 
 
@@ -126,8 +126,8 @@ def _origin(study: Study) -> Json:
 def _answer(analysis: Analysis) -> Json:
     """Return the verdict, what it rests on where it is not yes, and the products to use."""
     reasons = [
-        {"id": one.id, "load_case": one.load_case, "state": one.state.value}
-        for one in analysis.unmet
+        {"id": requirement.id, "load_case": requirement.load_case, "state": requirement.state.value}
+        for requirement in analysis.unmet
     ]
     return {"verdict": analysis.answer.value, "reasons": reasons, **_products(analysis)}
 
@@ -203,42 +203,42 @@ def _workspace(analysis: Analysis, is_read: IsRead) -> Json | None:
     }
 
 
-def _map(found: WorkspaceMap) -> Json:
-    census = found.census
+def _map(survey: WorkspaceMap) -> Json:
+    census = survey.census
     return {
         "samples": census.samples,
-        "feasible": found.is_feasible,
-        "reason": None if found.is_feasible else _why_infeasible(found),
+        "feasible": survey.is_feasible,
+        "reason": None if survey.is_feasible else _why_infeasible(survey),
         "statuses": dict(census.statuses),
         "hangs_below": census.hangs_below,
         "excluded": census.excluded,
         **_hanging(census.hanging),
         "fraction_no_finite_cable": census.fraction(Verdict.NO_FINITE_CABLE.label),
-        "infeasible_example_m": found.infeasible_example_m,
-        **_turn(found.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
-        "limit_ratio": found.limit_ratio,
-        "sagging": _extreme(found.sagging),
-        "sampled": _extreme(found.sampled),
-        "massless": _extreme(found.massless),
+        "infeasible_example_m": survey.infeasible_example_m,
+        **_turn(survey.infeasible_rotation_vector_rad, "infeasible_rotation_vector"),
+        "limit_ratio": survey.limit_ratio,
+        "sagging": _extreme(survey.sagging),
+        "sampled": _extreme(survey.sampled),
+        "massless": _extreme(survey.massless),
     }
 
 
-def _hanging(found: HangingCables) -> Json:
+def _hanging(cables: HangingCables) -> Json:
     """Return how many samples have a cable that hangs too far, and the worst of them."""
     return {
-        "long_cables": _worst_hanging(found.long, "length_over_chord"),
-        "below_floor": _worst_hanging(found.below_floor, "lowest_m"),
+        "long_cables": _worst_hanging(cables.long, "length_over_chord"),
+        "below_floor": _worst_hanging(cables.below_floor, "lowest_m"),
     }
 
 
-def _worst_hanging(found: Hanging | None, name: str) -> Json:
-    if found is None:
+def _worst_hanging(worst: Hanging | None, name: str) -> Json:
+    if worst is None:
         return {"samples": 0}
-    place = np.array(found.place)
+    place = np.array(worst.place)
     return {
-        "samples": found.samples,
-        name: found.extreme,
-        "cable": found.cable,
+        "samples": worst.samples,
+        name: worst.extreme,
+        "cable": worst.cable,
         "pose": place[:3],
         **_turn(turn_of(place)),
     }
@@ -248,43 +248,43 @@ def _orientations(study: Study) -> Json | None:
     """Return which orientations were tried at each position; None of a point mass."""
     if study.workspace is None or study.robot.is_point_mass:
         return None
-    asked = study.workspace.orientations
+    orientations = study.workspace.orientations
     return {
-        "rotation_vectors": asked.turns_rad,
-        "range": asked.range_rad,
+        "rotation_vectors": orientations.turns_rad,
+        "range": orientations.range_rad,
     }
 
 
-def _qualities(found: Qualities | None) -> Json:
+def _qualities(qualities: Qualities | None) -> Json:
     """Return stiffness and clearances; None where they were not looked at."""
-    interference = None if found is None else found.interference
+    interference = None if qualities is None else qualities.interference
     return {
-        "stiffness": None if found is None else found.stiffness,
+        "stiffness": None if qualities is None else qualities.stiffness,
         "interference": None if interference is None else _interference(interference),
-        "hanging": None if found is None else _hanging(found.hanging),
+        "hanging": None if qualities is None else _hanging(qualities.hanging),
     }
 
 
-def _interference(found: Interference) -> Json:
-    worst = found.worst
+def _interference(survey: Interference) -> Json:
+    worst = survey.worst
     return {
-        "clearance_m": found.clearance_m,
+        "clearance_m": survey.clearance_m,
         "min_distance_m": None if worst is None else worst.distance_m,
         "error_m": None if worst is None else worst.error_m,
         "pair": None if worst is None else worst.names,
         "pose": None if worst is None else worst.place[:3],
-        "samples": found.samples,
-        "violating": found.violating,
-        "violated": found.is_violated,
+        "samples": survey.samples,
+        "violating": survey.violating,
+        "violated": survey.is_violated,
     }
 
 
-def _why_infeasible(found: WorkspaceMap) -> str:
-    counts = found.census.statuses
+def _why_infeasible(survey: WorkspaceMap) -> str:
+    counts = survey.census.statuses
     unserved = [v for v in Verdict if v is not Verdict.SOLVED and counts[v.label] > 0]
     if unserved:
         return " ".join(f"{counts[v.label]} samples: {v.sentence}" for v in unserved)
-    if found.infeasible_example_m is None:
+    if survey.infeasible_example_m is None:
         return "Every pose is left out."
     return "The search between the samples met a pose without a finite cable."
 

@@ -66,14 +66,14 @@ _CHOICE = {
 }
 
 
-def _plain(thing: object, table: Mapping[str, str]) -> Json:
+def _plain(result: object, table: Mapping[str, str]) -> Json:
     """Return the values that a table names, None for what belongs to a part that is None."""
 
     def value(path: str) -> Any:
-        found: Any = thing
+        part: Any = result
         for name in path.split("."):
-            found = None if found is None else getattr(found, name)
-        return finite(found)
+            part = None if part is None else getattr(part, name)
+        return finite(part)
 
     return {key: value(path) for key, path in table.items()}
 
@@ -104,18 +104,18 @@ def selection_dict(selection: SelectionResult) -> Json:
         "reason": selection.reason,
         "pareto": [rows[id(c)] for c in selection.front],
         "candidates": [rows[id(c)] for c in selection.candidates],
-        "not_tried": [_plain(one, left_out) for one in selection.not_tried],
-        "grades": [_plain(one, grade) for one in selection.outcomes],
+        "not_tried": [_plain(row, left_out) for row in selection.not_tried],
+        "grades": [_plain(row, grade) for row in selection.outcomes],
         "alternatives": [rows[id(o.best)] for o in selection.alternatives if o.best],
-        "usable": [_plain(one, part) | {"grade": grade_id} for one in sizes],
+        "usable": [_plain(row, part) | {"grade": grade_id} for row in sizes],
     }
 
 
 def candidate_dict(candidate: Candidate, outcome: GradeOutcome) -> Json:
     """Return one candidate under the names that scripts rely on."""
-    found = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_place)
+    figures = _plain(candidate, _CANDIDATE) | _place(candidate.verification.worst_place)
     trust = {"trust": candidate.grade.trust, "doubt": candidate.size.doubt}
-    return {**found, "outcome": outcome.outcome, **trust}
+    return {**figures, "outcome": outcome.outcome, **trust}
 
 
 def _place(place: Any) -> Json:
@@ -129,35 +129,35 @@ def groups_dict(choice: GroupChoice | None) -> Json:
     """Return ``groups`` and ``group_choice``; empty and None where a study has no groups."""
     if choice is None:
         return {"groups": [], "group_choice": None}
-    found = _plain(choice, _CHOICE)
-    found["bound_kg"] = found["bound"] if choice.objective == "mass" else None
+    figures = _plain(choice, _CHOICE)
+    figures["bound_kg"] = figures["bound"] if choice.objective == "mass" else None
     return {
         "groups": list(_groups(choice)),
-        "group_choice": {**found, "proposals": list(_proposals(choice))},
+        "group_choice": {**figures, "proposals": list(_proposals(choice))},
     }
 
 
 def _groups(choice: GroupChoice) -> Iterator[Json]:
-    chosen, met = choice.chosen, choice.chosen.verification
+    chosen, verification = choice.chosen, choice.chosen.verification
     for k, (group, rope) in enumerate(zip(chosen.groups, chosen.ropes, strict=True)):
         yield {
             "name": group.name,
             "cables": list(group.cables),
             **_plain(rope, {key: _CANDIDATE[key] for key in (*_PRODUCT, "axial_stiffness_N")}),
-            "utilisation": finite(met.utilisation[k]),
-            "longest_m": finite(met.longest_m[[c - 1 for c in group.cables]]),
-            **_place(met.worst_place[k]),
+            "utilisation": finite(verification.utilisation[k]),
+            "longest_m": finite(verification.longest_m[[c - 1 for c in group.cables]]),
+            **_place(verification.worst_place[k]),
         }
 
 
 def _proposals(choice: GroupChoice) -> Iterator[Json]:
     names = ("bound", "total", "outcome", "utilisation", "excluded", "guided")
-    for one in choice.proposals:
+    for proposal in choice.proposals:
         yield {
-            **_plain(one, {name: name for name in names}),
-            "products": [{"grade": p.grade.id, "size_id": p.size.id} for p in one.products],
-            "group": None if one.group is None else choice.groups[one.group].name,
-            "pose": finite(one.place),
+            **_plain(proposal, {name: name for name in names}),
+            "products": [{"grade": p.grade.id, "size_id": p.size.id} for p in proposal.products],
+            "group": None if proposal.group is None else choice.groups[proposal.group].name,
+            "pose": finite(proposal.place),
         }
 
 
@@ -167,8 +167,8 @@ def candidates_csv(selection: SelectionResult) -> str:
     for candidate, outcome in ((c, o) for o in selection.outcomes for c in o.candidates):
         row: Json = {}
         for name, value in candidate_dict(candidate, outcome).items():
-            each = enumerate(value, start=1) if name in _LISTS else [(0, value)]
-            row |= {_LISTS.get(name, name).format(k): one for k, one in each}
+            parts = enumerate(value, start=1) if name in _LISTS else [(0, value)]
+            row |= {_LISTS.get(name, name).format(k): part for k, part in parts}
         rows.append(row)
     names = list(rows[0]) if rows else ["grade", "size_id"]
     return csv_text([names, *([row[name] for name in names] for row in rows)])

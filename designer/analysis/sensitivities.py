@@ -74,46 +74,46 @@ class Sensitivities:
 
     def of(self, name: str) -> Sensitivity:
         """Return one of them by its name."""
-        return next(one for one in self.each if one.input == name)
+        return next(slope for slope in self.each if slope.input == name)
 
 
-def sensitivities(found: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
+def sensitivities(case: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
     """Return the slopes at the worst pose of a load case, of a rope with these figures."""
-    if found.loaded.keeps_lengths:
-        return _by_differences(found, efficiency, breaking_load_N)
-    statics = found.statics
+    if case.loaded.keeps_lengths:
+        return _by_differences(case, efficiency, breaking_load_N)
+    statics = case.statics
     solved = statics is not None and bool(statics.is_solved[0])
     ties: tuple[Slopes, ...] = ()
     if statics is not None and solved:
-        ties = utilisation_slopes(statics, found.loaded.cable.allowable_tension_N)
-    n_cables = found.loaded.robot.n_cables
+        ties = utilisation_slopes(statics, case.loaded.cable.allowable_tension_N)
+    n_cables = case.loaded.robot.n_cables
     if not ties:
-        nothing = dict.fromkeys(("payload", "modulus", "linear_mass", "region"), math.nan)
+        unknown = dict.fromkeys(("payload", "modulus", "linear_mass", "region"), math.nan)
         why = (
             "The internal forces that are best here are at a corner at which several choices are "
             "as good, so that the utilisation has no slope."
         )
-        each = _named(found, efficiency, breaking_load_N, nothing)
-        return Sensitivities(each, np.full((n_cables, 3), np.nan), "adjoint", why)
-    rows = [_adjoint(found, slopes) for slopes in ties]
-    own = {name: _agreed([row[name] for row in rows]) for name in rows[0]}
+        inputs = _named(case, efficiency, breaking_load_N, unknown)
+        return Sensitivities(inputs, np.full((n_cables, 3), np.nan), "adjoint", why)
+    rows = [_adjoint(case, slopes) for slopes in ties]
+    slopes_of = {name: _agreed([row[name] for row in rows]) for name in rows[0]}
     exits = np.stack([slopes.exit_points_per_m for slopes in ties])
-    same = np.ptp(exits, axis=0) <= _ALIKE * np.abs(exits).max()
+    alike = np.ptp(exits, axis=0) <= _ALIKE * np.abs(exits).max()
     why = ""
     if len(ties) > 1:
         cables = " and ".join(str(slopes.cable) for slopes in ties)
         why = f"Cables {cables} are used alike: where only one of them gains, there is no slope."
-    each = _named(found, efficiency, breaking_load_N, own)
-    return Sensitivities(each, np.where(same, exits[0], np.nan), "adjoint", why)
+    inputs = _named(case, efficiency, breaking_load_N, slopes_of)
+    return Sensitivities(inputs, np.where(alike, exits[0], np.nan), "adjoint", why)
 
 
-def _adjoint(found: CaseResult, slopes: Slopes) -> dict[str, float]:
+def _adjoint(case: CaseResult, slopes: Slopes) -> dict[str, float]:
     """Return slopes in the logarithms of payload, modulus and mass, and in the region [1/m]."""
-    one = found.loaded
-    heavier = load_wrench_N(with_payload(one, 2.0).robot, found.pose)[0]
-    more = heavier - load_wrench_N(one.robot, found.pose)[0]
-    load = _cable_load(with_density(one, 2.0)) - _cable_load(one)
-    side = found.workspace.region.outward(found.pose.position_m[0])
+    loaded = case.loaded
+    heavier = load_wrench_N(with_payload(loaded, 2.0).robot, case.pose)[0]
+    more = heavier - load_wrench_N(loaded.robot, case.pose)[0]
+    load = _cable_load(with_density(loaded, 2.0)) - _cable_load(loaded)
+    side = case.workspace.region.outward(case.pose.position_m[0])
     return {
         "payload": float(slopes.load @ more),
         "modulus": float(slopes.stiffness.sum()),
@@ -122,100 +122,103 @@ def _adjoint(found: CaseResult, slopes: Slopes) -> dict[str, float]:
     }
 
 
-def _by_differences(found: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
-    one, place = found.loaded, found.verification.worst_place
+def _by_differences(case: CaseResult, efficiency: float, breaking_load_N: float) -> Sensitivities:
+    loaded, place = case.loaded, case.verification.worst_place
     side = np.zeros_like(place)
-    side[:3] = found.workspace.region.outward(place[:3])
+    side[:3] = case.workspace.region.outward(place[:3])
 
     def slope(changed: Callable[[float], Loaded]) -> float:
-        ends = [found.tension_N(changed(sign * _STEP)) for sign in (1.0, -1.0)]
-        return (ends[0] - ends[1]) / (2.0 * _STEP * one.cable.allowable_tension_N)
+        ends = [case.tension_N(changed(sign * _STEP)) for sign in (1.0, -1.0)]
+        return (ends[0] - ends[1]) / (2.0 * _STEP * loaded.cable.allowable_tension_N)
 
     def shifted(by: float) -> float:
-        met = replace(found.verification, worst_place=place + by * side)
-        return replace(found, verification=met).tension_N(one) / one.cable.allowable_tension_N
+        verification = replace(case.verification, worst_place=place + by * side)
+        return (
+            replace(case, verification=verification).tension_N(loaded)
+            / loaded.cable.allowable_tension_N
+        )
 
-    own = {
-        "payload": slope(lambda by: with_payload(one, 1.0 + by)),
-        "modulus": slope(lambda by: with_stiffness(one, 1.0 + by)),
-        "linear_mass": slope(lambda by: with_density(one, 1.0 + by)),
+    slopes = {
+        "payload": slope(lambda by: with_payload(loaded, 1.0 + by)),
+        "modulus": slope(lambda by: with_stiffness(loaded, 1.0 + by)),
+        "linear_mass": slope(lambda by: with_density(loaded, 1.0 + by)),
         "region": (shifted(_STEP) - shifted(-_STEP)) / (2.0 * _STEP) if side.any() else 0.0,
     }
-    exits = np.full((one.robot.n_cables, 3), np.nan)
+    exits = np.full((loaded.robot.n_cables, 3), np.nan)
     for cable, axis in np.ndindex(exits.shape):
-        exits[cable, axis] = slope(partial(with_exit_moved, one, cable, axis))
-    finite = np.isfinite([*own.values(), *exits.ravel()]).all()
+        exits[cable, axis] = slope(partial(with_exit_moved, loaded, cable, axis))
+    finite = np.isfinite([*slopes.values(), *exits.ravel()]).all()
     why = "" if finite else "Near this pose the platform finds no rest on the kept lengths."
-    each = _named(found, efficiency, breaking_load_N, own)
-    return Sensitivities(each, np.where(np.isfinite(exits), exits, np.nan), "differences", why)
+    inputs = _named(case, efficiency, breaking_load_N, slopes)
+    return Sensitivities(inputs, np.where(np.isfinite(exits), exits, np.nan), "differences", why)
 
 
 def _named(
-    found: CaseResult, efficiency: float, breaking_load_N: float, own: dict[str, float]
+    case: CaseResult, efficiency: float, breaking_load_N: float, slopes: dict[str, float]
 ) -> tuple[Sensitivity, ...]:
-    used, cable = found.utilisation, found.loaded.bare[1]
+    used, cable = case.utilisation, case.loaded.bare[1]
 
     def relative(name: str, value: float, unit: str, slope: float) -> Sensitivity:
         return Sensitivity(name, value, unit, slope / value, slope / used)
 
     return (
-        relative("payload", 1.0, "", own["payload"]),
+        relative("payload", 1.0, "", slopes["payload"]),
         relative("breaking_load", breaking_load_N, "N", -used),
         relative("efficiency", efficiency, "", -used),
-        relative("modulus", cable.axial_stiffness_N, "N", own["modulus"]),
-        relative("linear_mass", cable.linear_density_kg_per_m, "kg/m", own["linear_mass"]),
-        Sensitivity("region", 0.0, "m", own["region"], math.nan),
+        relative("modulus", cable.axial_stiffness_N, "N", slopes["modulus"]),
+        relative("linear_mass", cable.linear_density_kg_per_m, "kg/m", slopes["linear_mass"]),
+        Sensitivity("region", 0.0, "m", slopes["region"], math.nan),
     )
 
 
 def _agreed(values: list[float]) -> float:
     """Return the slope that all ties have; NaN where they differ."""
-    same = max(values) - min(values) <= _ALIKE * max(map(abs, values), default=0.0)
-    return values[0] if same else math.nan
+    alike = max(values) - min(values) <= _ALIKE * max(map(abs, values), default=0.0)
+    return values[0] if alike else math.nan
 
 
-def _cable_load(one: Loaded) -> FloatArray:
+def _cable_load(loaded: Loaded) -> FloatArray:
     """Return the load per unstrained length of a cable (3,), base frame [N/m]."""
-    return np.asarray(-one.cable.weight_N_per_m * one.robot.upright[2])
+    return np.asarray(-loaded.cable.weight_N_per_m * loaded.robot.upright[2])
 
 
-def with_payload(one: Loaded, factor: float) -> Loaded:
+def with_payload(loaded: Loaded, factor: float) -> Loaded:
     """Return the same with weight, inertia and loads of the platform so many times as large.
 
     Wind on the platform stays.
     """
-    scaled = payload_scaled(one, factor)
+    scaled = payload_scaled(loaded, factor)
     return scaled.on(*scaled.bare)
 
 
-def payload_scaled(one: Loaded, factor: float) -> Loaded:
+def payload_scaled(loaded: Loaded, factor: float) -> Loaded:
     """Return its load case with that, and what it is put on, to be put on."""
-    (robot, cable), case = one.bare, one.case
+    (robot, cable), case = loaded.bare, loaded.case
     body = robot.platform
     wrench = body.wrench_N if case.wrench_N is None else case.wrench_N
     robot = replace(robot, platform=replace(body, mass_kg=factor * case.mass_on(body)))
     case = replace(case, mass_kg=None, wrench_N=factor * wrench)
-    return replace(one, case=case, bare=(robot, cable))
+    return replace(loaded, case=case, bare=(robot, cable))
 
 
-def with_density(one: Loaded, factor: float) -> Loaded:
+def with_density(loaded: Loaded, factor: float) -> Loaded:
     """Return the same with a rope so many times as heavy."""
-    robot, cable = one.bare
+    robot, cable = loaded.bare
     heavier = replace(cable, linear_density_kg_per_m=factor * cable.linear_density_kg_per_m)
-    return one.on(robot, heavier)
+    return loaded.on(robot, heavier)
 
 
-def with_stiffness(one: Loaded, factor: float) -> Loaded:
+def with_stiffness(loaded: Loaded, factor: float) -> Loaded:
     """Return the same with a rope so many times as stiff."""
-    robot, cable = one.bare
+    robot, cable = loaded.bare
     stiffer = replace(cable, axial_stiffness_N=factor * cable.axial_stiffness_N)
-    return one.on(robot, stiffer)
+    return loaded.on(robot, stiffer)
 
 
-def with_exit_moved(one: Loaded, cable: int, axis: int, by_m: float) -> Loaded:
+def with_exit_moved(loaded: Loaded, cable: int, axis: int, by_m: float) -> Loaded:
     """Return the same with one exit point moved along an axis, both from 0 [m]."""
-    robot, line = one.bare
+    robot, line = loaded.bare
     exits = np.array(robot.exit_points_m)
     exits[cable, axis] += by_m
     moved = replace(robot, exit_points_m=exits)
-    return one.on(moved, line)
+    return loaded.on(moved, line)

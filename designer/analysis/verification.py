@@ -127,9 +127,11 @@ def _diameter(name: str, material: Material, sizing: Sizing) -> SecondAnswer:
     except ValueError as error:
         remark = str(error)
     remark = "" if np.isfinite(theirs) else remark
-    what = f"needed diameter, {name}"
+    quantity = f"needed diameter, {name}"
     has_others = not bool(sizing.is_thinnest)
-    return SecondAnswer(method, what, "m", ours, theirs, _SAME_DIAMETER * ours, remark, has_others)
+    return SecondAnswer(
+        method, quantity, "m", ours, theirs, _SAME_DIAMETER * ours, remark, has_others
+    )
 
 
 def verify_cables(name: str, statics: Statics) -> SecondAnswer:
@@ -139,7 +141,7 @@ def verify_cables(name: str, statics: Statics) -> SecondAnswer:
         np.broadcast_to(figure, statics.length_m.shape)
         for figure in (statics.weight_N_per_m, statics.axial_stiffness_N)
     )
-    each = zip(
+    rows = zip(
         statics.free_length_m,
         statics.force_x_N,
         statics.force_z_N,
@@ -147,7 +149,7 @@ def verify_cables(name: str, statics: Statics) -> SecondAnswer:
         weight,
         strict=True,
     )
-    ends = np.array([end_position_m(*map(float, cable)) for cable in each])
+    ends = np.array([end_position_m(*map(float, cable)) for cable in rows])
     off = ends - np.stack([geometry.horizontal_distance_m, -geometry.drop_m], axis=-1)
     farthest = float(np.hypot(*off.T).max())
     return SecondAnswer(

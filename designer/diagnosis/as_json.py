@@ -116,8 +116,8 @@ def _by_model(
     models: Mapping[str, Model | None], function: Callable[[Model], Json | None]
 ) -> Json | None:
     """Return one thing of each model; None where it was not measured."""
-    found = {name: function(model) for name, model in models.items() if model is not None}
-    return None if all(one is None for one in found.values()) else found
+    values = {name: function(model) for name, model in models.items() if model is not None}
+    return None if all(value is None for value in values.values()) else values
 
 
 def _rows(outliers: tuple[Outlier, ...], measured: Measured) -> Json:
@@ -129,8 +129,8 @@ def _reasons(effects: tuple[tuple[str, str], ...]) -> list[Json]:
     return [{"id": key, "reason": reason} for key, reason in effects]
 
 
-def _left(left: Left | None) -> Json | None:
-    return None if left is None else {**_interval(left.rms), "median": left.median}
+def _left(deviation: Left | None) -> Json | None:
+    return None if deviation is None else {**_interval(deviation.rms), "median": deviation.median}
 
 
 def _provenance(study: Study, measured: Measured) -> Json:
@@ -146,11 +146,11 @@ def _balance(diagnosis: Diagnosis) -> Json | None:
     imbalance = diagnosis.imbalance
     if imbalance is None:
         return None
-    held = imbalance[~np.isnan(imbalance)]
+    finite_values = imbalance[~np.isnan(imbalance)]
     return {
-        "left_median": float(np.median(held)) if held.size else None,
-        "left_largest": float(held.max()) if held.size else None,
-        "rows_not_held": int(imbalance.size - held.size),
+        "left_median": float(np.median(finite_values)) if finite_values.size else None,
+        "left_largest": float(finite_values.max()) if finite_values.size else None,
+        "rows_not_held": int(imbalance.size - finite_values.size),
     }
 
 

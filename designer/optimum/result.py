@@ -252,5 +252,5 @@ class Optimum:
 
 def is_near(plan: Plan, a: Values, b: Values, share: float) -> bool:
     """Tell whether two designs are no further apart than a share of each variable's range."""
-    each = zip(plan.variables, a, b, strict=True)
-    return all(abs(one.share(x) - one.share(y)) <= share for one, x, y in each)
+    rows = zip(plan.variables, a, b, strict=True)
+    return all(abs(variable.share(x) - variable.share(y)) <= share for variable, x, y in rows)

@@ -45,10 +45,10 @@ class Draws:
         """Return some of the draws."""
         return Draws(*(getattr(self, field.name)[at] for field in fields(self)))
 
-    def on(self, one: Loaded, k: int) -> Loaded:
+    def on(self, loaded: Loaded, k: int) -> Loaded:
         """Return a load case with the inputs of one draw."""
-        one = payload_scaled(one, float(self.payload[k]))
-        robot, rope = one.bare
+        loaded = payload_scaled(loaded, float(self.payload[k]))
+        robot, rope = loaded.bare
         drawn = replace(
             rope,
             linear_density_kg_per_m=self.linear_mass[k] * rope.linear_density_kg_per_m,
@@ -56,17 +56,17 @@ class Draws:
             allowable_tension_N=self.breaking_load[k] * rope.allowable_tension_N,
         )
         moved = replace(robot, exit_points_m=robot.exit_points_m + self.exit_points_m[k])
-        return one.on(moved, drawn)
+        return loaded.on(moved, drawn)
 
 
 def columns_of(spreads: Mapping[Input, Spread], robot: Robot) -> dict[Input, slice]:
     """Return which coordinates of a draw belong to each input."""
-    found, at = {}, 0
+    columns, at = {}, 0
     for name in spreads:
         width = 3 * robot.n_cables if name == "exit_points" else 1
-        found[name] = slice(at, at + width)
+        columns[name] = slice(at, at + width)
         at += width
-    return found
+    return columns
 
 
 def draws_at(spreads: Mapping[Input, Spread], robot: Robot, shares: FloatArray) -> Draws:

@@ -62,9 +62,9 @@ class Asked:
 
         Wind does not grow with the payload, nor does a force that an effect has put on the robot.
         """
-        one = self.loaded
-        still = one.wind is None and not one.bare[0].platform.centre_force_N.any()
-        return still and not one.keeps_lengths and is_quick(one.robot)
+        loaded = self.loaded
+        still = loaded.wind is None and not loaded.bare[0].platform.centre_force_N.any()
+        return still and not loaded.keeps_lengths and is_quick(loaded.robot)
 
     def elsewhere(self) -> Asked:
         """Return the same at poses from all over the region."""
@@ -87,60 +87,60 @@ class Asked:
             used[k] = self._solved(draws.on(self.loaded, k))
         return used
 
-    def _solved(self, one: Loaded) -> FloatArray:
-        if one.keeps_lengths:
-            tension = settled_demand(one, self.workspace.hangs_below)(self.places)
+    def _solved(self, loaded: Loaded) -> FloatArray:
+        if loaded.keeps_lengths:
+            tension = settled_demand(loaded, self.workspace.hangs_below)(self.places)
         else:
-            statics = solve_sagging(one.robot, Poses.at(self.places), one.cable)
+            statics = solve_sagging(loaded.robot, Poses.at(self.places), loaded.cable)
             tension = demand_of(statics.largest_tension_N, statics, self.workspace.hangs_below)
-        return np.asarray(tension / one.cable.allowable_tension_N)
+        return np.asarray(tension / loaded.cable.allowable_tension_N)
 
     def _ropes(self, draws: Draws) -> FloatArray:
         """Return mass per length, EA and allowable tension of each draw (n, 3); ice stays."""
-        one, bare = self.loaded, self.loaded.bare[1]
+        loaded, bare = self.loaded, self.loaded.bare[1]
         added = (draws.linear_mass - 1.0) * bare.linear_density_kg_per_m
         return np.column_stack(
             [
-                one.cable.linear_density_kg_per_m + added,
+                loaded.cable.linear_density_kg_per_m + added,
                 draws.modulus * bare.axial_stiffness_N,
                 draws.breaking_load * bare.allowable_tension_N,
             ]
         )
 
     def _as_ropes(self, draws: Draws) -> FloatArray:
-        robot, each = self.loaded.robot, self._ropes(draws) / draws.payload[:, None]
-        order = np.argsort(each[:, 0], kind="stable")
-        ropes = [Cable(math.nan, *row) for row in each[order].tolist()]
+        robot, figures = self.loaded.robot, self._ropes(draws) / draws.payload[:, None]
+        order = np.argsort(figures[:, 0], kind="stable")
+        ropes = [Cable(math.nan, *row) for row in figures[order].tolist()]
         poses, cells = Poses.at(self.places), np.arange(len(self.places))
         exclude = self.workspace.hangs_below == "exclude"
-        found = meet(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
-        for row in np.flatnonzero(found.failed.any(axis=1)).tolist():
-            hard = np.flatnonzero(found.failed[row])
-            add_slowly(found, row, robot, poses, ropes[row], cells, exclude, hard)
-        used = np.empty_like(found.utilisation)
-        used[order] = np.where(found.failed, np.inf, found.utilisation)
+        meets = meet(robot, poses, ropes, cells, len(cells), leaves_out_hanging=exclude)
+        for row in np.flatnonzero(meets.failed.any(axis=1)).tolist():
+            hard = np.flatnonzero(meets.failed[row])
+            add_slowly(meets, row, robot, poses, ropes[row], cells, exclude, hard)
+        used = np.empty_like(meets.utilisation)
+        used[order] = np.where(meets.failed, np.inf, meets.utilisation)
         return used
 
 
-def largest(asked: Sequence[Asked], draws: Draws, progress: Advance = lambda _: None) -> FloatArray:
+def largest(poses: Sequence[Asked], draws: Draws, progress: Advance = lambda _: None) -> FloatArray:
     """Return the largest utilisation of each draw (n,); infinite where a pose is not held.
 
     Also where all poses are left out, those beside the given ones too: then nothing is served.
     ``progress`` is called with the number of draws done.
     """
-    most = np.empty(len(draws))
+    utilisation = np.empty(len(draws))
     for start in range(0, len(draws), _CHUNK):
-        some = slice(start, start + _CHUNK)
-        part = draws.part(some)
-        found = np.maximum.reduce([one.utilisation(part).max(axis=1) for one in asked])
+        rows = slice(start, start + _CHUNK)
+        part = draws.part(rows)
+        highest = np.maximum.reduce([pose.utilisation(part).max(axis=1) for pose in poses])
         # Where hanging cables leave a pose out, the worst is at the border of that, which moves.
-        gone = np.flatnonzero(np.isneginf(found)).tolist()
+        gone = np.flatnonzero(np.isneginf(highest)).tolist()
         if gone:
-            others = [one.elsewhere().utilisation(part.part(gone)) for one in asked]
-            found[gone] = np.maximum.reduce([each.max(axis=1) for each in others])
-        most[some] = found
+            elsewhere = [pose.elsewhere().utilisation(part.part(gone)) for pose in poses]
+            highest[gone] = np.maximum.reduce([values.max(axis=1) for values in elsewhere])
+        utilisation[rows] = highest
         progress(len(part))
-    return np.where(np.isneginf(most), np.inf, most)
+    return np.where(np.isneginf(utilisation), np.inf, utilisation)
 
 
 def may_govern(
@@ -150,29 +150,29 @@ def may_govern(
 
     ``cases`` are what was found with the chosen rope, ``rope_in`` gives the rope to ask about.
     """
-    every = [one for found in cases for one in _all_of(found, rope_in(found.case))]
-    used = [one.utilisation(probes) for one in every]
-    most = np.maximum.reduce([each.max(axis=1) for each in used])[:, None]
-    near = [(each >= _NEAR * most).any(axis=0) for each in used]
+    every = [pose for case in cases for pose in _all_of(case, rope_in(case.case))]
+    used = [pose.utilisation(probes) for pose in every]
+    highest = np.maximum.reduce([values.max(axis=1) for values in used])[:, None]
+    near_highest = [(values >= _NEAR * highest).any(axis=0) for values in used]
     return [
-        replace(one, places=one.places[kept])
-        for one, kept in zip(every, near, strict=True)
-        if kept.any()
+        replace(pose, places=pose.places[is_near])
+        for pose, is_near in zip(every, near_highest, strict=True)
+        if is_near.any()
     ]
 
 
-def _all_of(found: CaseResult, rope: Cable) -> Iterator[Asked]:
+def _all_of(case: CaseResult, rope: Cable) -> Iterator[Asked]:
     """Yield a case in the direction that asked for most, at many poses; in the others at one."""
-    robot, space = found.loaded.bare[0], found.workspace.space
-    worst = found.verification.worst_place[None]
-    settles = found.loaded.keeps_lengths
-    most = _STARTS_SETTLING if settles else _STARTS
+    robot, space = case.loaded.bare[0], case.workspace.space
+    worst = case.verification.worst_place[None]
+    settles = case.loaded.keeps_lengths
+    starts = _STARTS_SETTLING if settles else _STARTS
     rest = [] if settles else [space.landmarks()]
-    places = np.unique(np.concatenate([worst, found.sampled.worst_places[:most], *rest]), axis=0)
-    yield Asked(found.loaded.on(robot, rope), found.workspace, places)
-    for other in found.case.on(robot, rope):
-        if other.words != found.loaded.words:
-            yield Asked(other, found.workspace, worst)
+    places = np.unique(np.concatenate([worst, case.sampled.worst_places[:starts], *rest]), axis=0)
+    yield Asked(case.loaded.on(robot, rope), case.workspace, places)
+    for loaded in case.case.on(robot, rope):
+        if loaded.words != case.loaded.words:
+            yield Asked(loaded, case.workspace, worst)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,29 +195,29 @@ class Checked:
 
 
 def searched(
-    asked: list[Asked], draws: Draws, used: FloatArray
+    poses: list[Asked], draws: Draws, used: FloatArray
 ) -> tuple[list[Asked], FloatArray, Checked]:
     """Search the region in some draws: the least, the largest, the nearest to 100 %, some others.
 
     What is worse than the known poses joins them, for all draws. Load cases on kept lengths,
     which take long to follow, are left out of the search.
     """
-    found = Checked()
+    survey = Checked()
     for turn in range(1, _MOST_ROUNDS + 1):
-        is_slow = not all(is_quick(one.loaded.robot) for one in asked)
+        is_slow = not all(is_quick(pose.loaded.robot) for pose in poses)
         rows = _telling(used, _CHECKED_SLOWLY if is_slow else _CHECKED)
-        new = [_worse(asked, draws.part([row]), float(used[row]), is_slow) for row in rows]
-        worse = [(one, more) for one, more in filter(None, new)]
-        missed = max((more for _, more in worse), default=0.0)
-        found = Checked(len(rows), turn, missed)
-        if not worse:
+        new = [_worse(poses, draws.part([row]), float(used[row]), is_slow) for row in rows]
+        exceeding = [(pose, more) for pose, more in filter(None, new)]
+        missed = max((more for _, more in exceeding), default=0.0)
+        survey = Checked(len(rows), turn, missed)
+        if not exceeding:
             break
-        asked = [*asked, *(one for one, _ in worse)]
-        used = np.maximum(used, largest([one for one, _ in worse], draws))
-    return asked, used, found
+        poses = [*poses, *(pose for pose, _ in exceeding)]
+        used = np.maximum(used, largest([pose for pose, _ in exceeding], draws))
+    return poses, used, survey
 
 
-def _telling(used: FloatArray, most: int) -> list[int]:
+def _telling(used: FloatArray, count: int) -> list[int]:
     """Return the draws that a search shall look at, the most telling first."""
     finite = np.flatnonzero(np.isfinite(used))
     if not len(finite):
@@ -225,22 +225,22 @@ def _telling(used: FloatArray, most: int) -> list[int]:
     order = finite[np.argsort(used[finite], kind="stable")]
     nearest = finite[np.abs(used[finite] - 1.0).argmin()]
     rows = [nearest, order[-1], order[0], *order[[len(order) // 4, len(order) // 2]], finite[0]]
-    return [int(row) for row in dict.fromkeys(rows)][:most]
+    return [int(row) for row in dict.fromkeys(rows)][:count]
 
 
 def _worse(
-    asked: Sequence[Asked], draw: Draws, used: float, is_slow: bool
+    poses: Sequence[Asked], draw: Draws, used: float, is_slow: bool
 ) -> tuple[Asked, float] | None:
     """Return a pose that a draw uses more than the known ones, and by how much."""
-    most = max(asked, key=lambda one: float(one.utilisation(draw).max()))
-    if most.loaded.keeps_lengths:
+    governing = max(poses, key=lambda pose: float(pose.utilisation(draw).max()))
+    if governing.loaded.keeps_lengths:
         return None
 
     def demand(places: FloatArray) -> FloatArray:
-        return np.asarray(replace(most, places=places).utilisation(draw)[0])
+        return np.asarray(replace(governing, places=places).utilisation(draw)[0])
 
     effort = _GLANCE if is_slow else LIGHT
-    (worst,) = refine(most.workspace.space, demand, most.places, effort)
+    (worst,) = refine(governing.workspace.space, demand, governing.places, effort)
     if not worst.demand > used * (1.0 + _WORSE):
         return None
-    return replace(most, places=worst.place[None]), worst.demand - used
+    return replace(governing, places=worst.place[None]), worst.demand - used

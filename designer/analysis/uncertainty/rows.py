@@ -19,7 +19,7 @@ from designer.statics.geometry import upright_situation
 
 
 def utilisation_of_rows(
-    one: Loaded, places: FloatArray, draws: Draws, ropes: FloatArray
+    loaded: Loaded, places: FloatArray, draws: Draws, ropes: FloatArray
 ) -> FloatArray:
     """Return largest over allowable tension (n_draws, n_places); NaN where no solution was found.
 
@@ -36,7 +36,7 @@ def utilisation_of_rows(
     """
     from designer.kernel.batch import solve_batch
 
-    robot, cable, count = one.robot, one.cable, len(places)
+    robot, cable, count = loaded.robot, loaded.cable, len(places)
     density, stiffness, allowable = ropes.T
     stated = cable.linear_density_kg_per_m / cable.axial_stiffness_N
     scale = density / stiffness / stated
@@ -46,13 +46,13 @@ def utilisation_of_rows(
     every = np.repeat(scale[:, None, None] * exits, count, axis=0)
     situation = upright_situation(robot, Poses.at(at), every)
     load = np.repeat(draws.payload * force, count)[:, None] * robot.loads_N()
-    weight, each = cable.weight_N_per_m, np.ones(robot.n_cables)
+    weight, ones = cable.weight_N_per_m, np.ones(robot.n_cables)
     solution = solve_batch(
         robot,
         situation._replace(load=plain(load)),
-        weight / cable.axial_stiffness_N * each,
-        each,
-        cable.allowable_tension_N / weight * each,
+        weight / cable.axial_stiffness_N * ones,
+        ones,
+        cable.allowable_tension_N / weight * ones,
         1.0 / weight,
         sag_max=robot.sag_max,
     )

@@ -121,11 +121,11 @@ def _points(
     from scipy.stats import qmc
 
     unit = qmc.Sobol(2 * width, rng=rng).random(points)
-    first, second = unit[:, ::2], unit[:, 1::2]  # the first coordinates are the most even
-    mixed = [first.copy() for _ in columns]
+    base, second = unit[:, ::2], unit[:, 1::2]  # the first coordinates are the most even
+    mixed = [base.copy() for _ in columns]
     for draw, at in zip(mixed, columns, strict=True):
         draw[:, at] = second[:, at]
-    return np.stack([first, second, *mixed])
+    return np.stack([base, second, *mixed])
 
 
 def _polynomials(unit: FloatArray) -> FloatArray:
@@ -143,21 +143,23 @@ def _indices(
 
     Of the function (n_scrambles, n_inputs + 2, n_points) and polynomials (..., width, degree).
     """
-    others = np.arange(len(used)) != k
-    fitted = powers[others].reshape(used[others].size, -1)
+    remaining = np.arange(len(used)) != k
+    fitted = powers[remaining].reshape(used[remaining].size, -1)
     design = np.column_stack([np.ones(len(fitted)), fitted])
-    constant, *factors = np.linalg.lstsq(design, used[others].ravel(), rcond=None)[0]
+    constant, *factors = np.linalg.lstsq(design, used[remaining].ravel(), rcond=None)[0]
     factor = np.reshape(factors, powers.shape[-2:])
     parts = (powers[k] * factor).sum(axis=-1)  # (n_inputs + 2, n_points, width)
     rest = used[k] - constant - parts.sum(axis=-1)
-    sums, left = parts[:2].sum(axis=-1), rest[:2]
-    variance = (factor**2).sum() + 2.0 * np.mean(sums * left) + left.var()
+    sums, residuals = parts[:2].sum(axis=-1), rest[:2]
+    variance = (factor**2).sum() + 2.0 * np.mean(sums * residuals) + residuals.var()
     shares = []
     for i, at in enumerate(columns):
-        known = (factor[at] ** 2).sum()
-        here, there = parts[:2, :, at].sum(axis=-1)
+        own_variance = (factor[at] ** 2).sum()
+        sum_base, sum_second = parts[:2, :, at].sum(axis=-1)
         change = rest[2 + i] - rest[0]
-        first = known + np.mean(there * (rest[1] + rest[2 + i]) + rest[1] * change)
-        total = known + np.mean((there - here) * change + 0.5 * change**2)
-        shares.append((first, total))
+        first_order = own_variance + np.mean(
+            sum_second * (rest[1] + rest[2 + i]) + rest[1] * change
+        )
+        total = own_variance + np.mean((sum_second - sum_base) * change + 0.5 * change**2)
+        shares.append((first_order, total))
     return np.asarray(np.array(shares).T / variance)

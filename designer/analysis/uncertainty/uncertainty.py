@@ -128,14 +128,14 @@ def exact_interval(successes: int, trials: int) -> tuple[float, float]:
     """
     from scipy.special import betaincinv
 
-    beyond, others = (1.0 - CONFIDENCE) / 2.0, trials - successes
-    low = betaincinv(successes, others + 1, beyond) if successes else 0.0
-    high = betaincinv(successes + 1, others, 1.0 - beyond) if others else 1.0
+    beyond, failures = (1.0 - CONFIDENCE) / 2.0, trials - successes
+    low = betaincinv(successes, failures + 1, beyond) if successes else 0.0
+    high = betaincinv(successes + 1, failures, 1.0 - beyond) if failures else 1.0
     return float(low), float(high)
 
 
 def uncertainty_of(
-    study: Study, found: SelectionResult | None, built: AsBuilt, reporter: Reporter
+    study: Study, selection: SelectionResult | None, built: AsBuilt, reporter: Reporter
 ) -> UncertaintyAnalysis | None:
     """Return how likely the chosen rope is enough, and which inputs that hangs on.
 
@@ -143,24 +143,26 @@ def uncertainty_of(
     from what its grade states. None without a rope for all cables, without an input that is not
     certain, and for a modulus alone where the loss of a cable, which takes long to follow, governs.
     """
-    chosen = found.chosen if found is not None else None
-    if found is None or chosen is None or study.selection is None or study.selection.groups:
+    chosen = selection.chosen if selection is not None else None
+    if selection is None or chosen is None or study.selection is None or study.selection.groups:
         return None
-    asked = study.uncertainty or Uncertainty()
+    uncertainty = study.uncertainty or Uncertainty()
     elasticity = chosen.grade.elasticity
     off = elasticity.uncertainty
     if study.uncertainty is None and elasticity.basis != "borrowed":
         return None
-    spreads = asked.spreads(Uniform(-off, off))
+    spreads = uncertainty.spreads(Uniform(-off, off))
     if not spreads:
         return None
-    trial = _Trial(study.selection, built, chosen, spreads, asked.seed)
+    trial = _Trial(study.selection, built, chosen, spreads, uncertainty.seed)
     poses = trial.poses_of(chosen)
     if study.uncertainty is not None:
-        return trial.full(found, poses, asked.samples, asked.modulus is None, reporter)
-    if any(one.loaded.keeps_lengths for one in poses):
+        return trial.full(
+            selection, poses, uncertainty.samples, uncertainty.modulus is None, reporter
+        )
+    if any(pose.loaded.keeps_lengths for pose in poses):
         return None
-    samples = _ALONE if all(one.is_one_pass for one in poses) else _ALONE_SLOWLY
+    samples = _ALONE if all(pose.is_one_pass for pose in poses) else _ALONE_SLOWLY
     odds = SizeOdds(chosen, largest(poses, trial.drawn(samples)))
     return trial.result(odds, poses, is_asked=False, is_modulus_of_grade=True)
 
@@ -196,22 +198,24 @@ class _Trial:
         ends = np.full((2 * self.width + 1, self.width), 0.5)
         for k in range(self.width):
             ends[2 * k : 2 * k + 2, k] = _END, 1.0 - _END
-        some = np.random.default_rng(self.seed + 1).random((_PROBES, self.width))
-        shares = ends if self.width == 1 else np.concatenate([ends, some])
+        unit = np.random.default_rng(self.seed + 1).random((_PROBES, self.width))
+        shares = ends if self.width == 1 else np.concatenate([ends, unit])
         return draws_at(self.spreads, self.robot, shares)
 
     def poses_of(self, size: Candidate) -> list[Asked]:
         def rope_in(case: LoadCase) -> Cable:
             allowance = Allowance.of(self.selection.under(case))
             cable = self.built.of_products.cable(allowance.cable(size.grade, size.size))
-            met = next(one for one in (*size.cases, *self.chosen.cases) if one.case is case)
-            return cable.at_tension(met.verification.max_tension_N)
+            case_result = next(
+                result for result in (*size.cases, *self.chosen.cases) if result.case is case
+            )
+            return cable.at_tension(case_result.verification.max_tension_N)
 
         return may_govern(self.chosen.cases, rope_in, self.probes())
 
     def full(
         self,
-        found: SelectionResult,
+        selection: SelectionResult,
         poses: list[Asked],
         samples: int,
         is_modulus_of_grade: bool,
@@ -221,7 +225,7 @@ class _Trial:
         draws, points = self.drawn(samples), 0
         if len(self.spreads) > 1:  # of one alone, all of the spread is its own
             points = max(2 ** ((samples // (4 * SCRAMBLES)).bit_length() - 1), _LEAST_POINTS)
-        around = found.beside(self.chosen)
+        around = selection.beside(self.chosen)
         steps = samples * len(around) + SCRAMBLES * points * (len(self.spreads) + 2)
         with reporter.task("uncertainty", steps) as advance:
             used = largest(poses, draws, advance)
@@ -229,9 +233,9 @@ class _Trial:
             odds = SizeOdds(self.chosen, used)
             sizes = tuple(
                 odds
-                if one is self.chosen
-                else SizeOdds(one, largest(self.poses_of(one), draws, advance))
-                for one in around
+                if size is self.chosen
+                else SizeOdds(size, largest(self.poses_of(size), draws, advance))
+                for size in around
             )
             shares, why = self._shares(poses, points, advance)
         return self.result(
@@ -250,10 +254,10 @@ class _Trial:
 
         columns = {str(name): at for name, at in self.columns.items()}
         try:
-            found = shares_of(used_at, columns, points, self.seed)
+            shares_found = shares_of(used_at, columns, points, self.seed)
         except ValueError as error:
             return (), str(error)
-        return tuple(sorted(found, key=lambda one: -one.first_order)), ""
+        return tuple(sorted(shares_found, key=lambda share: -share.first_order)), ""
 
     def result(
         self,
@@ -273,5 +277,5 @@ class _Trial:
         return UncertaintyAnalysis(
             self.spreads, is_asked, is_modulus_of_grade and "modulus" in self.spreads, odds,
             sizes or (odds,), all_of_it if shares is None else shares, why, points, self.seed,
-            sum(len(one.places) for one in poses), checked or Checked(),
+            sum(len(pose.places) for pose in poses), checked or Checked(),
         )  # fmt: skip
