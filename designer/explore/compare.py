@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from designer.explore.fields import Field
 from designer.explore.here import Here
 from designer.explore.map import WorstAnswer
-from designer.explore.question import Assignment, Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.explore.ropes import Ropes
 
 
@@ -24,7 +24,7 @@ class Pin:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class FigureDifference:
     """A figure in both states [SI], NaN where there is none."""
 
     title: str
@@ -56,9 +56,9 @@ class Differences:
     ----------
     changes : tuple of Change
         Values of the study, the rope that is looked at, the verdict, the best rope.
-    lines : tuple of Line
+    lines : tuple of FigureDifference
         Figures of the answer.
-    utilisation : mapping of Rope to Line
+    utilisation : mapping of Rope to FigureDifference
         Of every rope in both states.
     gained, lost : tuple of Rope
         Ropes that hold now and did not, and the other way round.
@@ -68,8 +68,8 @@ class Differences:
     """
 
     changes: tuple[Change, ...]
-    lines: tuple[Line, ...]
-    utilisation: dict[Rope, Line]
+    lines: tuple[FigureDifference, ...]
+    utilisation: dict[Rope, FigureDifference]
     gained: tuple[Rope, ...]
     lost: tuple[Rope, ...]
     is_like_with_like: bool
@@ -85,7 +85,9 @@ def compare(before: Pin, after: Pin) -> Differences:
         changes=tuple(_changes(before, after)),
         lines=tuple(_lines(before, after)),
         utilisation={
-            rope: Line(rope.label, "%", 100.0, was[rope].utilisation, now[rope].utilisation)
+            rope: FigureDifference(
+                rope.label, "%", 100.0, was[rope].utilisation, now[rope].utilisation
+            )
             for rope in both
         },
         gained=tuple(rope for rope in both if now[rope].holds and not was[rope].holds),
@@ -111,27 +113,29 @@ def _changes(before: Pin, after: Pin) -> Iterator[Change]:
             yield Change(title, old_text, new_text)
 
 
-def _label(rope: Rope | Assignment | None) -> str:
+def _label(rope: Rope | RopePerCable | None) -> str:
     return "" if rope is None else rope.label
 
 
-def _lines(before: Pin, after: Pin) -> Iterator[Line]:
+def _lines(before: Pin, after: Pin) -> Iterator[FigureDifference]:
     if before.here and after.here:
         a, b = before.here, after.here
-        yield Line("Diameter needed here", "mm", 1e3, a.diameter_m, b.diameter_m)
-        yield Line("Largest tension here", "kN", 1e-3, a.max_tension_N, b.max_tension_N)
-        yield Line("Utilisation here", "%", 100.0, a.utilisation, b.utilisation)
-        yield Line("Stiffness here", "kN/m", 1e-3, a.stiffness_N_per_m, b.stiffness_N_per_m)
+        yield FigureDifference("Diameter needed here", "mm", 1e3, a.diameter_m, b.diameter_m)
+        yield FigureDifference("Largest tension here", "kN", 1e-3, a.max_tension_N, b.max_tension_N)
+        yield FigureDifference("Utilisation here", "%", 100.0, a.utilisation, b.utilisation)
+        yield FigureDifference(
+            "Stiffness here", "kN/m", 1e-3, a.stiffness_N_per_m, b.stiffness_N_per_m
+        )
     if before.worst and after.worst:
         was, now = before.worst, after.worst
         if was.workspace.sagging and now.workspace.sagging:
             d = was.workspace.sagging.diameter_m, now.workspace.sagging.diameter_m
-            yield Line("Diameter needed at worst", "mm", 1e3, *d)
+            yield FigureDifference("Diameter needed at worst", "mm", 1e3, *d)
         if was.rope and now.rope:
-            yield Line(
+            yield FigureDifference(
                 "Utilisation at worst", "%", 100.0, was.rope.utilisation, now.rope.utilisation
             )
     best = [pin.ropes.row(pin.ropes.best) if pin.ropes else None for pin in (before, after)]
     if best[0] and best[1]:
         masses = best[0].total_mass_kg, best[1].total_mass_kg
-        yield Line("Mass of all cables, best rope", "kg", 1.0, *masses)
+        yield FigureDifference("Mass of all cables, best rope", "kg", 1.0, *masses)

@@ -8,7 +8,7 @@ import numpy as np
 
 from designer.analysis.field import cable_curves_m, chords_m
 from designer.arrays import FloatArray
-from designer.explore.question import Assignment, Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.model.cable import Cable, Cables
 from designer.model.verdict import Verdict
 from designer.sizing.newton import size_poses
@@ -65,7 +65,7 @@ class Here:
     ----------
     verdict : Verdict
         What became of it, with the rope or, without one, with the thinnest cable.
-    rope : Rope, Assignment or None
+    rope : Rope, RopePerCable or None
         What the cables are of; None for the thinnest cable that holds the pose.
     cables : tuple of CableHere
         Empty unless solved.
@@ -92,7 +92,7 @@ class Here:
     """
 
     verdict: Verdict
-    rope: Rope | Assignment | None
+    rope: Rope | RopePerCable | None
     cables: tuple[CableHere, ...]
     curves_m: FloatArray | None
     chords_m: FloatArray

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from designer.arrays import FloatArray
 from designer.errors import Fault
-from designer.explore.question import Assignment, Rope
+from designer.explore.question import Rope, RopePerCable
 from designer.explore.reading import Reading
 
 
@@ -23,7 +23,7 @@ class SessionState:
         text.
     place : array (6,)
         Where the platform is, and its rotation vector [m, rad].
-    rope : Rope, Assignment or None
+    rope : Rope, RopePerCable or None
         The rope, or the ropes of groups, that are looked at.
     pin : object
         What the present state is compared with; None for nothing.
@@ -32,7 +32,7 @@ class SessionState:
     reading: Reading
     live: Reading
     place: FloatArray
-    rope: Rope | Assignment | None = None
+    rope: Rope | RopePerCable | None = None
     pin: object = None
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.explore.grids import map_grids
 from designer.explore.quantities import BY_KEY, CHEAP
-from designer.explore.question import Assignment, Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.robot import Poses
@@ -50,20 +50,20 @@ class MapAnswer:
         (what no rope serves that no other one beats).
     is_fine : bool
         Whether all rows and columns of the grids are there.
-    rope : Rope, Assignment or None
+    rope : Rope, RopePerCable or None
         What tensions are of; None for the thinnest cable of the family at each pose.
     before : mapping of str to mapping of str to array (n, m), or None
         The values of the state that is compared with, at the same positions.
-    rope_before : Rope, Assignment or None
+    rope_before : Rope, RopePerCable or None
         What its tensions are of.
     """
 
     grids: Mapping[str, FloatArray]
     values: Mapping[str, Values]
     is_fine: bool
-    rope: Rope | Assignment | None = None
+    rope: Rope | RopePerCable | None = None
     before: Mapping[str, Values] | None = None
-    rope_before: Rope | Assignment | None = None
+    rope_before: Rope | RopePerCable | None = None
 
     def difference(self, grid: str, key: str) -> FloatArray | None:
         """Return what a quantity has become less what it was, SI; None without a comparison.

@@ -43,7 +43,7 @@ class Rope:
 
 
 @dataclass(frozen=True, slots=True)
-class Assignment:
+class RopePerCable:
     """A rope for each cable, in the order of the anchors."""
 
     ropes: tuple[Rope, ...]
@@ -54,7 +54,7 @@ class Assignment:
         return ", ".join(dict.fromkeys(rope.label for rope in self.ropes))
 
 
-def cables_words(rope: Rope | Assignment | None) -> str:
+def cables_words(rope: Rope | RopePerCable | None) -> str:
     """Return what figures are of, for the reader."""
     return "Thinnest cable of the family" if rope is None else rope.label
 
@@ -69,7 +69,7 @@ class Question:
         The problem.
     place : array (6,)
         Where the platform is, and its rotation vector [m, rad].
-    rope : Rope, Assignment or None
+    rope : Rope, RopePerCable or None
         The rope, or the ropes of groups, that are looked at; None for the thinnest cable of the
         configured family.
     text, path : str, Path
@@ -80,7 +80,7 @@ class Question:
 
     study: Study = field(repr=False)
     place: FloatArray
-    rope: Rope | Assignment | None
+    rope: Rope | RopePerCable | None
     text: str = field(repr=False)
     path: Path
     plugins: Plugins = field(repr=False)

@@ -11,7 +11,7 @@ import numpy as np
 from designer.analysis.analyse import Analysis
 from designer.analysis.selection_json import candidates_csv
 from designer.arrays import FloatArray
-from designer.explore.question import Assignment, Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.grades.grade import Grade, Size
 from designer.model.requirement import Answer, Requirement, State
 from designer.progress import SILENT, Reporter
@@ -19,11 +19,10 @@ from designer.selection.candidate import Candidate
 from designer.selection.compare import burdens, failure_words, is_undominated
 from designer.selection.groups.result import GroupChoice
 from designer.selection.proven import CaseProof
-from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import SelectionResult
 from designer.selection.select import at_samples
 from designer.selection.verify import Verification
-from designer.study import Objective, Selection
+from designer.study import Objective
 
 _QUICK_SAMPLES = 1500
 
@@ -107,10 +106,10 @@ class Groups:
     proof: str
 
     @property
-    def assignment(self) -> Assignment | None:
+    def assignment(self) -> RopePerCable | None:
         """The rope of each cable, to be looked at; None where none was found."""
         of = {cable: row.rope for row in self.rows for cable in row.cables}
-        return Assignment(tuple(of[cable] for cable in sorted(of))) if of else None
+        return RopePerCable(tuple(of[cable] for cable in sorted(of))) if of else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,7 +158,7 @@ class Ropes:
     requirements: tuple[Requirement, ...] = ()
     answer: Answer | None = None
 
-    def row(self, rope: Rope | Assignment | None) -> RopeRow | None:
+    def row(self, rope: Rope | RopePerCable | None) -> RopeRow | None:
         """Return the row of a rope; None where there is none."""
         return next((row for row in self.rows if row.rope == rope), None)
 
@@ -184,8 +183,6 @@ def quick_ropes(question: Question) -> Ropes | None:
     candidates = at_samples(few, selection, grades, question.built, load_cases)
     objectives = [o for o in selection.objectives if o != "stiffness"]
     best = None
-    for candidate in candidates:
-        candidate.rejected_by = _failed_by_table(candidate, selection)
     holding = [e for e in candidates if e.verification.holds and e.rejected_by is None]
     if objectives and selection.objectives[0] != "stiffness":
         comparable = [e for e in holding if np.isfinite(e.figures.burden(objectives[0]))]
@@ -208,12 +205,6 @@ def quick_ropes(question: Question) -> Ropes | None:
         is_final=False,
         problems=question.catalogue.problems,
     )
-
-
-def _failed_by_table(candidate: Candidate, selection: Selection) -> Requirement | None:
-    """Return what the sheave alone decides against a rope; None for nothing."""
-    ratios = sheave_ratio_of(candidate.grade, candidate.size, selection)
-    return next((ratio for ratio in ratios if not ratio.holds), None)
 
 
 def _quick_row(candidate: Candidate, is_best: bool, is_in_front: bool) -> RopeRow:

@@ -16,7 +16,7 @@ from designer.errors import Fault, InputError, OutputError
 from designer.explore.entries import pose_text, put_back, with_entry
 from designer.explore.fields import Field, with_ends_of
 from designer.explore.history import History, Rejected, SessionState
-from designer.explore.question import Assignment, Question, Rope, first_place
+from designer.explore.question import Question, Rope, RopePerCable, first_place
 from designer.explore.reading import Context, Reading, digest_of, text_of
 from designer.io.output import write_file
 from designer.plugins.find import Plugins
@@ -233,12 +233,12 @@ class Session:
             self._take("Keep the pose", None, reading, moves=True)
         return reading.faults
 
-    def choose(self, rope: Rope | Assignment | None) -> None:
+    def choose(self, rope: Rope | RopePerCable | None) -> None:
         """Look at a rope, or ropes; at the thinnest cable of the configured family for None."""
         if rope != self.state.rope:
             self._take("Choose a rope", None, rope=rope)
 
-    def begin_with(self, rope: Rope | Assignment | None) -> None:
+    def begin_with(self, rope: Rope | RopePerCable | None) -> None:
         """Look at a rope that nobody chose; nothing that could be undone."""
         self._history.state = replace(self.state, rope=rope)
 

@@ -144,7 +144,6 @@ class Quick:
         ranked = sorted(holding, key=lambda one: one.figures.burden(decides))
         criteria = criteria_of(self._built.robot, self.workspace, self.selection)
         screen = Screen(criteria, self.selection, SILENT)
-        screen.reject_by_table(ranked)
         for candidate in ranked:
             if candidate.rejected_by is None and self._holds(candidate):
                 screen.rejects_any(candidate, (), ranked)

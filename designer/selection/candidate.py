@@ -16,7 +16,7 @@ from designer.model.load_case import STATIC
 from designer.model.requirement import Requirement
 from designer.selection.cases import CaseResult, governing
 from designer.selection.efficiency import Allowance
-from designer.selection.objectives import UNKNOWN, Figures
+from designer.selection.objectives import UNKNOWN, CandidateFigures
 from designer.selection.verify import NOT_TRIED, Sampled, Verification
 from designer.study import Objective, Selection
 
@@ -48,7 +48,7 @@ class Candidate:
     cases : tuple of CaseResult
         What it meets in each direction of each load case, of each case in the worst one where its
         standing is known; up to the first that it does not hold.
-    figures : Figures
+    figures : CandidateFigures
         What it is compared by.
     rejected_by : Requirement or None
         A requirement beside strength that it is known to fail.
@@ -67,7 +67,7 @@ class Candidate:
     continuous_diameter_m: float = math.nan
     verification: Verification = NOT_TRIED
     cases: tuple[CaseResult, ...] = ()
-    figures: Figures = UNKNOWN
+    figures: CandidateFigures = UNKNOWN
     rejected_by: Requirement | None = None
     standing: Standing | Literal[""] = ""
     reason: str = ""

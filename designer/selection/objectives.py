@@ -13,7 +13,7 @@ from designer.study import Objective
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """An objective: the field of `Figures`, how it is shown at length and in a word, its unit."""
+    """An objective: the field of `CandidateFigures`, its name at length and in a word, its unit."""
 
     field: str
     title: str
@@ -32,7 +32,7 @@ MEANINGS: Mapping[Objective, Meaning] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Figures:
+class CandidateFigures:
     """What a candidate is compared by; NaN where it is not known."""
 
     mass_kg: float = math.nan  # Of all cables, each at the longest length that it needs [kg]
@@ -53,5 +53,5 @@ class Figures:
         return -value if MEANINGS[objective].more_is_better else value
 
 
-UNKNOWN = Figures()
+UNKNOWN = CandidateFigures()
 """Of a candidate that was not solved yet."""

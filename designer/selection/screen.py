@@ -33,12 +33,6 @@ class Screen:
     reporter: Reporter
     _evaluations: dict[int, tuple[Evaluation, ...]] = field(default_factory=dict)
 
-    def reject_by_table(self, candidates: Sequence[Candidate]) -> None:
-        """Reject what the sheave alone decides."""
-        for candidate in candidates:
-            ratios = sheave_ratio_of(candidate.grade, candidate.size, self.selection)
-            candidate.rejected_by = next((ratio for ratio in ratios if not ratio.holds), None)
-
     def rejects_any(
         self, best: Candidate, front: Sequence[Candidate], meeting: Sequence[Candidate]
     ) -> bool:

@@ -17,7 +17,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
-from designer.progress import Reporter, Silent
+from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.selection.candidate import (
     Candidate,
@@ -41,8 +41,9 @@ from designer.selection.compare import best_of, may_win, settle, standing_of
 from designer.selection.continuous import ContinuousOptimum, continuous_optimum
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
-from designer.selection.objectives import MEANINGS, Figures
+from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.proven import CaseProof, prove_governing
+from designer.selection.requirements import sheave_ratio_of
 from designer.selection.result import GradeOutcome, NotTried, Outcome, SelectionResult
 from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable
@@ -73,29 +74,29 @@ def select(
     load case; without any it is the static one. It is tried for ``proof_s`` to prove that the best
     holds in all poses [s].
     """
-    built, reporter = built or AsBuilt(robot), reporter or Silent()
+    allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
-    named = selection.grades
-    allowed = [g for g in grades if is_allowed(g, named)]
-    trial = _Trial(cases, selection, built, reporter, common_currency(allowed), proof_s)
-    outcomes, not_tried = trial.outcomes(allowed)
-    if named is None:
+    run = _SelectionRun(
+        cases, selection, built or AsBuilt(robot), allowed, reporter or SILENT, proof_s
+    )
+    outcomes, not_tried = run.outcomes(allowed)
+    if selection.grades is None:
         not_tried += [NotTried(g, None, g.why_only_by_name) for g in grades if g.why_only_by_name]
     chosen = next((c for o in outcomes for c in o.candidates if c.standing == "chosen"), None)
     alternatives: list[GradeOutcome] = []
     if chosen is None:
         not_allowed = [g for g in grades if g not in allowed and not g.why_only_by_name]
-        alternatives = trial.outcomes(not_allowed, only_fitting=True)[0] if not_allowed else []
+        alternatives = run.outcomes(not_allowed, only_fitting=True)[0] if not_allowed else []
     return SelectionResult(
         outcomes=tuple(outcomes),
         chosen=chosen,
         reason=None if chosen else _reason(outcomes, not_tried, selection.objectives[0]),
         alternatives=tuple(alternatives),
         objectives=selection.objectives,
-        currency=trial.currency,
+        currency=run.currency,
         not_tried=tuple(not_tried),
         usable=_usable(robot, workspace, outcomes, chosen),
-        proof=None if chosen is None else trial.proofs.get(id(chosen.size)),
+        proof=None if chosen is None else run.proofs.get(id(chosen.size)),
     )
 
 
@@ -114,9 +115,8 @@ def best_product(
     """
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     cases = Cases(robot, workspace, tuple(load_cases) or (STATIC,)).hurried()
-    currency = common_currency(allowed)
-    trial = _Trial(cases, selection, built or AsBuilt(robot), Silent(), currency)
-    front, _ = trial.choose(trial.sampled(allowed))
+    run = _SelectionRun(cases, selection, built or AsBuilt(robot), allowed)
+    front, _ = run.choose(run.sampled(allowed))
     return front[0] if front else None
 
 
@@ -134,23 +134,26 @@ def at_samples(
     allowed = [g for g in grades if is_allowed(g, selection.grades)]
     quick = tuple(o for o in selection.objectives if o != "stiffness")
     selection = replace(selection, objectives=quick or ("mass",))
-    currency = common_currency(allowed)
     cases = Cases(built.robot, workspace, tuple(load_cases) or (STATIC,))
-    trial = _Trial(cases, selection, built, Silent(), currency)
-    return trial.sampled(allowed)
+    return _SelectionRun(cases, selection, built, allowed).sampled(allowed)
 
 
 @dataclass(frozen=True)
-class _Trial:
+class _SelectionRun:
     """What all candidates have in common."""
 
     cases: Cases
     selection: Selection
     built: AsBuilt
-    reporter: Reporter
-    currency: str | None
+    allowed: Sequence[Grade]  # By the study
+    reporter: Reporter = SILENT
     proof_s: float = 0.0
     proofs: dict[int, CaseProof] = field(default_factory=dict)
+
+    @cached_property
+    def currency(self) -> str | None:
+        """Of the costs; None where nothing has a price."""
+        return common_currency(self.allowed)
 
     @cached_property
     def screen(self) -> Screen:
@@ -188,7 +191,6 @@ class _Trial:
         requirement. Where no candidate meets all, it is the best of those that are strong enough.
         """
         objectives = self.selection.objectives
-        self.screen.reject_by_table(candidates)
         with self.reporter.task("search", len(candidates)) as advance:
             thorough: set[int] = set()
 
@@ -264,7 +266,7 @@ class _Trial:
         return candidates
 
     def _meets(self, candidate: Candidate, cases: tuple[CaseResult, ...]) -> None:
-        """Note what a candidate meets over the samples, and what it is compared by."""
+        """Note what a candidate meets over the samples, its figures, whether the sheave fits."""
         verification = together(cases)
         if not math.isfinite(verification.utilisation):  # lengths of other poses mean nothing
             verification = replace(
@@ -273,13 +275,14 @@ class _Trial:
         length_m, ratio = float(verification.longest_m.sum()), candidate.grade.sheave_ratio
         candidate.cases, candidate.verification = cases, verification
         candidate.cable = as_stiff_as(candidate.cable, governing(cases))
-        candidate.figures = Figures(
+        candidate.figures = CandidateFigures(
             mass_kg=candidate.cable.linear_density_kg_per_m * length_m,
             cost=cost(candidate, length_m, self.currency),
             drum_diameter_m=ratio.suggested * candidate.size.diameter_m if ratio else math.nan,
             max_tension_N=verification.max_tension_N,
-            stiffness_N_per_m=math.nan,
         )
+        ratios = sheave_ratio_of(candidate.grade, candidate.size, self.selection)
+        candidate.rejected_by = next((ratio for ratio in ratios if not ratio.holds), None)
 
     def _add_stiffness(self, candidate: Candidate, *, searched: bool) -> None:
         robot, workspace = self.cases.robot, self.cases.workspace

@@ -17,7 +17,7 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.selection.candidate import common_currency
 from designer.selection.compare import dominator_of, is_undominated
-from designer.selection.objectives import MEANINGS, Figures
+from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.select import best_product, select
 from designer.study import Objective, Selection, Workspace
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
@@ -54,7 +54,7 @@ def test_whoever_is_dominated_is_so_by_a_member_of_the_set(table: list[tuple[flo
 
 @pytest.mark.parametrize("objective", sorted(MEANINGS))
 def test_a_figure_that_is_not_known_is_worse_than_any(objective: Objective) -> None:
-    known = Figures(*5 * [1e300])
+    known = CandidateFigures(*5 * [1e300])
     unknown = replace(known, **{MEANINGS[objective].field: np.nan})
     assert unknown.burden(objective) == np.inf > known.burden(objective)
 

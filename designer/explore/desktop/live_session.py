@@ -18,7 +18,7 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.explore.compare import Differences, Pin, compare
-from designer.explore.question import Assignment, Question, Rope
+from designer.explore.question import Question, Rope, RopePerCable
 from designer.explore.requests import Delivery, Done, Failed, Kind, Long, Progress
 from designer.explore.session import Session
 from designer.explore.worker import Worker
@@ -105,7 +105,7 @@ class LiveSession(QObject):
         return None if self.session is None else self.session.study
 
     @property
-    def rope(self) -> Rope | Assignment | None:
+    def rope(self) -> Rope | RopePerCable | None:
         """The rope, or ropes, that are looked at; None for the family."""
         return None if self.session is None else self.session.state.rope
 
@@ -208,7 +208,7 @@ class LiveSession(QObject):
             self.session.drop_rejected(path)
             self.changed.emit()
 
-    def choose(self, rope: Rope | Assignment | None) -> None:
+    def choose(self, rope: Rope | RopePerCable | None) -> None:
         """Look at a rope, or ropes; at the family for None."""
         self.do(lambda session: session.choose(rope))
         if rope is not None:

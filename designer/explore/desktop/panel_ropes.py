@@ -26,7 +26,7 @@ from designer.report import format as fmt
 from designer.report.design.proof import proof_statement
 
 if TYPE_CHECKING:
-    from designer.explore.question import Assignment, Rope
+    from designer.explore.question import Rope, RopePerCable
     from designer.explore.ropes import Groups, RopeRow, Ropes
 
 _ALL_MATERIALS, _ALL_MAKERS = "all materials", "all makers"
@@ -108,7 +108,7 @@ class PanelRopes(QWidget):
         self._live = live
         self.setObjectName("ropes")
         self._ropes: Ropes | None = None
-        self._rope: Rope | Assignment | None = None
+        self._rope: Rope | RopePerCable | None = None
         self.model = RowsModel(COLUMNS)
         self.model.bold = lambda row: self._ropes is not None and row.rope == self._ropes.best
         self.model.muted = lambda row: not row.holds

@@ -20,7 +20,7 @@ from designer.report.blocks import (
 from designer.report.design.source import Source
 from designer.report.pictures import chart
 from designer.selection.assignment import Assignment
-from designer.selection.groups.result import GroupChoice, Proposal
+from designer.selection.groups.result import GroupChoice, TriedAssignment
 
 _MOST_ROWS = 12
 
@@ -178,7 +178,7 @@ def _proposals(choice: GroupChoice) -> Table:
     return Table.of(caption, columns, *rows, kind="long")
 
 
-def _row(number: int, one: Proposal, choice: GroupChoice) -> Row:
+def _row(number: int, one: TriedAssignment, choice: GroupChoice) -> Row:
     cells = (
         str(number),
         *(product.size.id for product in one.products),
@@ -190,7 +190,7 @@ def _row(number: int, one: Proposal, choice: GroupChoice) -> Row:
     return Row(cells, "good" if is_chosen else "muted" if one.outcome != "holds" else "")
 
 
-def _outcome(one: Proposal, choice: GroupChoice) -> str:
+def _outcome(one: TriedAssignment, choice: GroupChoice) -> str:
     if one.outcome == "holds":
         assert one.total is not None
         return f"holds: {fmt.number(one.total)} {choice.unit}"

@@ -32,7 +32,7 @@ from designer.selection.groups.result import (
     GroupObjective,
     Outcome,
     Proof,
-    Proposal,
+    TriedAssignment,
 )
 from designer.selection.groups.trials import Refutation, Trials, verify_groups
 from designer.study import CableGroup, Selection, Workspace
@@ -78,7 +78,7 @@ def choose_groups(
     if single is not None and single not in offered:
         offered = (*offered, single)
     distinct = min(most_distinct or len(groups), len(groups))
-    search = _Search(robot, workspace, groups, offered, distinct, by_price, progress)
+    search = _GroupSearch(robot, workspace, groups, offered, distinct, by_price, progress)
     if offered:
         search.start(single)
         search.run(most_proposals)
@@ -145,7 +145,7 @@ def choose_groups_of(
     return choice
 
 
-class _Search:
+class _GroupSearch:
     """The state of the search; see the module."""
 
     def __init__(
@@ -178,7 +178,7 @@ class _Search:
         self.single = NOT_ASSIGNED
         self.bound = np.inf
         self.proof: Proof = "infeasible"
-        self.proposals: list[Proposal] = []
+        self.proposals: list[TriedAssignment] = []
         self._guides: list[Guide] = []
         self._settled: set[Combination] = set()
 
@@ -247,7 +247,7 @@ class _Search:
         excluded = prod(len(products) for products in block)
         if not guided and excluded == 1:
             excluded += self._cut_beside(combination)
-        note = Proposal(
+        note = TriedAssignment(
             products=tuple(self.products[p] for p in combination),
             bound=self.master.cost_of(combination),
             total=total,

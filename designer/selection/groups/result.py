@@ -16,7 +16,7 @@ GroupObjective = Literal["mass", "cost"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Proposal:
+class TriedAssignment:
     """An assignment that was tried.
 
     Parameters
@@ -84,7 +84,7 @@ class GroupChoice:
         Whether the bound's lengths cannot be undercut. Not so where poses are left out.
     offered, catalogued : int
         Products that no other one beats, and all of them.
-    proposals : tuple of Proposal
+    proposals : tuple of TriedAssignment
         What was tried, in order.
     trials : int
         How many times cables were solved at the witnesses.
@@ -104,7 +104,7 @@ class GroupChoice:
     lengths_are_bounds: bool
     offered: int
     catalogued: int
-    proposals: tuple[Proposal, ...]
+    proposals: tuple[TriedAssignment, ...]
     trials: int
 
     @property
