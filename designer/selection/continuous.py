@@ -23,7 +23,9 @@ from designer.workspace.refine import Worst, worst_over_samples
 from designer.workspace.section import FamilyAt, thinnest
 
 _MOST_TURNS = 20
+"""Of the fixed point, so that it ends: the need falls steeply, so a few turns reach it."""
 _STILL = 1e-7
+"""Relative change of the diameter at which it is taken to stay: far below what can be bought."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

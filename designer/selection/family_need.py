@@ -23,8 +23,12 @@ from designer.selection.cases import CaseResult, Cases, governing, searched_all
 from designer.study import Study, Workspace
 from designer.workspace.section import FIRST_TRIED_M, thinnest_that
 
-_STILL, _SAME = 1e-9, 1e-6
+_STILL = 1e-9
+"""Relative growth of the diameter that is rounding: the search is at its end."""
+_SAME = 1e-6
+"""Beyond a utilisation of 1: how exactly the thinnest diameter of a pose is found."""
 _MOST_TURNS = 20
+"""Of trial and search, so that it ends where each pose asks for another diameter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -26,6 +26,7 @@ from designer.model.load_case import Loaded
 _STILL = 1e-6
 """Relative change of EA at which it is taken to stay."""
 _MOST_ROUNDS = 20
+"""Of the secant method, so that it ends where the tension jumps."""
 
 
 class StiffnessSearch:

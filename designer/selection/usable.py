@@ -17,6 +17,7 @@ from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 
 _FEW_PLACES, _FEW_POSITIONS = 1000, 100
+"""Asked at least of robots that are slow to solve: places, and positions in all orientations."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,6 +24,7 @@ from designer.workspace.refine import Effort, Worst, refine_over_branches, worst
 
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
+"""Parts of the space, by position and orientation; a search starts from the worst place of each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -40,9 +40,13 @@ from designer.study import CableGroup, Selection, Workspace
 MOST_PROPOSALS = 100
 """Where to stop and report a gap."""
 _MOST_GUIDED = 30
+"""Proposals with the linearisation: it is to find a good answer soon, not to prove it."""
 _MOST_BALANCES = 6
+"""Poses whose balance is in the programme: each makes it larger, and slower to solve."""
 _MOST_TRIALS = 100_000
+"""Of combinations at the witnesses, so that growing blocks does not take without end."""
 _EQUAL = 1e-9
+"""Relative difference in mass or cost that is rounding."""
 _MOST_ROUNDS, _STILL = 6, 1e-4
 """Of choices with ropes whose stiffness depends on the tension: how many, and when it stays."""
 

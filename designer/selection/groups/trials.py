@@ -28,6 +28,9 @@ from designer.workspace.pool import Pool
 from designer.workspace.refine import Demand, refine_over_branches
 
 _NUDGE = 1e-3
+"""Relative step in the weight of a rope: the slope guides, and need not be exact."""
+_MOST_WITNESSES = 120
+"""The latest are kept: each is solved in every trial."""
 
 
 def utilisation_of(statics: Statics, cables: Cables, left_out: BoolArray) -> FloatArray:
@@ -153,7 +156,7 @@ class Trials:
         present = {tuple(place) for place in self._found}
         new = [p for p in places if np.isfinite(p).all() and tuple(p) not in present]
         witnesses = np.concatenate([self._found, np.array(new).reshape(-1, self._found.shape[1])])
-        self._found = witnesses[-120:]  # the latest: each is asked in every trial
+        self._found = witnesses[-_MOST_WITNESSES:]
 
     def cables(self, combination: Combination) -> Cables:
         """Return the cables of a combination, in the order of the exit points."""
