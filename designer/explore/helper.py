@@ -15,16 +15,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from designer.explore.requests import (
-    Cancelled,
-    Delivery,
-    Done,
-    Failed,
-    Kind,
-    Progress,
-    Request,
-    failure_text,
-)
+from designer.explore.requests import Kind, Message, Request, failure_text
 
 _GRACE_S = 3.0
 """How long a process may take to clear away what it has half-written."""
@@ -40,10 +31,10 @@ class Helper:
     kind : str
         The kind of work.
     deliver : callable
-        Called with each `Delivery`, in the thread.
+        Called with each `Message`, in the thread.
     """
 
-    def __init__(self, kind: Kind, deliver: Callable[[Delivery], None]) -> None:
+    def __init__(self, kind: Kind, deliver: Callable[[Message], None]) -> None:
         self._kind, self._deliver = kind, deliver
         self._changed = threading.Condition()
         self._waiting: list[Request] = []
@@ -98,21 +89,21 @@ class Helper:
                 self._running = None if ends or request is _NOTHING else request
             for unanswered in dropped:
                 if unanswered is not _NOTHING:
-                    self._deliver(Cancelled(unanswered))
+                    self._deliver(Message(unanswered, "cancelled"))
             if ends:
                 self._end()
                 return
             if request is not _NOTHING:
-                self._deliver(self._done(request))
+                self._deliver(self._end_of(request))
 
-    def _done(self, request: Request) -> Delivery:
+    def _end_of(self, request: Request) -> Message:
         """Have the process do it; where that ends without a word, it was cancelled or it broke."""
         try:
             end = self._exchange(request)
         except (OSError, EOFError, pickle.UnpicklingError):
             end = None
         except Exception as error:
-            end = Failed(request, failure_text(error))
+            end = Message(request, "failed", text=failure_text(error))
         with self._changed:
             self._running = None
             replaced = bool(self._waiting) or self._closing
@@ -120,10 +111,11 @@ class Helper:
         if end is not None:
             return end
         if replaced:
-            return Cancelled(request)
-        return Failed(request, f"the process that did this ended unexpectedly, status {status}")
+            return Message(request, "cancelled")
+        failure = f"the process that did this ended unexpectedly, status {status}"
+        return Message(request, "failed", text=failure)
 
-    def _exchange(self, request: Request) -> Delivery:
+    def _exchange(self, request: Request) -> Message:
         process = self._started()
         assert process.stdin is not None
         assert process.stdout is not None
@@ -140,11 +132,10 @@ class Helper:
         pickle.dump(task, process.stdin)
         process.stdin.flush()
         while True:
-            message, *values = pickle.load(process.stdout)
-            if message == "progress":
-                self._deliver(Progress(request, *values))
-            else:
-                return Done(request, *values) if message == "done" else Failed(request, *values)
+            message = Message(request, **pickle.load(process.stdout))
+            if message.is_end:
+                return message
+            self._deliver(message)
 
     def _started(self) -> subprocess.Popen[bytes]:
         with self._changed:

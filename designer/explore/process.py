@@ -16,7 +16,7 @@ from designer.effects.load import load_effects
 from designer.errors import InputError
 from designer.explore.question import Question
 from designer.explore.reading import Context
-from designer.explore.requests import Told, failure_text
+from designer.explore.requests import ThrottledReporter, failure_text
 from designer.io.process import settle_in
 from designer.plugins.find import find_plugins
 
@@ -31,13 +31,17 @@ def main() -> None:
     os.dup2(2, 1)
     tasks: SimpleQueue[dict[str, Any]] = SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks), daemon=True).start()
-    reporter = Told(lambda *how_far: _send(out, ("progress", *how_far)))
+
+    def report(task: str, steps: int, total: int) -> None:
+        _send(out, status="progress", text=task, steps=steps, total=total)
+
+    reporter = ThrottledReporter(report)
     while True:
         task = tasks.get()
         try:
-            _send(out, ("done", _answer(task, reporter)))
+            _send(out, status="done", answer=_answer(task, reporter))
         except Exception as error:
-            _send(out, ("failed", failure_text(error)))
+            _send(out, status="failed", text=failure_text(error))
 
 
 def _listen(stream: BinaryIO, tasks: SimpleQueue[dict[str, Any]]) -> None:
@@ -49,12 +53,13 @@ def _listen(stream: BinaryIO, tasks: SimpleQueue[dict[str, Any]]) -> None:
             os._exit(0)
 
 
-def _send(out: BinaryIO, message: tuple[Any, ...]) -> None:
+def _send(out: BinaryIO, **message: Any) -> None:
+    """Send the fields of a `Message` without its request, which the window has."""
     out.write(pickle.dumps(message))  # whole, or not at all
     out.flush()
 
 
-def _answer(task: dict[str, Any], reporter: Told) -> Any:
+def _answer(task: dict[str, Any], reporter: ThrottledReporter) -> Any:
     from designer.explore.export import export
     from designer.explore.measurements import diagnosis_answer
     from designer.explore.ropes import full_ropes

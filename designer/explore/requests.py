@@ -16,7 +16,9 @@ from designer.progress import Advance
 Quick = Literal["here", "coarse", "fine", "ropes", "residuals", "worst"]
 Long = Literal["select", "diagnose", "export"]
 Kind = Quick | Long
-_TOLD_EVERY_S = 0.1
+Status = Literal["progress", "done", "failed", "cancelled"]
+_REPORT_EVERY_S = 0.1
+"""As often as an eye follows; a message costs a thread or a process some time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,10 +32,31 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Delivery:
-    """What becomes of a request; each comes to exactly one end: done, failed or cancelled."""
+class Message:
+    """What becomes of a request: progress, and exactly one end.
+
+    Parameters
+    ----------
+    request : Request
+        What was asked.
+    status : str
+        ``progress``; or the end: ``done``, ``failed``, or ``cancelled``, taken back or replaced by
+        a newer one.
+    answer : Any
+        Of a request that is done; None where the study has not what is asked for, such as a
+        workspace.
+    text : str
+        What went wrong, for the user as it stands; of progress what is being done.
+    steps, total : int
+        Of progress: how many steps are done, and of how many; a total of 0 is not known.
+    """
 
     request: Request
+    status: Status
+    answer: Any = None
+    text: str = ""
+    steps: int = 0
+    total: int = 0
 
     @property
     def number(self) -> int:
@@ -50,36 +73,13 @@ class Delivery:
         """Of the request."""
         return self.request.question
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Done(Delivery):
-    """The answer; None where the study has not what is asked for, such as a workspace."""
-
-    answer: Any
+    @property
+    def is_end(self) -> bool:
+        """Whether no other message follows."""
+        return self.status != "progress"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Failed(Delivery):
-    """What went wrong, for the user as it stands."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Cancelled(Delivery):
-    """It was taken back, or a newer one took its place."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Progress(Delivery):
-    """What is being done, and how far it is; ``total`` is 0 where that is not known."""
-
-    task: str
-    done: int
-    total: int
-
-
-class Told:
+class ThrottledReporter:
     """A reporter, and a spinner, that tell how far something is, a few times a second at most.
 
     Parameters
@@ -94,26 +94,26 @@ class Told:
 
     def __call__(self, text: str) -> None:
         """Tell what is being done."""
-        self._tell_now_and_then(text, 0, 0)
+        self._report(text, 0, 0)
 
     @contextmanager
     def task(self, name: str, total: int) -> Iterator[Advance]:
         """Open a task of ``total`` steps."""
-        done, self._last_s = 0, -math.inf
+        finished, self._last_s = 0, -math.inf
 
         def advance(steps: int) -> None:
-            nonlocal done
-            done += steps
-            self._tell_now_and_then(name, done, total)
+            nonlocal finished
+            finished += steps
+            self._report(name, finished, total)
 
-        self._tell_now_and_then(name, 0, total)
+        self._report(name, 0, total)
         yield advance
 
-    def _tell_now_and_then(self, name: str, done: int, total: int) -> None:
+    def _report(self, name: str, steps: int, total: int) -> None:
         now_s = time.monotonic()
-        if now_s - self._last_s >= _TOLD_EVERY_S:
+        if now_s - self._last_s >= _REPORT_EVERY_S:
             self._last_s = now_s
-            self._tell(name, done, total)
+            self._tell(name, steps, total)
 
 
 def failure_text(error: BaseException) -> str:

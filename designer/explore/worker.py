@@ -18,22 +18,18 @@ from designer.explore.map import map_answer, worst_answer
 from designer.explore.measurements import residuals
 from designer.explore.question import Question
 from designer.explore.requests import (
-    Cancelled,
-    Delivery,
-    Done,
-    Failed,
     Kind,
     Long,
-    Progress,
+    Message,
     Quick,
     Request,
-    Told,
+    ThrottledReporter,
     failure_text,
 )
 from designer.explore.ropes import quick_ropes
 from designer.progress import interrupted_by
 
-Deliver = Callable[[Delivery], None]
+Deliver = Callable[[Message], None]
 _URGENCY: tuple[Quick, ...] = get_args(Quick)
 """The most urgent first; they are answered in the middle of work of the later ones."""
 _SHORT = ("here", "coarse")
@@ -51,7 +47,7 @@ class Worker:
     Parameters
     ----------
     deliver : callable
-        Called with each `Delivery`, in the worker's threads; shall be quick and not raise.
+        Called with each `Message`, in the worker's threads; shall be quick and not raise.
     """
 
     def __init__(self, deliver: Deliver) -> None:
@@ -116,10 +112,10 @@ class Worker:
         if dropped is not None:
             self._dropped.append(dropped)
 
-    def _tell(self, delivery: Delivery) -> None:
+    def _tell(self, message: Message) -> None:
         """Deliver; whoever listens may be gone by the end."""
         try:
-            self._deliver(delivery)
+            self._deliver(message)
         except Exception:
             if not self._closing:
                 raise
@@ -143,12 +139,12 @@ class Worker:
                 if request is not None:
                     self._running.append(request)
             for unanswered in dropped:
-                self._tell(Cancelled(unanswered))
+                self._tell(Message(unanswered, "cancelled"))
             if request is None:
                 return
             self._tell(self._answered(request))
 
-    def _answered(self, request: Request) -> Delivery:
+    def _answered(self, request: Request) -> Message:
         urgency = _URGENCY.index(request.kind)
 
         def between() -> None:
@@ -159,11 +155,11 @@ class Worker:
 
         try:
             with interrupted_by(between):
-                return Done(request, self._answer(request))
+                return Message(request, "done", self._answer(request))
         except _GivenUp:
-            return Cancelled(request)
+            return Message(request, "cancelled")
         except Exception as error:
-            return Failed(request, failure_text(error))
+            return Message(request, "failed", text=failure_text(error))
         finally:
             with self._changed:
                 self._running.remove(request)
@@ -172,8 +168,8 @@ class Worker:
     def _answer(self, request: Request) -> Any:
         question, options = request.question, request.options
 
-        def progress(task: str, done: int, total: int) -> None:
-            self._tell(Progress(request, task, done, total))
+        def report(task: str, steps: int, total: int) -> None:
+            self._tell(Message(request, "progress", None, task, steps, total))
 
         answers: dict[Kind, Callable[[], Any]] = {
             "here": lambda: here(question, **options),
@@ -181,6 +177,6 @@ class Worker:
             "fine": lambda: map_answer(question, fine=True, **options),
             "ropes": lambda: quick_ropes(question),
             "residuals": lambda: residuals(question),
-            "worst": lambda: worst_answer(question, Told(progress)),
+            "worst": lambda: worst_answer(question, ThrottledReporter(report)),
         }
         return answers[request.kind]()

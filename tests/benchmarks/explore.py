@@ -27,7 +27,7 @@ from typing import Any
 from designer.analysis.analyse import analyse
 from designer.explore.map import MapAnswer
 from designer.explore.question import Rope
-from designer.explore.requests import Delivery, Done, Progress
+from designer.explore.requests import Message
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.plugins.find import find_plugins
@@ -66,7 +66,7 @@ class Asker:
     """Asks a worker and waits."""
 
     def __init__(self) -> None:
-        self._got: SimpleQueue[Delivery] = SimpleQueue()
+        self._got: SimpleQueue[Message] = SimpleQueue()
         self.worker = Worker(self._got.put)
 
     def __call__(self, kind: Any, session: Session, **options: Any) -> Any:
@@ -75,8 +75,8 @@ class Asker:
         number = self.worker.ask(kind, question, **options)
         while True:
             end = self._got.get()
-            if end.number == number and not isinstance(end, Progress):
-                assert isinstance(end, Done), getattr(end, "text", "cancelled")
+            if end.number == number and end.is_end:
+                assert end.status == "done", getattr(end, "text", "cancelled")
                 return end.answer
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from designer.explore.question import Question
-from designer.explore.requests import Delivery, Progress
+from designer.explore.requests import Message
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.plugins.find import Plugins, find_plugins
@@ -40,16 +40,16 @@ class Asker:
     """Asks a worker, and waits for what becomes of it."""
 
     def __init__(self) -> None:
-        self.got: SimpleQueue[Delivery] = SimpleQueue()
+        self.got: SimpleQueue[Message] = SimpleQueue()
         self.worker = Worker(self.got.put)
-        self.seen: list[Delivery] = []
+        self.seen: list[Message] = []
 
     def ask(self, kind: Any, question: Question | None, **options: Any) -> int:
         """Ask, and do not wait."""
         assert question is not None
         return self.worker.ask(kind, question, **options)
 
-    def next(self) -> Delivery:
+    def next(self) -> Message:
         """Wait for the next delivery."""
         try:
             self.seen.append(self.got.get(timeout=LONGEST_WAIT_S))
@@ -57,11 +57,11 @@ class Asker:
             pytest.fail(f"nothing came after {self.seen}")
         return self.seen[-1]
 
-    def end_of(self, number: int) -> Delivery:
+    def end_of(self, number: int) -> Message:
         """Wait for the end of a request."""
         while True:
             for one in self.seen:
-                if one.number == number and not isinstance(one, Progress):
+                if one.number == number and one.is_end:
                     return one
             self.next()
 

@@ -19,7 +19,7 @@ from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.explore.compare import Differences, Pin, compare
 from designer.explore.question import Question, Rope, RopePerCable
-from designer.explore.requests import Delivery, Done, Failed, Kind, Long, Progress
+from designer.explore.requests import Kind, Long, Message
 from designer.explore.session import Session
 from designer.explore.worker import Worker
 from designer.study import Study
@@ -375,25 +375,25 @@ class LiveSession(QObject):
 
     # Answers
 
-    def _take(self, delivery: Delivery) -> None:
+    def _take(self, message: Message) -> None:
         """In the window's thread: hand on what is newer than what was handed on of its kind.
 
         While something moves, answers come to questions that are not the last ones any more.
         """
-        kind, number = delivery.kind, delivery.number
+        kind, number = message.kind, message.number
         if number <= max(self._since, self._newest.get(kind, 0)):
             return
-        if isinstance(delivery, Progress):
-            self.progressed.emit(kind, delivery.task, delivery.done, delivery.total)
+        if not message.is_end:
+            self.progressed.emit(kind, message.text, message.steps, message.total)
             return
         if self._pending.get(kind) == number:
             del self._pending[kind]
-        if isinstance(delivery, Done):
+        if message.status == "done":
             self._newest[kind] = number
-            self._keep(kind, delivery.question, delivery.answer)
-            self.answered.emit(kind, delivery.answer)
-        elif isinstance(delivery, Failed):
-            self._tell_failed(kind, delivery.text)
+            self._keep(kind, message.question, message.answer)
+            self.answered.emit(kind, message.answer)
+        elif message.status == "failed":
+            self._tell_failed(kind, message.text)
         self.busy_changed.emit()
 
     def _keep(self, kind: Kind, question: Question, answer: Any) -> None:

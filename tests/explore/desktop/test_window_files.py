@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QListWidget, QMessageBox, QPushButton
+from PySide6.QtWidgets import QApplication, QFileDialog, QListWidget, QMessageBox, QPushButton
 from window_driver import Driver, small_yard
 
 BUTTON = QMessageBox.StandardButton
@@ -25,6 +25,54 @@ def test_the_start_page_shows_shipped_and_recent_studies(empty: Driver, tmp_path
     empty.click(recent)
     empty.rest()
     assert empty.session.file == tmp_path / "yard.yaml"
+
+
+def test_new_study_has_no_file(empty: Driver) -> None:
+    empty.keys("Ctrl+N")
+    assert empty.session.file is None
+    assert "# " in empty.session.text
+    assert not empty.session.faults
+
+
+def wirex_robot() -> str:
+    """A rig of eight cables as WireX writes it, its frame twice and its platform 0.4 m high."""
+    corners = [(x, y, z) for z in (1, -1) for x in (-1, 1) for y in (-1, 1)]
+    chains = "".join(
+        f'<chain><base x="{3 * x}" y="{2 * y}" z="{2 + 1.8 * z}" a33="1" radius="0.03"/>'
+        f'<platform x="{0.2 * x}" y="{0.1 * y}" z="{0.2 * z}"/></chain>'
+        for x, y, z in corners
+    )
+    body = '<platform mass="40"><centerofgravity x="0" y="0" z="0.1"/></platform>'
+    robot = f'<robot name="Rig" motionpattern="3R3T"><geometry>{chains}</geometry>{body}</robot>'
+    return f'<models version="0.32">{robot}</models>'
+
+
+def test_imported_robot_shows_fields_to_fill_in(
+    empty: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source, target = tmp_path / "rig.wcrfx", tmp_path / "rig.yaml"
+    source.write_text(wirex_robot(), encoding="utf-8")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(source), ""))
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(target), ""))
+    empty.keys("Ctrl+I")
+    assert empty.session.file == target
+    assert empty.window.pages.currentWidget() is empty.window.text
+    assert "fill in" in empty.window.text.editor.toPlainText()
+    assert empty.find(QListWidget, "faults").count() > 0
+
+
+def test_file_of_no_robot_is_not_imported(
+    empty: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source, target = tmp_path / "note.xml", tmp_path / "note.yaml"
+    source.write_text("<note/>", encoding="utf-8")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(source), ""))
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(target), ""))
+    texts = empty.answer(BUTTON.Ok)
+    empty.keys("Ctrl+I")
+    assert "note.xml" in texts[0]
+    assert not target.exists()
+    assert empty.window.live.session is None
 
 
 def test_a_shipped_study_is_opened_by_a_click_and_has_no_file(empty: Driver) -> None:
@@ -47,8 +95,6 @@ def test_saving_keeps_comments(yard: Driver) -> None:
 def test_saving_under_another_name_is_asked_for(
     yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from PySide6.QtWidgets import QFileDialog
-
     other = tmp_path / "other"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(other), ""))
     yard.keys("Ctrl+Shift+S")
@@ -60,8 +106,6 @@ def test_saving_under_another_name_is_asked_for(
 def test_a_place_that_cannot_be_written_loses_nothing(
     yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from PySide6.QtWidgets import QFileDialog
-
     nowhere = tmp_path / "no" / "such" / "folder.yaml"
     yard.type_into("entry robot.platform.mass", "190 kg")
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(nowhere), ""))
@@ -174,8 +218,6 @@ def test_closing_in_the_middle_of_work_does_not_hang(empty: Driver, tmp_path: Pa
 def test_leaving_during_an_export_is_asked_about(
     yard: Driver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from PySide6.QtWidgets import QFileDialog
-
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "r"), ""))
     yard.keys("Ctrl+R")
     told = yard.answer(BUTTON.Cancel)
