@@ -17,7 +17,7 @@ from designer.effects.known import KnownEffects
 from designer.effects.registry import SHIPPED
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
-from designer.model.limits import Limits
+from designer.model.limits import RopeLimits
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
@@ -176,7 +176,7 @@ class Selection:
         Groups of cables that may each get a product of their own; empty for none.
     max_distinct_products : int or None
         How many products the groups may have between them; None for one each.
-    limits : Limits
+    limits : RopeLimits
         What the chosen rope is checked against beyond its strength.
     """
 
@@ -187,7 +187,7 @@ class Selection:
     sheave_diameter_m: float | None = None
     groups: tuple[CableGroup, ...] = ()
     max_distinct_products: int | None = None
-    limits: Limits = field(default_factory=Limits)
+    limits: RopeLimits = field(default_factory=RopeLimits)
 
     def __post_init__(self) -> None:
         require_number("safety_factor", self.safety_factor, least=1.0)
@@ -238,7 +238,7 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class StudySource:
     """Where a study came from."""
 
     path: Path  # The config file
@@ -258,7 +258,7 @@ class Source:
         return Fault(str(self.path), self.lines.get(nearest), field, problem, expected)
 
 
-IN_PYTHON = Source(Path("study"), "", ())
+IN_PYTHON = StudySource(Path("study"), "", ())
 """Of a study that no file describes."""
 
 
@@ -300,7 +300,7 @@ class Study:
     name: str
     robot: Robot
     material: Material
-    source: Source = IN_PYTHON
+    source: StudySource = IN_PYTHON
     pose: Poses | None = None
     workspace: Workspace | None = None
     selection: Selection | None = None

@@ -86,7 +86,7 @@ class Provenance:
         )
 
 
-class Scratch:
+class TemporaryFolder:
     """A temporary folder that goes when nothing refers to this any more."""
 
     def __init__(self) -> None:
@@ -184,8 +184,8 @@ class Analysis:
             )
 
     @cached_property
-    def _scratch(self) -> Scratch:
-        return Scratch()
+    def _scratch(self) -> TemporaryFolder:
+        return TemporaryFolder()
 
     @cached_property
     def selection(self) -> SelectionResult | None:

@@ -49,7 +49,7 @@ _LISTS = ("candidates", "pareto", "usable", "grades", "alternatives", "not_tried
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ComparisonLine:
     """One value of both.
 
     Parameters
@@ -89,28 +89,28 @@ class Comparison:
     ----------
     a, b : Mapping
         What each ``result.json`` holds.
-    inputs : tuple of Line
+    inputs : tuple of ComparisonLine
         Fields that differ, in SI; of what only one of the two has, the other is None.
     has_inputs : bool
         Whether both results tell their inputs; older ones do not.
-    answers : tuple of Line
+    answers : tuple of ComparisonLine
         What a reader compares first, whether it differs or not.
-    unmet : tuple of Line
+    unmet : tuple of ComparisonLine
         Requirements that do not hold in both, whether they differ or not; in words.
-    products : tuple of Line
+    products : tuple of ComparisonLine
         Sizes of grades that hold in one of the two only, or were tried in one only.
-    others : tuple of Line
+    others : tuple of ComparisonLine
         All other values that differ.
     """
 
     a: Mapping[str, Any]
     b: Mapping[str, Any]
-    inputs: tuple[Line, ...]
+    inputs: tuple[ComparisonLine, ...]
     has_inputs: bool
-    answers: tuple[Line, ...]
-    unmet: tuple[Line, ...]
-    products: tuple[Line, ...]
-    others: tuple[Line, ...]
+    answers: tuple[ComparisonLine, ...]
+    unmet: tuple[ComparisonLine, ...]
+    products: tuple[ComparisonLine, ...]
+    others: tuple[ComparisonLine, ...]
 
     @property
     def is_same(self) -> bool:
@@ -121,7 +121,7 @@ class Comparison:
     def to_dict(self) -> Json:
         """Return what ``comparison.json`` holds."""
 
-        def plain(lines: tuple[Line, ...]) -> list[Json]:
+        def plain(lines: tuple[ComparisonLine, ...]) -> list[Json]:
             return [{**asdict(line), "relative": line.relative} for line in lines]
 
         return {
@@ -143,7 +143,7 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
     inputs = _lines(a["inputs"], b["inputs"]) if has_inputs else iter(())
     of_a, of_b = dict(_flat(a)), dict(_flat(b))
     answers = tuple(
-        Line(path, label, of_a.get(path), of_b.get(path))
+        ComparisonLine(path, label, of_a.get(path), of_b.get(path))
         for path, label in _ANSWERS.items()
         if of_a.get(path) is not None or of_b.get(path) is not None
     )
@@ -160,12 +160,12 @@ def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> Comparison:
     )
 
 
-def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
+def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLine]:
     for path in dict.fromkeys([*a, *b]):
-        yield Line(path, "", a.get(path), b.get(path))
+        yield ComparisonLine(path, "", a.get(path), b.get(path))
 
 
-def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
+def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[ComparisonLine]:
     """Yield each requirement that one of the two does not meet; None where it is not asked."""
     # Of groups of cables several have one name: the one that does not hold counts.
     each = (
@@ -175,7 +175,7 @@ def _unmet(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[Line]:
     for key in dict.fromkeys([*checks_a, *checks_b]):
         checks = checks_a.get(key), checks_b.get(key)
         if any(check is not None and check["state"] != "holds" for check in checks):
-            yield Line(key, key.replace("_", " "), *map(_check_words, checks))
+            yield ComparisonLine(key, key.replace("_", " "), *map(_check_words, checks))
 
 
 def _key(check: Mapping[str, Any]) -> str:

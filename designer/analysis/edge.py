@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.analysis.field import Field, field_at
+from designer.analysis.field import RegionField, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model import polygon
 from designer.model.prism import Prism
@@ -23,7 +23,7 @@ class EdgeProfile:
     ----------
     distance_m : array (n,)
         Distance to the hull's edge along the line, descending to zero [m].
-    field : Field
+    field : RegionField
         Sizing at these positions (n,).
     focus_distance_m : float
         Distance of the pose that the line was laid through [m].
@@ -38,7 +38,7 @@ class EdgeProfile:
     """
 
     distance_m: FloatArray
-    field: Field
+    field: RegionField
     focus_distance_m: float
     region_distance_m: float | None
     limit_distance_m: float | None
@@ -91,7 +91,7 @@ def edge_profile(study: Study, focus_m: FloatArray) -> EdgeProfile | None:
     reach = polygon.reach_m(hull, centre, azimuth)
     ray = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
 
-    def at(distance_m: FloatArray) -> Field:
+    def at(distance_m: FloatArray) -> RegionField:
         start = np.array([*centre, focus_m[2]])
         return field_at(study, start + (reach - distance_m)[:, None] * ray)
 
@@ -120,10 +120,10 @@ def _azimuth_rad(hull: FloatArray, centre: FloatArray, focus_m: FloatArray) -> f
 
 
 def first_failure_m(
-    at: Callable[[FloatArray], Field],
+    at: Callable[[FloatArray], RegionField],
     distance_m: FloatArray,
-    field: Field,
-    is_held: Callable[[Field], BoolArray],
+    field: RegionField,
+    is_held: Callable[[RegionField], BoolArray],
 ) -> float | None:
     """Return where the first pose that is not held lies, on the way outward [m].
 

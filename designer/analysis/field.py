@@ -21,7 +21,7 @@ from designer.workspace.demand import is_left_out, size_worst
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Field:
+class RegionField:
     """Sizing at positions over any axes; NaN where there is no value.
 
     Parameters
@@ -81,7 +81,7 @@ class Field:
             return "no cable holds the platform"
         return "".join(Verdict(reason).reason for reason in reasons)
 
-    def every_second(self) -> Field:
+    def every_second(self) -> RegionField:
         """Return every second point along both axes of a grid, its rim kept."""
         chosen = every_second(self.position_m)
         kept: dict[str, Any] = {
@@ -89,10 +89,10 @@ class Field:
             for item in fields(self)
             for value in [getattr(self, item.name)]
         }
-        return Field(**kept)
+        return RegionField(**kept)
 
 
-def field_at(study: Study, position_m: FloatArray) -> Field:
+def field_at(study: Study, position_m: FloatArray) -> RegionField:
     """Size the positions (..., 3) of a study's workspace, each in its worst orientation."""
     workspace = study.workspace
     if workspace is None:
@@ -108,11 +108,11 @@ def field_at(study: Study, position_m: FloatArray) -> Field:
     return field_of(study, np.concatenate(worst).reshape(*axes, -1))
 
 
-def field_of(study: Study, place: FloatArray) -> Field:
+def field_of(study: Study, place: FloatArray) -> RegionField:
     """Size the places (..., n_coordinates) of a study's workspace."""
     sizing = size_poses(study.robot, Poses.at(place), study.material)
     hangs_below = study.workspace.hangs_below if study.workspace else "include"
-    return Field(
+    return RegionField(
         position_m=place[..., :3],
         diameter_m=sizing.diameter_m,
         tension_N=sizing.statics.largest_tension_N,

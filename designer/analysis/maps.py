@@ -10,7 +10,7 @@ import numpy as np
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.edge import EdgeProfile, edge_profile
-from designer.analysis.field import Field, field_at, field_of
+from designer.analysis.field import RegionField, field_at, field_of
 from designer.arrays import FloatArray
 from designer.model.region import Region
 from designer.model.robot import Poses
@@ -36,14 +36,14 @@ class Focus:
         What it is, such as ``worst pose``.
     statics : Statics or None
         Equilibrium there with the cable that it needs; None where there is none.
-    field : Field
+    field : RegionField
         Sizing there, no axes.
     """
 
     position_m: FloatArray
     label: str
     statics: Statics | None
-    field: Field
+    field: RegionField
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,11 +86,11 @@ class WorkspaceMaps:
         The problem, with robot and cables as they were solved, see `as_built`.
     focus : Focus
         The worst pose, or what stands for it.
-    section : Field
+    section : RegionField
         The region at its greatest height (rings, spokes + 1), see `Region.section_m`; a rectangle
         itself; for a list of points the points themselves (n_points,), thinned out where there are
         very many.
-    shell : mapping of str to Field
+    shell : mapping of str to RegionField
         Outside of the region and two cuts, see `Region.cutaway_m`; of a rectangle the section;
         empty for a list of points.
     edge : EdgeProfile or None
@@ -104,8 +104,8 @@ class WorkspaceMaps:
 
     study: Study
     focus: Focus
-    section: Field
-    shell: Mapping[str, Field]
+    section: RegionField
+    shell: Mapping[str, RegionField]
     edge: EdgeProfile | None
     served: Served
     impossible_m: FloatArray
@@ -121,7 +121,7 @@ class WorkspaceMaps:
         return bool(self.shell)
 
     @property
-    def shown(self) -> Sequence[Field]:
+    def shown(self) -> Sequence[RegionField]:
         """All fields that are seen in space."""
         return [*self.shell.values()] or [self.section]
 
@@ -170,7 +170,7 @@ def workspace_maps(analysis: Analysis) -> WorkspaceMaps:
         raise ValueError("the analysis has no workspace")
     region, part = _workspace(study).region, analysis.servable
     focus = _focus(study, survey)
-    shell: Mapping[str, Field]
+    shell: Mapping[str, RegionField]
     positions = region.section_m()
     if positions is not None:
         section = field_at(study, positions)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.analysis.governing_ropes import GoverningRopes
 from designer.analysis.maps import Focus, WorkspaceMaps
 from designer.arrays import FloatArray
@@ -24,7 +24,7 @@ def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
     region, place = rope.workspace.region, rope.place
     statics = rope.worst
     focus = Focus(place[:3], "worst pose", statics if statics.is_solved else None, _at(rope, place))
-    shell: dict[str, Field] = {}
+    shell: dict[str, RegionField] = {}
     positions = region.section_m(1.0, _RINGS, _SPOKES)
     if positions is not None:
         section = _over(rope, positions)
@@ -39,7 +39,7 @@ def rope_maps(family: WorkspaceMaps, rope: GoverningRopes) -> WorkspaceMaps:
     return replace(family, study=study, focus=focus, section=section, shell=shell, edge=None)
 
 
-def _over(rope: GoverningRopes, position_m: FloatArray) -> Field:
+def _over(rope: GoverningRopes, position_m: FloatArray) -> RegionField:
     """Return the field at positions (..., 3), each in the orientation that asks for the most."""
     space, axes = rope.workspace.space, position_m.shape[:-1]
     places = space.places(position_m.reshape(-1, 3))
@@ -50,10 +50,10 @@ def _over(rope: GoverningRopes, position_m: FloatArray) -> Field:
     return _at(rope, places.reshape(*axes, -1))
 
 
-def _at(rope: GoverningRopes, place: FloatArray) -> Field:
+def _at(rope: GoverningRopes, place: FloatArray) -> RegionField:
     statics = rope.statics(place)
     no_value = np.full(place.shape[:-1], np.nan)
-    return Field(
+    return RegionField(
         position_m=place[..., :3],
         diameter_m=no_value,
         tension_N=statics.largest_tension_N,

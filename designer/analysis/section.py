@@ -16,7 +16,7 @@ from designer.workspace.demand import is_left_out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Section:
+class SectionMap:
     """A value over rings about the centre of the region, see `Region.section_m`.
 
     Parameters
@@ -37,7 +37,7 @@ class Section:
     exit_points_m: FloatArray
 
 
-def displacement_section(analysis: Analysis) -> Section | None:
+def displacement_section(analysis: Analysis) -> SectionMap | None:
     """Return the largest displacement under a unit force [m/N]; None without an area."""
     statics = _statics(analysis, 40, 144)
     if statics is None:
@@ -46,7 +46,7 @@ def displacement_section(analysis: Analysis) -> Section | None:
     return _section(analysis, statics, displacement, np.isnan(displacement))
 
 
-def clearance_section(analysis: Analysis) -> Section | None:
+def clearance_section(analysis: Analysis) -> SectionMap | None:
     """Return the smallest clearance [m]; None without an area or anything to compare."""
     interference = None if analysis.qualities is None else analysis.qualities.interference
     if interference is None or interference.worst is None:
@@ -74,10 +74,10 @@ def _statics(analysis: Analysis, rings: int, spokes: int) -> Statics | None:
 
 def _section(
     analysis: Analysis, statics: Statics, values: FloatArray, is_missing: BoolArray
-) -> Section:
+) -> SectionMap:
     assert analysis.study.workspace is not None
     asked_for = ~is_left_out(statics, analysis.study.workspace.hangs_below)
-    return Section(
+    return SectionMap(
         position_m=statics.poses.position_m,
         values=np.where(statics.is_solved & asked_for, values, np.nan),
         is_bad=np.asarray(asked_for & is_missing),

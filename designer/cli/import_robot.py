@@ -119,12 +119,12 @@ def import_robot(
     input is wrong or no study can hold such a robot, and nothing is written.
     """
     from designer.foreign.read import read_foreign
-    from designer.foreign.study import Answers, gaps, study_text
+    from designer.foreign.study import ImportAnswers, gaps, study_text
     from designer.io.output import write_new_file
     from designer.plugins.find import find_plugins
 
     robot = read_foreign(file, other, cable_set)
-    answers = Answers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)
+    answers = ImportAnswers(mass, payload, centre_of_mass, pose, gravity, grade, safety_factor)
     text = study_text(robot, answers)
     missing = gaps(text)
     stem = file.stem.removesuffix("_bodies").removesuffix("_cables")

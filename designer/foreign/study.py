@@ -18,7 +18,7 @@ _FIGURES = "density, youngs_modulus and allowable_stress"
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class ImportAnswers:
     """What the user says beside the file, in SI units; None where nothing."""
 
     mass_kg: float | None = None
@@ -49,7 +49,7 @@ _OPTIONS = {
 }
 
 
-def study_text(robot: ForeignRobot, answers: Answers) -> str:
+def study_text(robot: ForeignRobot, answers: ImportAnswers) -> str:
     """Return the study of a foreign robot as YAML with comments.
 
     Raises
@@ -114,7 +114,7 @@ def _require_upright(robot: ForeignRobot, gravity: Point) -> None:
         )
 
 
-def _robot(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+def _robot(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     yield "robot:"
     yield from _remarks(robot, "robot", "  ")
     yield "  anchors:"
@@ -138,7 +138,7 @@ def _robot(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
         yield "  planar: true"
 
 
-def _mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+def _mass(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     mass, payload = answers.mass_kg, answers.payload_kg
     if mass is None:
         mass = robot.mass_kg
@@ -153,7 +153,7 @@ def _mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
         yield f"    mass: {format_SI(mass, MASS)}"
 
 
-def _centre_of_mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+def _centre_of_mass(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     centre = answers.centre_of_mass_m
     if centre is None:
         centre = robot.centre_of_mass_m
@@ -163,7 +163,7 @@ def _centre_of_mass(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
     yield f"    centre_of_mass: {FILL_IN if centre is None else _list(centre)}"
 
 
-def _cable(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+def _cable(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     rope, safety = robot.rope, answers.safety_factor
     if answers.grade is not None:
         and_safety = "" if safety is None else f", safety_factor: {_number(safety)}"
@@ -196,7 +196,7 @@ def _pose(robot: ForeignRobot) -> Iterator[str]:
         yield f"pose: {_list(position)}"
 
 
-def _workspace(robot: ForeignRobot, answers: Answers) -> Iterator[str]:
+def _workspace(robot: ForeignRobot, answers: ImportAnswers) -> Iterator[str]:
     """Yield the box of the joint's limits, or its upright rectangle in a plane."""
     limits = robot.limits_m
     if limits is None or answers.gravity is not None:

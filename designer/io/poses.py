@@ -13,7 +13,7 @@ from designer.documents.bounds import BOUNDS
 from designer.documents.opened import open_input
 from designer.errors import Fault, InputError
 from designer.measured.names import POSITION, ROTATION_VECTOR
-from designer.measured.table import RawColumn, Table, read_table
+from designer.measured.table import LogTable, RawColumn, read_table
 from designer.model.robot import Poses, Robot
 
 _OFF_PLANE = 1e-6
@@ -83,7 +83,7 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
     )
 
 
-def _column_faults(table: Table, columns: dict[str, RawColumn]) -> Iterator[Fault]:
+def _column_faults(table: LogTable, columns: dict[str, RawColumn]) -> Iterator[Fault]:
     for name in POSITION:
         if name not in columns:
             yield table.fault(None, name, "there is no such column", "x_m, y_m and z_m")
@@ -96,7 +96,7 @@ def _column_faults(table: Table, columns: dict[str, RawColumn]) -> Iterator[Faul
         yield table.fault(None, "", "there is no pose", "a row for each pose")
 
 
-def _cell_faults(table: Table, columns: list[RawColumn]) -> list[Fault]:
+def _cell_faults(table: LogTable, columns: list[RawColumn]) -> list[Fault]:
     most = BOUNDS["distance"].most
     found = []
     for column in columns:
@@ -111,7 +111,7 @@ def _cell_faults(table: Table, columns: list[RawColumn]) -> list[Fault]:
     return table.first_few(found, len(found), "of this kind")
 
 
-def _robot_faults(table: Table, robot: Robot, place: FloatArray) -> Iterator[Fault]:
+def _robot_faults(table: LogTable, robot: Robot, place: FloatArray) -> Iterator[Fault]:
     turn = place[:, 3:] if place.shape[1] == 6 else np.zeros((len(place), 3))
     if robot.is_point_mass:
         for row in np.flatnonzero(turn.any(axis=1)).tolist():

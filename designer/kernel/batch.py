@@ -9,7 +9,7 @@ import numpy as np
 from designer.arrays import FloatArray, VerdictArray, require_shape
 from designer.kernel import answer
 from designer.kernel.branches import rate_range
-from designer.kernel.calling import Figures, Situation, plain, share_out
+from designer.kernel.calling import CableFigures, Situation, plain, share_out
 from designer.kernel.cone import refuse_range
 from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
@@ -101,7 +101,7 @@ def solve_batch(
     require_shape("relative_weights", relative_weights, n)
     require_shape("strength_m", strength_m, n)
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
-    figures = Figures(
+    figures = CableFigures(
         plain(kappa_per_m),
         plain(relative_weights),
         plain(strength_m),
@@ -192,7 +192,7 @@ def refuse_batch(
     return verdict, wrench, separation
 
 
-def _straight(n_cables: int, least_tension_N: float) -> Figures:
+def _straight(n_cables: int, least_tension_N: float) -> CableFigures:
     """Return straight cables, of which strength and weight say nothing."""
     ones = plain(np.ones(n_cables))
-    return Figures(ones, ones, ones, least_tension_N)
+    return CableFigures(ones, ones, ones, least_tension_N)

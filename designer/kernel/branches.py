@@ -19,7 +19,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import FORCE_X, LENGTH, LOAD_FACTOR, SOLVED, WEIGHT, Answers
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.interior import Scratch, new_scratch
 from designer.kernel.linear import solve_small
@@ -61,7 +61,7 @@ def rate_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     is_sizing: bool,
     answers: Answers,
     out: FloatArray,

@@ -51,7 +51,7 @@ class Situation(NamedTuple):
     rows: IntArray
 
 
-class Figures(NamedTuple):
+class CableFigures(NamedTuple):
     """What is the same of the cables in all poses.
 
     Parameters

@@ -31,7 +31,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, NOT_FOUND, OUTSIDE_HULL, RANK_DEFICIENT
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.pose import (
     LEAST,
@@ -104,7 +104,7 @@ def refuse_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     out_wrench: FloatArray,
     out_separation: FloatArray,
     out_verdict: VerdictArray,

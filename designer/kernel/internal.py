@@ -23,7 +23,7 @@ from __future__ import annotations
 import numpy as np
 
 from designer.arrays import FloatArray, IntArray
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.lanes import (
     POSE_ROWS,
@@ -57,7 +57,7 @@ _HUBER = 3.0
 @kernel
 def solve_internal_poses(
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     read: FloatArray,
     noise: FloatArray,
     pull: FloatArray,
@@ -70,7 +70,7 @@ def solve_internal_poses(
 
     Parameters
     ----------
-    figures : Figures
+    figures : CableFigures
         With weights per length [N/m].
     read : array (n_poses, n_cables, 2)
         Lengths [m] and tensions at the exit points [N] that were read; NaN where none was.

@@ -21,7 +21,7 @@ from designer.kernel.answer import (
     write_cable,
     write_pose,
 )
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.least_pull import least_pull
 from designer.kernel.table import (
@@ -118,7 +118,7 @@ class Ask(NamedTuple):
 
 
 @kernel
-def new_pose(figures: Figures, rows: IntArray) -> Pose:
+def new_pose(figures: CableFigures, rows: IntArray) -> Pose:
     """Return the arrays of a pose, filled with what is the same for all poses."""
     cables = np.zeros((_ROWS, figures.kappa.size))
     scale = np.ones(3)

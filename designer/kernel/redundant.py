@@ -22,7 +22,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray
 from designer.kernel.answer import NOT_CONVERGED, OUTSIDE_HULL, RANK_DEFICIENT, SOLVED, Answers
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.interior import (
     START_OF_STRAIGHT,
@@ -109,7 +109,7 @@ def solve_redundant_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     inverse_weight: float,
     out: Answers,
 ) -> None:
@@ -149,7 +149,7 @@ def solve_massless_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     out_tension: FloatArray,
     out_wrench: FloatArray,
     out_verdict: VerdictArray,

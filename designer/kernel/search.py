@@ -26,7 +26,7 @@ import numpy as np
 
 from designer.arrays import FloatArray
 from designer.kernel.answer import FORCE_X, LOAD_FACTOR, NO_FINITE_CABLE, SOLVED, WEIGHT, Answers
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.interior import START_OF_STRAIGHT, climb, new_scratch, pull_straight
 from designer.kernel.pose import (
@@ -80,7 +80,7 @@ def search_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     inverse_weight: float,
     out: Answers,
 ) -> None:

@@ -26,7 +26,7 @@ from designer.kernel.answer import (
     write_cable,
     write_pose,
 )
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import element, kernel
 from designer.kernel.lanes import (
     CLOSURE,
@@ -85,7 +85,7 @@ def solve_range(
     start: int,
     stop: int,
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     inverse_weight: float,
     out: Answers,
 ) -> None:
@@ -126,7 +126,7 @@ def _solve_block(
     cables: FloatArray,
     A: FloatArray,
     poses: FloatArray,
-    figures: Figures,
+    figures: CableFigures,
     rows: IntArray,
     sizing: bool,
     iterations: int,

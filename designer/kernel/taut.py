@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.lanes import POSE_ROWS, assemble, lanes_of, normal_equations, place
 from designer.kernel.linear import solve_lanes
@@ -37,13 +37,13 @@ _SMALL_STEP = 1e-8
 
 @kernel
 def solve_taut_poses(
-    situation: Situation, figures: Figures, regular: float, out: FloatArray
+    situation: Situation, figures: CableFigures, regular: float, out: FloatArray
 ) -> None:
     """Solve all poses.
 
     Parameters
     ----------
-    figures : Figures
+    figures : CableFigures
         With weights per length [N/m].
     regular : float
         ε.

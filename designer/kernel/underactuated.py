@@ -20,7 +20,7 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.kernel.answer import LENGTH
-from designer.kernel.calling import Figures, Situation
+from designer.kernel.calling import CableFigures, Situation
 from designer.kernel.compiling import kernel
 from designer.kernel.lanes import (
     GOAL,
@@ -61,7 +61,7 @@ _REGULAR_START, _LEAST_REGULAR = 1e-4, 1e-12
 @kernel
 def solve_underactuated_poses(
     situation: Situation,
-    figures: Figures,
+    figures: CableFigures,
     scale: FloatArray,
     out: FloatArray,
     out_pose: FloatArray,
@@ -72,7 +72,7 @@ def solve_underactuated_poses(
     ----------
     situation : Situation
         About the centre of mass, which is the origin of the body frame.
-    figures : Figures
+    figures : CableFigures
         With weights per length [N/m]; the least tension is that along the chord.
     scale : array (degrees of freedom,)
         S, 1 or 1/m.
@@ -132,7 +132,7 @@ def _start(
     slopes: FloatArray,
     normal: FloatArray,
     poses: FloatArray,
-    figures: Figures,
+    figures: CableFigures,
     rows: IntArray,
     scale: FloatArray,
 ) -> None:

@@ -19,7 +19,7 @@ from designer.measured.names import (
     standard_names,
     tension_names,
 )
-from designer.measured.table import RawColumn, Table
+from designer.measured.table import LogTable, RawColumn
 from designer.model.measurements import POSES, LogColumn, Measurements
 from designer.spelling import did_you_mean
 from designer.study import Study
@@ -33,7 +33,7 @@ class Assigned:
 
     Parameters
     ----------
-    table : Table
+    table : LogTable
         The whole of it.
     ours : mapping of str to RawColumn
         Columns that we have a name for, by that name, in its unit.
@@ -47,7 +47,7 @@ class Assigned:
         Columns that were left out, and why.
     """
 
-    table: Table
+    table: LogTable
     ours: dict[str, RawColumn] = field(default_factory=dict)
     covariates: dict[str, RawColumn] = field(default_factory=dict)
     awaited: set[str] = field(default_factory=set)
@@ -64,7 +64,7 @@ class Assigned:
         return next((rotation_form(name) for name in self.ours if is_rotation(name)), ())
 
 
-def assign(table: Table, study: Study, measurements: Measurements) -> Assigned:
+def assign(table: LogTable, study: Study, measurements: Measurements) -> Assigned:
     """Return the table with its columns assigned by the config's map and by their names."""
     assigned = Assigned(table)
     named: dict[str, RawColumn] = {}

@@ -21,7 +21,7 @@ from designer.measured.names import (
 from designer.measured.rows import Rows, cell_faults, thinned, usable_rows
 from designer.measured.sense import sense_faults, unit_faults
 from designer.measured.surroundings import covariates, temperature_C, time_s, wind_m_per_s
-from designer.measured.table import Table, read_table
+from designer.measured.table import LogTable, read_table
 from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
 from designer.model.robot import Poses, Robot
@@ -81,7 +81,7 @@ def _refuse(faults: list[Fault]) -> None:
         raise InputError(faults[:MOST_FAULTS])
 
 
-def _table(study: Study, measurements: Measurements) -> Table:
+def _table(study: Study, measurements: Measurements) -> LogTable:
     path = measurements.file
     try:
         file = open_input(path)
@@ -112,7 +112,7 @@ def _stacked(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> Flo
     return np.stack(columns, axis=1)[mask]
 
 
-def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: Table) -> None:
+def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogTable) -> None:
     """Refuse rows that readings only just settle: nothing is left to test the model with."""
     if not robot.has_enough_cables:
         problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"

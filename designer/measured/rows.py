@@ -13,7 +13,7 @@ from designer.errors import Fault
 from designer.measured.assign import Assigned
 from designer.measured.cells import MOST_ALIKE, is_number
 from designer.measured.names import POSITION, TIME_NAME, dimension_of, length_names, tension_names
-from designer.measured.table import RawColumn, Table
+from designer.measured.table import LogTable, RawColumn
 from designer.spelling import in_runs
 from designer.units import ANGLE, FORCE, LENGTH, NUMBER, SPEED, TEMPERATURE, describe
 
@@ -174,7 +174,7 @@ def _with_pose(assigned: Assigned) -> tuple[BoolArray, list[Fault]]:
 
 
 def _time_faults(
-    table: Table, time: RawColumn, mask: BoolArray, *, settled: bool
+    table: LogTable, time: RawColumn, mask: BoolArray, *, settled: bool
 ) -> Iterator[Fault]:
     if not (time.is_empty or time.n_texts):
         rows = np.flatnonzero(np.isnan(time.values) & mask)

@@ -12,7 +12,7 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.measured.names import POSITION, TEMPERATURE_NAME, length_names, tension_names
-from designer.measured.table import Table
+from designer.measured.table import LogTable
 from designer.model.measured_data import Measured
 from designer.model.robot import Robot
 from designer.statics.geometry import cable_geometry
@@ -87,14 +87,16 @@ def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) 
     return faults
 
 
-def sense_faults(robot: Robot, measured: Measured, table: Table, *, is_homed: bool) -> list[Fault]:
+def sense_faults(
+    robot: Robot, measured: Measured, table: LogTable, *, is_homed: bool
+) -> list[Fault]:
     """Return what cannot be so, whatever effects the model may lack.
 
     Parameters
     ----------
     robot, measured
         The robot as declared, and its log.
-    table : Table
+    table : LogTable
         The file, for messages.
     is_homed : bool
         Whether the winches' offsets are known, so that lengths are positive.
@@ -149,7 +151,7 @@ def _about(values: Sequence[float]) -> str:
     return f"{float(f'{np.median(values):.2g}'):g}"
 
 
-def _wrong_cable(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
+def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     """Tell lengths that shrink as the distance grows, or that follow another cable's distance."""
     chord_m = cable_geometry(robot, measured.poses).chord_m
     names = length_names(robot.n_cables)
@@ -172,7 +174,7 @@ def _correlation(values: FloatArray, second: FloatArray) -> float:
     return float(np.corrcoef(values[seen], second[seen])[0, 1])
 
 
-def _pushing(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
+def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     """Tell load cells that read a push most of the time."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a column without any reading
@@ -184,7 +186,7 @@ def _pushing(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
             yield table.fault(None, name, problem, f"a pull, or 'scale: -1' in {_MAP}")
 
 
-def _too_light(robot: Robot, measured: Measured, table: Table) -> Iterator[Fault]:
+def _too_light(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:
     total_N = measured.tension_N.sum(axis=1)
     pull_N = _pull_N(robot)
     # Cables pull along themselves, so that their tensions add up to the weight at least; half of it

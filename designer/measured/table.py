@@ -55,7 +55,7 @@ class RawColumn:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Table:
+class LogTable:
     """A CSV file.
 
     Parameters
@@ -97,7 +97,7 @@ class Table:
         return told
 
 
-def read_table(file: BinaryIO, name: str) -> Table:
+def read_table(file: BinaryIO, name: str) -> LogTable:
     """Return the table in an open file, which messages call ``name``.
 
     Raises
@@ -122,7 +122,7 @@ def read_table(file: BinaryIO, name: str) -> Table:
         for column, filled in zip(columns, zip(*kept, strict=True), strict=True):
             column.add(filled, first_row)
     filled_columns = tuple(one.column(own) for own, one in zip(names, columns, strict=True))
-    table = Table(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
+    table = LogTable(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
     expected = f"{len(names)}, as the first line has names"
     of_another_width = (
         table.fault(row, "", f"has {width} value{'s' * (width != 1)}", expected)

@@ -8,7 +8,7 @@ from designer.arrays import require_number
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class RopeLimits:
     """Limits that the chosen rope is checked against; None asks for nothing.
 
     Parameters

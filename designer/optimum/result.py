@@ -9,7 +9,7 @@ from typing import Any
 
 from designer import __version__
 from designer.analysis.analyse import Analysis
-from designer.analysis.comparison import Comparison, Line
+from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.analysis.result_json import Json
 from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite, json_text
@@ -116,7 +116,7 @@ class Optimum:
         return (self.after - self.before) / abs(self.before)
 
     @property
-    def worsened(self) -> list[Line]:
+    def worsened(self) -> list[ComparisonLine]:
         """What got notably worse by it, of what is not asked for: give, and clearance."""
         lines = (line for line in self.comparison.answers if line.path in _WORSE)
         return [line for line in lines if (line.relative or 0.0) * _WORSE[line.path] > _NOTABLE]

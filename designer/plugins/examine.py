@@ -35,7 +35,7 @@ _START = (
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class PluginAnswer:
     """What a plugin came to: of each hook that works its items as plain data, and problems."""
 
     items: Mapping[str, Sequence[Any]] = field(default_factory=dict)
@@ -43,7 +43,7 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class PluginQuestion:
     """A plugin to ask; ``source`` is its distribution with its version."""
 
     entry: EntryPoint
@@ -51,7 +51,7 @@ class Asked:
     label: str
 
 
-def examine(plugins: Sequence[Asked]) -> list[Answer]:
+def examine(plugins: Sequence[PluginQuestion]) -> list[PluginAnswer]:
     """Return the answer of each, as it is kept where its version and its files are the same.
 
     A plugin that fails is asked again the next time.
@@ -69,7 +69,7 @@ def kept_folder() -> Path:
     return user_cache_path("cdpr-designer", appauthor=False) / "plugins"
 
 
-def _kept_or_new(asked: Asked) -> Answer:
+def _kept_or_new(asked: PluginQuestion) -> PluginAnswer:
     name = sha256(f"{asked.entry.name} {asked.entry.value} {sys.prefix}".encode()).hexdigest()
     path = kept_folder() / f"{name[:16]}.json"
     state = _state(asked)
@@ -87,11 +87,11 @@ def _kept_or_new(asked: Asked) -> Answer:
     return answer
 
 
-def _answer(plain: Mapping[str, Any]) -> Answer:
-    return Answer(dict(plain["items"]), tuple(map(str, plain["problems"])))
+def _answer(plain: Mapping[str, Any]) -> PluginAnswer:
+    return PluginAnswer(dict(plain["items"]), tuple(map(str, plain["problems"])))
 
 
-def _state(asked: Asked) -> str:
+def _state(asked: PluginQuestion) -> str:
     """Return a digest of all that an answer depends on; empty where it cannot be told.
 
     A plugin that is installed to be edited keeps its version while its files change.
@@ -118,7 +118,7 @@ def _files(root: Path) -> Iterator[tuple[str, int, int]]:
             yield str(path), state.st_mtime_ns, state.st_size
 
 
-def _from_process(asked: Asked) -> Answer:
+def _from_process(asked: PluginQuestion) -> PluginAnswer:
     entry, wait_s = asked.entry, guard.LONGEST_WAIT_S
     program = [sys.executable, "-P", "-c", _START, json.dumps(sys.path)]
     process = subprocess.Popen(
@@ -152,4 +152,4 @@ def _from_process(asked: Asked) -> Answer:
             doing, limit_s = message["doing"], wait_s + _GRACE_S
     timeout = f"TimeoutError: no answer within {wait_s:g} s"
     reason = timeout if late.is_set() else "it ended its process"
-    return Answer(problems=(f"{asked.label} {doing}: {reason}: left out",))
+    return PluginAnswer(problems=(f"{asked.label} {doing}: {reason}: left out",))

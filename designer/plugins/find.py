@@ -11,7 +11,7 @@ from importlib.metadata import EntryPoint, distributions, entry_points
 import designer
 from designer.errors import described, one_line
 from designer.plugins import hookspecs
-from designer.plugins.examine import Asked, examine
+from designer.plugins.examine import PluginQuestion, examine
 from designer.plugins.guard import attempt
 from designer.plugins.hooks import hooks_of, listed
 
@@ -84,7 +84,7 @@ def find_plugins(with_plugins: bool = True) -> Plugins:
             problems.append(f"{plugin.label} has the name of {found[name].source}: left out")
             continue
         found[name] = plugin
-        strangers.append(Asked(entry, source, plugin.label))
+        strangers.append(PluginQuestion(entry, source, plugin.label))
     for stranger, answer in zip(strangers, examine(strangers), strict=True):
         problems += answer.problems
         name = one_line(stranger.entry.name)
@@ -112,7 +112,7 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
     return offers, problems
 
 
-def _hook(asked: Asked, hook: str, items: Sequence[object]) -> Callable[[], object]:
+def _hook(asked: PluginQuestion, hook: str, items: Sequence[object]) -> Callable[[], object]:
     """Return what gives a plugin's answer: from plain data, or by the plugin itself."""
     if hook in hookspecs.PLAIN:
         return partial(import_module(hookspecs.PLAIN[hook]).from_plain, items)

@@ -39,7 +39,7 @@ def why_not(robot: Robot, region: Region) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Told:
+class BoxBounds:
     """What an encloser tells of boxes (n_boxes,): bounds, coordinates to halve, worst corners.
 
     ``estimate`` is what the cable is about used to in the worst corners ``worst`` (n_boxes, k);
@@ -92,7 +92,9 @@ class Encloser:
         used = statics.largest_tension_N / self._cable.allowable_tension_N
         return np.where(statics.is_solved, used, np.inf)
 
-    def bound(self, low: FloatArray, high: FloatArray, raised: FloatArray, level: float) -> Told:
+    def bound(
+        self, low: FloatArray, high: FloatArray, raised: FloatArray, level: float
+    ) -> BoxBounds:
         """Bound the largest utilisation in boxes (n, k), where one of `level` would do.
 
         Least tensions are ``raised`` (n,) in their middles, sags lowered.
@@ -135,7 +137,7 @@ class Encloser:
             Boxes(*map(np.ascontiguousarray, boxes)),
             out,
         )
-        return Told(
+        return BoxBounds(
             bound=np.where(solved, out[:, BOUND], np.inf),
             cut=out[:, CUT].astype(np.int64),
             estimate=np.nan_to_num(out[:, ESTIMATE], nan=-np.inf),

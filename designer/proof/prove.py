@@ -19,7 +19,7 @@ from designer.model.cable import Cable
 from designer.model.robot import Robot
 from designer.model.space import Space
 from designer.proof.cover import Cover, covers_of, halves
-from designer.proof.encloser import FIRST_RAISE, Encloser, Told, why_not
+from designer.proof.encloser import FIRST_RAISE, BoxBounds, Encloser, why_not
 
 Status = Literal["proved", "partial", "refuted", "off"]
 
@@ -111,7 +111,7 @@ def prove(
     reason = why_not(robot, space.region)
     if reason:
         return Proof("off", found=value, reason=reason)
-    search = _Search(robot, cable, covers_of(space), value, within, enough)
+    search = _BranchAndBound(robot, cable, covers_of(space), value, within, enough)
     search.step(1)  # compiles, which is not counted
     began = now = time.monotonic()
     while search.is_open and search.boxes < budget.boxes:
@@ -126,7 +126,7 @@ def prove(
     return search.result(now - began)
 
 
-class _Search:
+class _BranchAndBound:
     """Boxes that are still open, and what is known so far."""
 
     def __init__(
@@ -220,7 +220,7 @@ class _Search:
         for name in ("_low", "_high", "_cover", "_volume", "_bound", "_raise"):
             setattr(self, name, getattr(self, name)[at])
 
-    def _try(self, encloser: Encloser, bounds: Told) -> None:
+    def _try(self, encloser: Encloser, bounds: BoxBounds) -> None:
         """Solve the corners that seem to be worse than what was found."""
         order = np.argsort(-bounds.estimate)[:_TRIES]
         order = order[bounds.estimate[order] > self._found * _BETTER]

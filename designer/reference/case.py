@@ -39,7 +39,7 @@ class Figure:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class ReferenceCase:
     """Figures of one source; ``figures`` computes ours when called."""
 
     title: str

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 
 from designer import __version__
 from designer.reference import robots, single_cables
-from designer.reference.case import Case, Figure
+from designer.reference.case import Figure, ReferenceCase
 from designer.reference.converted import ROBOTS
 
-CASES: tuple[Case, ...] = (*robots.CASES, *single_cables.CASES)
+CASES: tuple[ReferenceCase, ...] = (*robots.CASES, *single_cables.CASES)
 HEADINGS = ("unit", "theirs", "ours", "difference", "allowed", "")
-Computed = Sequence[tuple[Case, Sequence[Figure]]]
+Computed = Sequence[tuple[ReferenceCase, Sequence[Figure]]]
 
 
 def compute(tell: Callable[[str], None] = lambda title: None) -> Computed:

@@ -8,7 +8,7 @@ from functools import partial
 from designer.arrays import frozen_array
 from designer.model.cable import Material
 from designer.model.robot import Platform, Poses, Robot
-from designer.reference.case import Case, Figure, as_printed
+from designer.reference.case import Figure, ReferenceCase, as_printed
 
 # Riehl et al., Table I
 _PAPERS_ROBOT = Robot(
@@ -142,14 +142,14 @@ def _cogiro() -> Sequence[Figure]:
 
 
 CASES = (
-    Case(
+    ReferenceCase(
         "The paper's crane",
         "Riehl, Gouttefarde, Baradat and Pierrot, ICRA 2010: text and Figs. 6 to 9",
         "Three cables, 500 m apart. The paper's figures for the plane z = −40 m are those of the "
         "triangle inset by 10.35 m; nearer the edge the needed cable grows without bound.",
         _paper,
     ),
-    Case(
+    ReferenceCase(
         "The pose of the paper's Figs. 6 and 7",
         "Two independent codes: the cable equation by quadrature in space, and in closed form",
         "Position (250, 200, −50) m. Cable 1 is the mirror image of cable 2; the loop starts with "
@@ -157,13 +157,13 @@ CASES = (
         "unit of the last digit.",
         _same_pose,
     ),
-    Case(
+    ReferenceCase(
         "Toward the edge of the paper's crane",
         "The same independent codes",
         "Positions (250, y, −40) m. Below y = 4.8 m no finite cable holds the platform.",
         lambda: tuple(_edge()),
     ),
-    Case(
+    ReferenceCase(
         "Eight cables of given length on six degrees of freedom",
         "Geometry of CoGiRo as in cdpyr; pose and tensions by two independent codes, finite "
         "elements and quadrature of the cable equation",

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from designer.physics import catenary
-from designer.reference.case import Case, Figure, as_printed
+from designer.reference.case import Figure, ReferenceCase, as_printed
 
 Line = tuple[float, float, float, float, float]
 
@@ -124,27 +124,27 @@ def _point_load() -> Sequence[Figure]:
 
 
 CASES = (
-    Case(
+    ReferenceCase(
         "The elastic catenary, in closed form",
         "H. M. Irvine, Cable Structures, MIT Press, 1981; evaluated in 40 digits",
         "Seven suspended cables, from slack to nearly taut. H: horizontal force; V: vertical force "
         "at the upper end, with the whole weight of the cable.",
         _closed_form,
     ),
-    Case(
+    ReferenceCase(
         "The same cables in MoorPy",
         "MoorPy 1.3.0, function catenary, tolerance 1e-9 m, far above the sea bed",
         f"At '{WRONG_IN_MOORPY}' MoorPy falls back on a straight line without weight and reports "
         "no error; the closed form above tells which is right.",
         _moorpy,
     ),
-    Case(
+    ReferenceCase(
         "A heavy cable between fixed ends",
         "Lowe and Langley, 2006: span 100 m, rise 50 m, length 170 m, 500 MN, 410.3 N/m",
         "Their cable resists bending, ours does not: 1 % of the horizontal force is allowed.",
         _lowe_and_langley,
     ),
-    Case(
+    ReferenceCase(
         "A cable with a point load",
         "Michalos and Birnstiel; figures of Jayaraman and Knudson, 1981",
         "Span 304.8 m; two segments meet at a node that is loaded with 35.586 kN. What is given is "

@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from designer.analysis.comparison import Comparison, Line
+from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.report import format as fmt
 from designer.report.blocks import (
     MOST_ROWS,
@@ -75,12 +75,14 @@ def shown(path: str, value: Any) -> str:
     return next(texts, lambda x: fmt.trimmed(float(x), 6))(value)
 
 
-def change(line: Line) -> str:
+def change(line: ComparisonLine) -> str:
     """Return the relative change of a number; empty where there is none."""
     return fmt.signed_percent(line.relative) if line.differs and line.relative is not None else ""
 
 
-def _table(caption: str, lines: tuple[Line, ...], names: tuple[str, str], first: str) -> Table:
+def _table(
+    caption: str, lines: tuple[ComparisonLine, ...], names: tuple[str, str], first: str
+) -> Table:
     a, b = names
     rows = (
         Row(
@@ -161,7 +163,7 @@ def _others(found: Comparison, names: tuple[str, str]) -> Section | None:
 
 
 def _first(
-    caption: str, lines: tuple[Line, ...], most: int, names: tuple[str, str], title: str
+    caption: str, lines: tuple[ComparisonLine, ...], most: int, names: tuple[str, str], title: str
 ) -> Iterator[Block]:
     """Yield the table of the first lines, and where the rest is."""
     yield _table(caption, lines[:most], names, title)

@@ -75,7 +75,7 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
         raise ValueError("the reference has no pulleys and no least tension")
     from scipy.optimize import minimize
 
-    problem = _Problem.of(robot, pose, material)
+    problem = _NonlinearProgramme.of(robot, pose, material)
     answer = minimize(
         lambda u: u[-1],
         problem.start(),
@@ -109,7 +109,7 @@ def size_by_nlp(robot: Robot, pose: Poses, material: Material) -> NlpSizing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Problem:
+class _NonlinearProgramme:
     """The constraints in scaled unknowns (F_x, F_z, l of each cable, then ρ₀): eq. (13).
 
     Forces are over the largest of straight cables, lengths over the chord, and the linear density
@@ -124,7 +124,7 @@ class _Problem:
     force_N: float
 
     @classmethod
-    def of(cls, robot: Robot, pose: Poses, material: Material) -> _Problem:
+    def of(cls, robot: Robot, pose: Poses, material: Material) -> _NonlinearProgramme:
         geometry = cable_geometry(robot, pose)
         massless = solve_massless(robot, pose)
         largest = float(massless.largest_tension_N)

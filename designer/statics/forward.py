@@ -83,12 +83,12 @@ def solve_forward(
     position = np.broadcast_to(start.position_m, (*shape, 3)).reshape(-1, 3)
     rotation = np.broadcast_to(start.rotation, (*shape, 3, 3)).reshape(-1, 3, 3)
     force = None if force_N is None else np.broadcast_to(force_N, (*shape, 3)).reshape(-1, 3)
-    search = _Search(robot, cable, lengths, Poses(position, rotation), force)
+    search = _EnergyDescent(robot, cable, lengths, Poses(position, rotation), force)
     search.run()
     return _result(search, shape, force_N)
 
 
-class _Search:
+class _EnergyDescent:
     """Newton's method on many problems at once, each with a trust radius of its own."""
 
     def __init__(
@@ -187,7 +187,9 @@ def _newton_step(
     return np.einsum("pij,pj->pi", axes, along), 8.0 * np.finfo(np.float64).eps * stiffest * size
 
 
-def _result(search: _Search, shape: tuple[int, ...], force_N: FloatArray | None) -> ForwardStatics:
+def _result(
+    search: _EnergyDescent, shape: tuple[int, ...], force_N: FloatArray | None
+) -> ForwardStatics:
     robot = search.robot
     everything = np.ones(len(search.length_m), dtype=np.bool_)
     statics = search.statics(everything, Poses(search.position, search.rotation))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.kernel.calling import Figures, Situation, plain, situation_of
+from designer.kernel.calling import CableFigures, Situation, plain, situation_of
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 
@@ -68,11 +68,11 @@ def upright_situation(
     return situation_of(robot, upright_poses(robot, poses), exit_points_m, force)
 
 
-def one_cable(robot: Robot, cable: Cable, least_tension_N: float = 0.0) -> Figures:
+def one_cable(robot: Robot, cable: Cable, least_tension_N: float = 0.0) -> CableFigures:
     """Return what kernels are told of one cable for all exit points, weights per length [N/m]."""
     ones, weight = np.ones(robot.n_cables), cable.weight_N_per_m
     kappa = plain(weight / cable.axial_stiffness_N * ones)
-    return Figures(kappa, plain(weight * ones), plain(np.inf * ones), least_tension_N)
+    return CableFigures(kappa, plain(weight * ones), plain(np.inf * ones), least_tension_N)
 
 
 def cable_geometry(

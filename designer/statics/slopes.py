@@ -90,7 +90,7 @@ class _Tension:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Cables:
+class _CableSlopes:
     """The cables of a pose in the upright frame: pull, chord, load, stiffness, and slopes of F."""
 
     pull: FloatArray  # (n, 3) [N]
@@ -150,7 +150,7 @@ def utilisation_slopes(
 
 def _multipliers(
     robot: Robot,
-    cables: _Cables,
+    cables: _CableSlopes,
     tensions: tuple[_Tension, _Tension],
     active: tuple[BoolArray, BoolArray, BoolArray],
     allowable_N: FloatArray,
@@ -183,7 +183,7 @@ def _multipliers(
 
 def _slopes(
     robot: Robot,
-    cables: _Cables,
+    cables: _CableSlopes,
     top: _Tension,
     low: _Tension,
     at: _Multipliers,
@@ -213,7 +213,7 @@ def _slopes(
     )
 
 
-def _cables(statics: Statics) -> _Cables:
+def _cables(statics: Statics) -> _CableSlopes:
     """Return the cables of a pose (1,) with the slopes of their pulls."""
     robot, geometry = statics.robot, statics.geometry()
     length, F_x, F_z, EA, w = (
@@ -224,7 +224,7 @@ def _cables(statics: Statics) -> _Cables:
     slopes = pull_slopes(statics)
     across, down = geometry.horizontal_distance_m[0], -geometry.drop_m[0]
     vector = plane_vector(across, down, geometry.outward[0])
-    return _Cables(
+    return _CableSlopes(
         pull=plane_vector(F_x, F_z, geometry.outward[0]),
         weight=w,
         length=length,
@@ -246,7 +246,7 @@ def _largest_sags(statics: Statics) -> BoolArray:
     return np.asarray(sag_ratio(statics)[0] >= robot.sag_max * (1.0 - _AT_SAG))
 
 
-def _top_tension(cables: _Cables) -> _Tension:
+def _top_tension(cables: _CableSlopes) -> _Tension:
     """Return the larger of the tensions at both ends of each cable."""
     exit_pull = cables.pull - (cables.weight * cables.length)[:, None] * _UP
     at_exit, at_platform = (np.linalg.norm(f, axis=1) for f in (exit_pull, cables.pull))
@@ -256,7 +256,7 @@ def _top_tension(cables: _Cables) -> _Tension:
     return _at_end(cables, pull / value[:, None], value, is_exit)
 
 
-def _least_tension(cables: _Cables) -> _Tension:
+def _least_tension(cables: _CableSlopes) -> _Tension:
     """Return the least tension: at the lower end, or where the cable hangs below both of them."""
     exit_pull = cables.pull - (cables.weight * cables.length)[:, None] * _UP
     is_exit = exit_pull[:, 2] >= 0.0
@@ -272,7 +272,7 @@ def _least_tension(cables: _Cables) -> _Tension:
 
 
 def _at_end(
-    cables: _Cables, by_pull: FloatArray, value: FloatArray, is_exit: BoolArray
+    cables: _CableSlopes, by_pull: FloatArray, value: FloatArray, is_exit: BoolArray
 ) -> _Tension:
     """Return a tension whose pull at the exit point has the load of the whole length in it."""
     length = np.where(is_exit, cables.length, 0.0)

@@ -95,7 +95,7 @@ def refine(
 
     ``starts`` (n, n_coordinates) are samples of the space that ask for much, such as `Pool.places`.
     """
-    return _Search(space, demand, effort or Effort()).run(starts)
+    return _PoseSearch(space, demand, effort or Effort()).run(starts)
 
 
 def refine_over_branches(
@@ -140,7 +140,7 @@ _Climbs = Any
 """Records of climbs: where each is, its extreme, value, cloud's size and last step."""
 
 
-class _Search:
+class _PoseSearch:
     """One search, with all that its steps share."""
 
     def __init__(self, space: Space, demand: Demand, effort: Effort) -> None:

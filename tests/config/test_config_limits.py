@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from designer.errors import Fault
-from designer.model.limits import Limits
+from designer.model.limits import RopeLimits
 from designer.study import Study
 
 STUDY = """\
@@ -31,7 +31,7 @@ def test_limits_with_units(study_of: Callable[[str], Study]) -> None:
 def test_left_out_nothing_is_asked_for(study_of: Callable[[str], Study]) -> None:
     selection = study_of(STUDY % "{}").selection
     assert selection is not None
-    assert selection.limits == Limits()
+    assert selection.limits == RopeLimits()
 
 
 @pytest.mark.parametrize(
@@ -58,4 +58,4 @@ def test_mistakes(
 @pytest.mark.parametrize("band_Hz", [(0.0, 1.0), (2.0, 2.0), (3.0, 1.0)])
 def test_no_band_in_python(band_Hz: tuple[float, float]) -> None:
     with pytest.raises(ValueError, match="excitation_Hz"):
-        Limits(excitation_Hz=band_Hz)
+        RopeLimits(excitation_Hz=band_Hz)

@@ -12,7 +12,7 @@ from models import EXITS, FREE, HELD, LIMITS, bodies, cables, link, wirex, write
 from designer.cli.commands import main
 from designer.errors import InputError
 from designer.foreign.read import read_foreign
-from designer.foreign.study import Answers, gaps, study_text
+from designer.foreign.study import ImportAnswers, gaps, study_text
 from designer.io.config import read_study
 from designer.study import require_enough_cables
 
@@ -113,8 +113,8 @@ def test_planes(run, tmp_path) -> None:
 def test_so_few_cables_choose_no_tension(tmp_path) -> None:
     text = cables(EXITS[:6], HELD[:6])
     robot = read_foreign(write_caspr(tmp_path, bodies(), text))
-    assert "tension_min:" not in study_text(robot, Answers())
-    assert "asks for 5 N at least" in study_text(robot, Answers())
+    assert "tension_min:" not in study_text(robot, ImportAnswers())
+    assert "asks for 5 N at least" in study_text(robot, ImportAnswers())
 
 
 def test_a_name_that_yaml_takes_for_something_else(run, tmp_path) -> None:
@@ -192,6 +192,6 @@ def test_nothing_is_overwritten(run, tmp_path) -> None:
 
 def test_the_text_of_gaps_alone_counts(tmp_path) -> None:
     robot = read_foreign(write_caspr(tmp_path, bodies(), cables()))
-    assert [gap.field for gap in gaps(study_text(robot, Answers()))] == ["cable"]
+    assert [gap.field for gap in gaps(study_text(robot, ImportAnswers()))] == ["cable"]
     with pytest.raises(InputError):
         read_foreign(tmp_path / "none.xml")

@@ -8,7 +8,7 @@ from models import FREE, LIMITS, bodies, cables, link, wirex, write_caspr
 
 from designer.errors import InputError
 from designer.foreign.read import read_foreign
-from designer.foreign.study import Answers, gaps, study_text
+from designer.foreign.study import ImportAnswers, gaps, study_text
 
 _SWAPS = [
     ("<", ">"), ("1", "x"), ("2", "1e400"), ("0", "nan"), ("link", "lonk"), ("num", "none"),
@@ -44,7 +44,7 @@ def test_damaged_files(tmp_path) -> None:
             path = tmp_path / "rig.wcrfx"
             path.write_text(texts[2], encoding="utf-8")
         try:
-            gaps(study_text(read_foreign(path), Answers()))
+            gaps(study_text(read_foreign(path), ImportAnswers()))
             read += 1
         except InputError as error:
             assert len(str(error).splitlines()) == 1

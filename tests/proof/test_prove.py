@@ -17,7 +17,7 @@ from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.proof.cover import covers_of
 from designer.proof.encloser import Encloser
-from designer.proof.prove import Budget, _Search, prove
+from designer.proof.prove import Budget, _BranchAndBound, prove
 from designer.proof.servable import servable
 from designer.statics.inverse import solve_sagging
 
@@ -55,7 +55,7 @@ def test_a_bound_that_is_too_low_is_not_proved(fast_robot: Robot, steel: Materia
     proof = prove(fast_robot, cable, space, 0.9, Budget(boxes=20_000), enough=0.999)
     assert proof.status == "refuted"
     assert proof.found > 0.999
-    blind = _Search(fast_robot, cable, covers_of(space), 0.998, 1e-3, 0.999)
+    blind = _BranchAndBound(fast_robot, cable, covers_of(space), 0.998, 1e-3, 0.999)
     blind._try = lambda *_: None  # type: ignore[method-assign]
     while blind.is_open and blind.boxes < 6000:
         blind.step(blind.batch)

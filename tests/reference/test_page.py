@@ -8,14 +8,14 @@ from dataclasses import replace
 import pytest
 
 from designer.cli.commands import main
-from designer.reference.case import Case, Figure, as_printed
+from designer.reference.case import Figure, ReferenceCase, as_printed
 from designer.reference.converted import ROBOTS
 from designer.reference.page import CASES, compute, markdown
 from designer.reference.single_cables import LINES, WRONG_IN_MOORPY
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.title)
-def test_every_figure_is_as_near_as_its_source_allows(case: Case) -> None:
+def test_every_figure_is_as_near_as_its_source_allows(case: ReferenceCase) -> None:
     figures = case.figures()
     assert figures
     for one in figures:

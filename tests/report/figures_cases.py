@@ -18,7 +18,7 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
-from designer.study import HangsBelow, Source, Study, Workspace
+from designer.study import HangsBelow, Study, StudySource, Workspace
 
 STEEL = Material(7800.0, 200e9, 180e6)
 THREE = Robot(frozen_array([[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]), Platform(4000.0))
@@ -80,7 +80,7 @@ def study_of(name: str) -> Study:
         name="A & B <crane>",
         robot=robot,
         material=STEEL,
-        source=Source(Path("study.yaml"), "0" * 64, ()),
+        source=StudySource(Path("study.yaml"), "0" * 64, ()),
         pose=Poses.at(position),
         workspace=workspace,
     )

@@ -11,7 +11,7 @@ from altered import altered
 from figures_cases import CASES, SIX, STEEL, THREE, inset, maps_of, pose_at, solved, study_of
 
 from designer.analysis.edge import edge_profile, first_failure_m
-from designer.analysis.field import Field, cable_curves_m, chords_m, field_at, largest_sag
+from designer.analysis.field import RegionField, cable_curves_m, chords_m, field_at, largest_sag
 from designer.analysis.maps import as_built, workspace_maps
 from designer.analysis.pose import analyse_pose
 from designer.io.config import read_study
@@ -234,11 +234,11 @@ class TestEdge:
         profile = maps_of("served").edge
         assert profile is not None
 
-        def at(distance_m: np.ndarray) -> Field:
+        def at(distance_m: np.ndarray) -> RegionField:
             lost = (distance_m < 0.1) | ((distance_m > 0.2) & (distance_m < 0.3211))
             verdict = np.where(lost, np.int8(Verdict.OUTSIDE_HULL), np.int8(Verdict.SOLVED))
             blank = np.zeros(len(distance_m))
-            return Field(
+            return RegionField(
                 np.zeros((len(distance_m), 3)), *[blank] * 5, verdict, np.zeros(len(lost), bool)
             )
 

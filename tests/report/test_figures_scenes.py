@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from figures_cases import CASES, SIX, THREE, maps_of, pose_at, solved
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.errors import MissingLibraryError
@@ -141,12 +141,12 @@ class TestOverlay:
         assert lines[-1][:, 2].tolist() == [-3.0, 5.0]
 
 
-def plane(values: Any, verdict: int = 0, uplift: float = -1.0) -> Field:
+def plane(values: Any, verdict: int = 0, uplift: float = -1.0) -> RegionField:
     """A field on a square grid of side 1 whose diameter is given in millimetres."""
     rows, columns = np.shape(values)
     x, y = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
     diameter = np.asarray(values) / 1e3
-    return Field(
+    return RegionField(
         position_m=np.stack([x, y, 0.0 * x], axis=-1),
         diameter_m=diameter,
         tension_N=1e6 * diameter,
@@ -529,7 +529,7 @@ class TestOpenGL:
         monkeypatch.setattr(opengl, "_DRAW", code)
         assert opengl.why_no_scenes().startswith("Pictures in space are left out")
         with pytest.raises(MissingLibraryError):
-            stage.Stage(View(0.7, 0.4, np.ones(3), 30.0))
+            stage.SceneCanvas(View(0.7, 0.4, np.ones(3), 30.0))
 
     def test_what_hangs_is_left_behind(
         self, asked_anew: None, monkeypatch: pytest.MonkeyPatch

@@ -12,7 +12,7 @@ from test_report_qualities import SIX
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.model.limits import Limits
+from designer.model.limits import RopeLimits
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.report.design import checks
@@ -41,7 +41,7 @@ def found(solve: Callable[[str], Analysis]) -> Analysis:
     return solve(YARD)
 
 
-def with_limits(found: Analysis, limits: Limits) -> dict[str, Requirement]:
+def with_limits(found: Analysis, limits: RopeLimits) -> dict[str, Requirement]:
     chosen, workspace = found.chosen, found.study.workspace
     assert chosen is not None and workspace is not None
     assert found.study.selection is not None
@@ -66,7 +66,7 @@ def test_result_has_the_limits(found: Analysis) -> None:
 def test_stroke_is_that_between_the_farthest_poses(found: Analysis) -> None:
     assert found.selection is not None
     assert found.selection.chosen is not None
-    drum = with_limits(found, Limits(drum_capacity_m=9.0))["drum_capacity"]
+    drum = with_limits(found, RopeLimits(drum_capacity_m=9.0))["drum_capacity"]
     assert drum.cable is not None
     exit_point = found.study.robot.exit_points_m[drum.cable - 1]
     box = np.array([[10.0, 4.0, 1.0], [20.0, 12.0, 7.0]])
@@ -74,14 +74,14 @@ def test_stroke_is_that_between_the_farthest_poses(found: Analysis) -> None:
     nearest = np.linalg.norm(np.clip(exit_point, *box) - exit_point)
     assert drum.demand == pytest.approx(farthest - nearest, rel=0.01)
     assert drum.holds == (drum.demand <= 9.0)
-    assert with_limits(found, Limits(drum_capacity_m=30.0))["drum_capacity"].holds
+    assert with_limits(found, RopeLimits(drum_capacity_m=30.0))["drum_capacity"].holds
 
 
 def test_frequency_is_that_of_a_string_there(found: Analysis) -> None:
     assert found.selection is not None
     assert found.selection.chosen is not None
     cable = found.selection.chosen.cable
-    low = with_limits(found, Limits(excitation_Hz=(0.01, 0.02)))["excitation"]
+    low = with_limits(found, RopeLimits(excitation_Hz=(0.01, 0.02)))["excitation"]
     assert low.holds
     assert low.place is not None
     assert low.cable is not None
@@ -94,11 +94,11 @@ def test_frequency_is_that_of_a_string_there(found: Analysis) -> None:
 
 
 def test_a_cable_that_swings_within_the_band_does_not_hold(found: Analysis) -> None:
-    low = with_limits(found, Limits(excitation_Hz=(0.01, 0.02)))["excitation"].capacity
-    around = with_limits(found, Limits(excitation_Hz=(0.9 * low, 1.1 * low)))["excitation"]
+    low = with_limits(found, RopeLimits(excitation_Hz=(0.01, 0.02)))["excitation"].capacity
+    around = with_limits(found, RopeLimits(excitation_Hz=(0.9 * low, 1.1 * low)))["excitation"]
     assert not around.holds
     assert around.utilisation > 1.0
-    above = with_limits(found, Limits(excitation_Hz=(5e3, 6e3)))["excitation"]
+    above = with_limits(found, RopeLimits(excitation_Hz=(5e3, 6e3)))["excitation"]
     assert above.holds
     assert above.capacity == 5e3
     assert above.demand > low

@@ -14,7 +14,7 @@ from report_parts import facts, pictures, said, statements, tables
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
-from designer.analysis.section import Section
+from designer.analysis.section import SectionMap
 from designer.report.design import clearance, stiffness
 from designer.report.design.report import design_report
 from designer.report.design.source import Source, source_of
@@ -180,7 +180,7 @@ def test_height_maps(case: str) -> None:
         values = np.full(values.shape, np.nan)
     exits = np.array([[0.0, 0, 5], [4, 0, 5], [2, 3, 5]])
     limit = 2.0 if case == "limit" else None
-    shown = Section(position, values, bad, exits)
+    shown = SectionMap(position, values, bad, exits)
     svg = section_map(shown, "test", "depth [m]", "not held", limit)
     assert ("not held" in svg) == (case != "all")
     assert "depth [m]" in svg

@@ -28,7 +28,7 @@ from designer.io.config.schema import (
 )
 from designer.io.config.uncertainty import uncertainty
 from designer.model.cable import Material
-from designer.model.limits import Limits
+from designer.model.limits import RopeLimits
 from designer.model.machine import Surroundings
 from designer.model.measurements import LogColumn, Measurements
 from designer.model.point_list import PointList
@@ -44,15 +44,15 @@ from designer.study import (
     Entry,
     GradeFamily,
     Selection,
-    Source,
     Study,
+    StudySource,
     Workspace,
 )
 from designer.units import DENSITY, STRESS, format_SI
 
 
 def build_study(
-    section: StudySection, source: Source, document: Document, known: KnownEffects,
+    section: StudySection, source: StudySource, document: Document, known: KnownEffects,
     plugins: Plugins | None,
 ) -> Study:  # fmt: skip
     """Return the study that the config describes.
@@ -224,7 +224,7 @@ def _selection(section: SelectionSection | None) -> Selection | None:
         sheave_diameter_m=section.sheave_diameter,
         groups=tuple(CableGroup(name, cables) for name, cables in (section.groups or {}).items()),
         max_distinct_products=section.max_distinct_products,
-        limits=Limits(
+        limits=RopeLimits(
             section.limits.stiffness, section.limits.excitation, section.limits.drum_capacity
         ),
     )

@@ -18,7 +18,7 @@ from designer.io.config.effects import effect_entries
 from designer.io.config.entries import all_entries
 from designer.io.config.schema import StudySection
 from designer.plugins.find import Plugins
-from designer.study import Source, Study
+from designer.study import Study, StudySource
 
 
 def read_study(
@@ -61,7 +61,7 @@ def study_of(
         n_cables = len(section.robot.anchors)
         entries += effect_entries(section.effects, effects, n_cables, known.by_id)
     lines = {path_text(keys): node.line for keys, node in document.root.walk()}
-    source = Source(path, document.sha256, tuple(entries), lines)
+    source = StudySource(path, document.sha256, tuple(entries), lines)
     return build_study(section, source, document, known, plugins)
 
 

@@ -159,22 +159,8 @@ def enclose(
     l, l_p, l_X2, l_D, v, v_p, v_X2, v_D, t, t_p, t_X2, t_D : Interval
         Per weight per length. They hold everywhere in the box.
     """
-    unknown = point(math.nan)
-    failed = (
-        False,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-        unknown,
-    )
+    nan = point(math.nan)
+    failed = (False, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan)
     if not (p[0] >= PULL_FLOOR and p[1] < math.inf):
         return failed
     unit, high = point(1.0), absolute(D)

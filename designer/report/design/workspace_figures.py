@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.analysis.governing_ropes import GoverningRopes
 from designer.analysis.maps import Served, WorkspaceMaps
 from designer.report import format as fmt
@@ -104,11 +104,11 @@ def _extent(maps: WorkspaceMaps) -> str:
     return f"the region, {extent}\u00a0m" if maps.has_area else "the points"
 
 
-def _shown(maps: WorkspaceMaps) -> Iterable[Field]:
+def _shown(maps: WorkspaceMaps) -> Iterable[RegionField]:
     return maps.shell.values() if maps.has_area else (maps.section,)
 
 
-def _span(fields: Iterable[Field]) -> str:
+def _span(fields: Iterable[RegionField]) -> str:
     shown = tuple(fields)
     values = np.concatenate([DIAMETER.of(field).ravel() for field in shown])
     values = 1e-3 * values[np.isfinite(values)]

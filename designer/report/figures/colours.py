@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.analysis.maps import Focus
 from designer.arrays import FloatArray, IntArray
 from designer.report.figures import canvas, palette
@@ -40,11 +40,11 @@ class MapQuantity:
         """Text of an axis or a colour bar."""
         return f"{self.title} [{self.unit}]" if self.unit else self.title
 
-    def of(self, field: Field) -> FloatArray:
+    def of(self, field: RegionField) -> FloatArray:
         """Return the values in the unit of the axis; NaN where the pose does not count."""
         return np.where(field.counts, self.everywhere(field), np.nan)
 
-    def everywhere(self, field: Field) -> FloatArray:
+    def everywhere(self, field: RegionField) -> FloatArray:
         """Return the values where the study leaves the pose out as well."""
         values = {
             "diameter": field.diameter_m,
@@ -70,7 +70,7 @@ UTILISATION = MapQuantity("utilisation", "utilisation", "%", 100.0)
 RATIO = MapQuantity("ratio", "tension with sag over tension without", "", 1.0)
 
 
-def tension_of(field: Field) -> MapQuantity:
+def tension_of(field: RegionField) -> MapQuantity:
     """Return the largest tension in the unit that suits the values of a field, kN or N."""
     if np.nanmax(field.tension_N, initial=0.0) < _KILONEWTON and np.isfinite(field.tension_N).any():
         return replace(TENSION, unit="N", scale=1.0)

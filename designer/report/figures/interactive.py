@@ -19,7 +19,7 @@ from designer.analysis.maps import WorkspaceMaps
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps
 from designer.report.figures.scenes import add_workspace, bounds_m, scale_of, size_m, view_of
-from designer.report.figures.stage import SCREEN, Stage
+from designer.report.figures.stage import SCREEN, SceneCanvas
 from designer.report.figures.view import View
 from designer.report.fonts import with_fonts
 
@@ -34,7 +34,7 @@ _HINT = "drag or arrow keys: turn · wheel or + −: zoom · click or N P: pick 
 def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) -> str:
     """Return the workspace, cut open, as an HTML page in which it can be turned."""
     steps = scale_of(maps, quantity)
-    stage = Stage(view_of(maps), SCREEN)
+    stage = SceneCanvas(view_of(maps), SCREEN)
     thinned = maps.thinned()
     add_workspace(stage, thinned, quantity, steps)
     stage.border(maps.impossible_m)
@@ -46,7 +46,7 @@ def workspace_scene_html(maps: WorkspaceMaps, quantity: MapQuantity = DIAMETER) 
     return _page(scene, maps.study.name, parts)
 
 
-def _scene(stage: Stage) -> bytes:
+def _scene(stage: SceneCanvas) -> bytes:
     """Return all that is on the stage as the viewer reads it: JSON in a ZIP archive."""
     from trame_vtk.modules.vtk.serializers import (
         SynchronizationContext,

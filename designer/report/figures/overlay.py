@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.arrays import FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
@@ -99,7 +99,7 @@ def png(image: Image) -> bytes:
     return stream.getvalue()
 
 
-def meanings(fields: Iterable[Field]) -> list[tuple[str, str]]:
+def meanings(fields: Iterable[RegionField]) -> list[tuple[str, str]]:
     """Return colours that are not on the colour bar, and what they mean, where they occur."""
     field_list = list(fields)
     found = []

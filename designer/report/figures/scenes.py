@@ -21,7 +21,7 @@ from designer.report import format as fmt
 from designer.report.figures import canvas, overlay, palette
 from designer.report.figures.canvas import Style
 from designer.report.figures.colours import DIAMETER, MapQuantity, Steps, steps_for
-from designer.report.figures.stage import BORDER_OPACITY, Image, Stage
+from designer.report.figures.stage import BORDER_OPACITY, Image, SceneCanvas
 from designer.report.figures.view import (
     Frame,
     View,
@@ -73,7 +73,9 @@ def robot_scene(
         lines = np.concatenate([chords_m(statics), np.stack([base[:-1], base[1:]], axis=1)])
         azimuth = clear_azimuth_rad(lines, _ROBOT_ELEVATION_RAD)
     everything = np.concatenate([overlay.floor_corners(bounds), points])
-    stage = Stage(fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90)))
+    stage = SceneCanvas(
+        fitting(everything, azimuth, _ROBOT_ELEVATION_RAD, (0.075, 0.95, 0.13, 0.90))
+    )
     stage.lines(chords_m(statics), palette.MASSLESS, 1.5)  # for comparison
     if statics.is_solved:
         stage.lines(curves, palette.SAG, 7.0, 2.0)
@@ -117,7 +119,7 @@ def _draw_loads(
     return lines
 
 
-def _taken(stage: Stage, bounds: FloatArray, letters: float = 1.0) -> tuple[Figure, Axes]:
+def _taken(stage: SceneCanvas, bounds: FloatArray, letters: float = 1.0) -> tuple[Figure, Axes]:
     """The picture of a stage with its floor; with axes unless letters are large."""
     stage.lines(overlay.floor_lines(stage.view, bounds), palette.FAINT, 1.0)
     figure, axes = overlay.over(stage.picture(), letters)
@@ -181,7 +183,7 @@ def workspace_scene(
     A list of points is drawn as balls.
     """
     steps = scale_of(maps, quantity)
-    stage = Stage(view_of(maps, look.frame))
+    stage = SceneCanvas(view_of(maps, look.frame))
     add_workspace(stage, maps, quantity, steps)
     border_m = maps.impossible_m if look is _PAGE else maps.impossible_m[:0]
     stage.border(border_m)
@@ -216,7 +218,7 @@ def usable_scene(maps: WorkspaceMaps, usable: Usable) -> Image | None:
     layers = layers_of(maps, usable)
     if layers is None:
         return None
-    exits, stage = maps.study.robot.exit_points_m, Stage(view_of(maps))
+    exits, stage = maps.study.robot.exit_points_m, SceneCanvas(view_of(maps))
     rest: Any = pyvista.StructuredGrid(*np.moveaxis(layers.position_m, -1, 0))
     for number, used in enumerate(layers.utilisation):
         # In the logarithm the boundary lies between two points where it does in the utilisation.
@@ -303,7 +305,7 @@ def size_m(maps: WorkspaceMaps) -> float:
 
 
 def add_workspace(
-    stage: Stage, maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None
+    stage: SceneCanvas, maps: WorkspaceMaps, quantity: MapQuantity, steps: Steps | None
 ) -> None:
     """Put region, exit points and cables on the stage."""
     robot, size, floor = maps.study.robot, size_m(maps), bounds_m(maps)[0, 2]

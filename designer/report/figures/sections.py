@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.analysis.maps import WorkspaceMaps
-from designer.analysis.section import Section, clearance_section, displacement_section
+from designer.analysis.section import SectionMap, clearance_section, displacement_section
 from designer.arrays import BoolArray, FloatArray
 from designer.report import format as fmt
 from designer.report.figures import canvas, palette
@@ -83,13 +83,13 @@ def clearance_map(analysis: Analysis) -> str | None:
 
 
 def section_map(
-    section: Section, key: str, label: str, why_bad: str, limit: float | None = None
+    section: SectionMap, key: str, label: str, why_bad: str, limit: float | None = None
 ) -> str:
     """Return a map of any value over a level section, as SVG.
 
     Parameters
     ----------
-    section : Section
+    section : SectionMap
         Values in the unit of the colour bar's label.
     key : str
         Short name, put before every id of the drawing.
@@ -167,7 +167,7 @@ def _place(maps: WorkspaceMaps) -> str:
     return "all poses, seen from above"
 
 
-def _slice_looks(field: Field) -> list[tuple[str, Style]]:
+def _slice_looks(field: RegionField) -> list[tuple[str, Style]]:
     """What a legend explains beside the colours."""
     left_out = bool(field.is_left_out.any())
     border: Style = {"color": palette.INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
@@ -181,7 +181,7 @@ def _slice_looks(field: Field) -> list[tuple[str, Style]]:
     return looks
 
 
-def _has_border(field: Field) -> bool:
+def _has_border(field: RegionField) -> bool:
     """Whether cables begin to hang below the platform somewhere within the section."""
     finite = field.uplift[np.isfinite(field.uplift)]
     return bool(len(finite) > 0 and finite.min() < 0.0 < finite.max())
@@ -226,7 +226,7 @@ def _outline(axes: Axes, flat: FloatArray) -> None:
 
 
 def _scatter(
-    axes: Axes, flat: FloatArray, field: Field, values: FloatArray, steps: Steps | None
+    axes: Axes, flat: FloatArray, field: RegionField, values: FloatArray, steps: Steps | None
 ) -> None:
     """A list of points, the greatest value on top."""
     order = np.argsort(np.nan_to_num(values, nan=-1.0))

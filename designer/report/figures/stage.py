@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from designer.analysis.field import Field
+from designer.analysis.field import RegionField
 from designer.arrays import BoolArray, FloatArray
 from designer.errors import MissingLibraryError
 from designer.report.figures import palette
@@ -62,7 +62,7 @@ def _window() -> tuple[Any, Any]:
     return window, scene
 
 
-class Stage:
+class SceneCanvas:
     """A white stage without lamps, before a camera: a colour is what the colour bar says it is.
 
     Only one is set at a time: the next one clears it.
@@ -196,7 +196,7 @@ class Stage:
             mesh = pyvista.PolyData.from_regular_faces(triangles_m.reshape(-1, 3), corners)
             self.add(mesh.clean(), palette.IMPOSSIBLE, opacity=BORDER_OPACITY)
 
-    def field(self, field: Field, quantity: MapQuantity, steps: Steps | None) -> None:
+    def field(self, field: RegionField, quantity: MapQuantity, steps: Steps | None) -> None:
         """Add a surface (n, m) coloured by a quantity, with lines of equal value.
 
         Grey and orange where there is no value.
@@ -210,7 +210,7 @@ class Stage:
         self.add(failed, palette.WARNING)
 
 
-def counted_surface(field: Field, quantity: MapQuantity) -> PolyData:
+def counted_surface(field: RegionField, quantity: MapQuantity) -> PolyData:
     """Return the part of a surface (n, m) that counts, with its values at the points."""
     surface = _surface(field, quantity)
     if not field.is_left_out.any():
@@ -218,7 +218,7 @@ def counted_surface(field: Field, quantity: MapQuantity) -> PolyData:
     return surface.clip_scalar(scalars="uplift", invert=True, value=0.0)
 
 
-def left_out_surface(field: Field, quantity: MapQuantity) -> PolyData:
+def left_out_surface(field: RegionField, quantity: MapQuantity) -> PolyData:
     """Return the part of a surface (n, m) that the study leaves out."""
     valued = _valued_cells(field, quantity)
     left_out = _any_corner(field.is_left_out) & ~_any_corner(field.is_infeasible)
@@ -260,14 +260,14 @@ def contour_lines(surface: PolyData, steps: Steps) -> list[FloatArray]:
     return [np.asarray(cell.points, dtype=np.float64) for cell in lines.strip().cell]
 
 
-def _surface(field: Field, quantity: MapQuantity) -> PolyData:
+def _surface(field: RegionField, quantity: MapQuantity) -> PolyData:
     surface = quads(field.position_m, _valued_cells(field, quantity))
     surface["values"] = np.nan_to_num(quantity.everywhere(field).ravel(order="F"))
     surface["uplift"] = np.nan_to_num(field.uplift.ravel(order="F"))
     return surface
 
 
-def _valued_cells(field: Field, quantity: MapQuantity) -> BoolArray:
+def _valued_cells(field: RegionField, quantity: MapQuantity) -> BoolArray:
     """Tell which cells of a grid (n, m) have values at all corners, (n - 1, m - 1)."""
     return ~_any_corner(~np.isfinite(quantity.everywhere(field)))
 
