@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from designer.arrays import frozen_array
+from designer.cli import terminal
 from designer.io.config import build
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
@@ -73,6 +74,14 @@ def unproved() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "_workspace", without)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiles_without_a_word() -> Iterator[None]:
+    """What commands print does not depend on which test is the first that needs a kernel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(terminal, "announce_compiling", lambda: None)
         yield
 
 
