@@ -124,3 +124,18 @@ def test_a_pulley_of_no_radius_is_an_eyelet() -> None:
     arguments = [np.array(v) for v in (100.0, 5e3, -3e3, 1e7, 20.0)]
     eyelet = tangent.stiffness_N_per_m(*arguments)
     assert np.allclose(tangent.stiffness_over_pulley_N_per_m(*arguments, 0.0), eyelet, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_both_tangents_touch_the_pulley(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    radius, level, drop = rng.uniform([0.1, 1.0, -2.0], [0.4, 6.0, 8.0])
+    straight, lower = (
+        float(slope(np.float64(level), np.float64(drop), radius))
+        for slope in (pulley.straight_slope_rad, pulley.lower_slope_rad)
+    )
+    for angle in (straight, lower):
+        # The pulley's centre is a radius beyond the exit point; radius and cable are square.
+        reach = (level - radius) * np.sin(angle) - drop * np.cos(angle)
+        assert reach == pytest.approx(radius, rel=1e-12)
+    assert straight < lower < straight + np.pi
