@@ -190,9 +190,9 @@ class Question:
 
     def _at_samples(self, workspace: Workspace, grades: Sequence[Grade]) -> list[Candidate]:
         """Return all sizes of these grades with what they meet at few samples."""
-        few = replace(workspace, samples=min(FEW_AT_FIRST, workspace.samples))
+        sampled = replace(workspace, samples=min(FEW_AT_FIRST, workspace.samples))
         selection = replace(self.selection, grades=tuple(grade.id for grade in grades))
-        return at_samples(few, selection, grades, self.built, self.study.load_cases)
+        return at_samples(sampled, selection, grades, self.built, self.study.load_cases)
 
     @cached_property
     def candidates(self) -> list[Candidate]:

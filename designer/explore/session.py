@@ -9,7 +9,7 @@ from typing import Any, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import frozen_array
+from designer.arrays import FloatArray, frozen_array
 from designer.documents import edits
 from designer.effects.load import load_effects
 from designer.errors import Fault, InputError, OutputError
@@ -221,6 +221,17 @@ class Session:
         if not np.array_equal(target, self.state.place):
             key = "place" if continuous else None
             self._take("Move the platform", key, place=frozen_array(target))
+
+    def turn(self, rotation_rad: FloatArray) -> None:
+        """Turn the platform by a rotation vector (3,) [rad]; in a plane about its normal."""
+        from scipy.spatial.transform import Rotation
+
+        study, place = self.state.live.study, self.state.place.copy()
+        if study is not None and study.robot.is_planar:
+            rotation_rad = np.asarray(study.robot.upright[1]) * float(rotation_rad.sum())
+        rotation = Rotation.from_rotvec(rotation_rad) * Rotation.from_rotvec(place[3:])
+        place[3:] = rotation.as_rotvec()
+        self.move(place, continuous=True)
 
     def keep_pose(self) -> tuple[Fault, ...]:
         """Write the place of the platform into the study as its pose; return what is wrong."""

@@ -70,8 +70,8 @@ def count_slider(value: float | None, low: int, high: int, plain: str) -> dict[s
         return {}
     is_log = high > 1000
     ends = (max(low, 100), min(high, 200_000)) if is_log else (low, min(high, 12))
-    first, last = min(ends[0], value), max(ends[1], value)
-    return {"low": float(first), "high": float(last), "step": 1.0, "is_log": is_log}
+    lowest, highest = min(ends[0], value), max(ends[1], value)
+    return {"low": float(lowest), "high": float(highest), "step": 1.0, "is_log": is_log}
 
 
 def slider(
@@ -79,11 +79,11 @@ def slider(
 ) -> dict[str, Any]:
     """Return low, high, step and is_log of a quantity; nothing where none makes sense."""
     least = -math.inf if reader.at_least is None else reader.at_least
-    most = math.inf if reader.at_most is None else reader.at_most
+    largest = math.inf if reader.at_most is None else reader.at_most
     ends = _ends(plain, place, value, reader, sizes)
     if ends is None:
         return {}
-    low, high = max(ends[0], least), min(ends[1], most)
+    low, high = max(ends[0], least), min(ends[1], largest)
     if not low < high:
         return {}
     is_log = low > 0.0 and least > 0.0 and high / low >= 10.0

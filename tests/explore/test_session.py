@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from designer.errors import InputError, OutputError
 from designer.explore.fields import Field
@@ -329,3 +330,16 @@ def test_what_is_no_text_does_not_open(tmp_path: Path, no_plugins: Plugins) -> N
     for path in (*tmp_path.iterdir(), tmp_path / "none.yaml", tmp_path):
         with pytest.raises(InputError):
             Session.open(path, no_plugins)
+
+
+def test_turns_add_up_about_axes_of_the_frame_in_one_step(no_plugins: Plugins) -> None:
+    session = Session.example("cogiro", no_plugins)
+    start = session.state.place
+    session.turn(np.array([0.0, 0.0, 0.1]))
+    session.turn(np.array([0.2, 0.0, 0.0]))
+    second, first = Rotation.from_rotvec([0.2, 0.0, 0.0]), Rotation.from_rotvec([0.0, 0.0, 0.1])
+    expected = second * first * Rotation.from_rotvec(start[3:].copy())
+    assert np.allclose(session.state.place[3:], expected.as_rotvec(), atol=1e-14)
+    assert np.array_equal(session.state.place[:3], start[:3])
+    session.undo()
+    assert np.array_equal(session.state.place, start)

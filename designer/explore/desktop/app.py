@@ -15,6 +15,7 @@ from designer.explore.desktop.window import Window
 from designer.plugins.find import Plugins
 
 _LONGEST_S = 300
+"""Room for kernels that are compiled first and a large map, on a machine with other work."""
 
 
 def application() -> QApplication:

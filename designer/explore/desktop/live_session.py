@@ -8,7 +8,6 @@ map and the candidates.
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
 from typing import Any, get_args
 
@@ -18,6 +17,7 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from designer.arrays import FloatArray
 from designer.errors import Fault
 from designer.explore.compare import Differences, Pin, compare
+from designer.explore.desktop.ages import Ages
 from designer.explore.question import Question, Rope, RopePerCable
 from designer.explore.requests import Kind, Long, Message
 from designer.explore.session import Session
@@ -26,8 +26,6 @@ from designer.study import Study
 
 _REST_MS = 250
 """A pause of the hand that is longer than those of a drag."""
-_OLD_MS = 200
-"""A shorter time of an older state is no matter: answers come many times a second."""
 _SHOWN_AS: dict[Kind, tuple[str, ...]] = {
     "coarse": ("map",),
     "fine": ("map",),
@@ -89,13 +87,11 @@ class LiveSession(QObject):
         self._compares_map = self._had_ropes = False
         self._pending: dict[Kind, int] = {}
         self._newest: dict[Kind, int] = {}
-        self._states: dict[str, object] = {}
-        self._old_since_s: dict[str, float] = {}
         self._last = self._since = 0
         self._rest = QTimer(self, singleShot=True, interval=_REST_MS)
         self._rest.timeout.connect(self._ask_whole)
-        self._aging = QTimer(self, singleShot=True, interval=_OLD_MS)
-        self._aging.timeout.connect(self.busy_changed)
+        self._ages = Ages()
+        self._ages.changed.connect(self.busy_changed)
 
     # What there is
 
@@ -123,15 +119,12 @@ class LiveSession(QObject):
     @property
     def is_at_rest(self) -> bool:
         """Whether everything that was asked has been answered, and nothing will be asked."""
-        timers = self._rest, self._aging
-        return not self._pending and not any(timer.isActive() for timer in timers)
+        return not (self._pending or self._rest.isActive() or self._ages.is_waiting)
 
     @property
     def outdated(self) -> frozenset[str]:
         """What is shown of an older state of the study, and has been for a while."""
-        now_s = time.monotonic() + 0.01  # timers are no more exact
-        since = self._old_since_s.items()
-        return frozenset(aspect for aspect, since_s in since if now_s - since_s >= _OLD_MS * 1e-3)
+        return self._ages.outdated
 
     def listen(self, show: Callable[[Any], object], *kinds: Kind) -> None:
         """Have the answers to some kinds of questions shown; None where all is forgotten."""
@@ -166,19 +159,17 @@ class LiveSession(QObject):
         """Give up all that was asked."""
         self.question = None
         self._rest.stop()
-        self._aging.stop()
+        self._ages.forget()
         for kind in tuple(self._pending):
             self._worker.cancel(kind)
         self._pending.clear()
-        self._states.clear()
-        self._old_since_s.clear()
         self._since = self._last
         self.busy_changed.emit()
 
     def close(self) -> None:
         """End all work; returns at once."""
         self._rest.stop()
-        self._aging.stop()
+        self._ages.forget()
         self._delivered.disconnect(self._take)
         self._since = sys.maxsize
         self._worker.close()
@@ -232,18 +223,10 @@ class LiveSession(QObject):
             self._follow_place(moving=True)
 
     def turn(self, rotation_rad: FloatArray) -> None:
-        """Turn the platform about an axis (3,) [rad] of the frame; in a plane about its normal."""
-        from scipy.spatial.transform import Rotation
-
-        if self.session is None or self.study is None:
-            return
-        robot, place = self.study.robot, self.session.state.place.copy()
-        if robot.is_planar:
-            rotation_rad = np.asarray(robot.upright[1]) * float(rotation_rad.sum())
-        rotation = Rotation.from_rotvec(rotation_rad) * Rotation.from_rotvec(place[3:])
-        place[3:] = rotation.as_rotvec()
-        self.session.move(place, continuous=True)
-        self._follow_place(moving=True)
+        """Turn the platform by a rotation vector (3,) [rad]; several turns are one step to undo."""
+        if self.session is not None:
+            self.session.turn(rotation_rad)
+            self._follow_place(moving=True)
 
     def to_worst(self) -> None:
         """Take the platform to the worst pose."""
@@ -336,8 +319,7 @@ class LiveSession(QObject):
         before, self.question = self.question, question
         if question is None:
             return
-        for aspect in self._states:
-            self._see_age(aspect)
+        self._ages.follow(question)
         if before is not None and before.text != question.text and "select" in self._pending:
             self._worker.cancel("select")
             self._newest["select"] = self._pending.pop("select")
@@ -400,10 +382,7 @@ class LiveSession(QObject):
         self.answers[kind] = answer
         for aspect in _SHOWN_AS.get(kind, (kind,)):
             self.answers[aspect] = answer
-            self._states[aspect] = _state_of(aspect, question)
-            self._old_since_s.pop(aspect, None)
-            if self.question is not None:
-                self._see_age(aspect)
+            self._ages.renew(aspect, question, self.question)
             if aspect == "ropes":
                 self._begin_with_best()
 
@@ -416,23 +395,5 @@ class LiveSession(QObject):
             if self.quantity == "diameter":  # nobody chose it
                 self.colour_by("utilisation")
 
-    def _see_age(self, aspect: str) -> None:
-        """Note since when what is shown is of an older state than the present one."""
-        assert self.question is not None
-        if self._states[aspect] == _state_of(aspect, self.question):
-            self._old_since_s.pop(aspect, None)
-        elif aspect not in self._old_since_s:
-            self._old_since_s[aspect] = time.monotonic()
-            self._aging.start()
-
     def _tell_failed(self, kind: Kind, text: str) -> None:
         self.message.emit(f"{NAMES[kind]}: {text}")
-
-
-def _state_of(aspect: str, question: Question) -> object:
-    """Return what an answer depends on of the state of the window."""
-    if aspect == "here":
-        return question.text, question.rope, question.place.tobytes()
-    if aspect in ("map", "worst"):
-        return question.text, question.rope
-    return question.text

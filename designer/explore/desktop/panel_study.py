@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from designer.explore.history import Rejected
 
 _STEPS = 1000
+"""Finer than a pixel of the slider."""
 _BESIDE = 75
 """Width of a name that has room beside its entry in a narrow panel, also in bold [px]."""
 _OF_MANY = {"robot.anchors": "Exit points", "robot.platform.attachments": "Attachments"}

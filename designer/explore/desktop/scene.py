@@ -22,11 +22,13 @@ from designer.explore.desktop.theme import Theme
 from designer.report.figures.view import View
 
 _REST_MS = 300
+"""Longer than between two events of a drag, shorter than a look takes."""
 _SMOOTH = 8
 """Samples a pixel once nothing moves."""
 _QUICK_S = 0.05
 """A frame that takes no longer may be smoothed while something moves as well."""
 _CLICK_PX = 4
+"""A hand that clicks moves the mouse by no more."""
 _STEPS = {
     Qt.Key.Key_Left: (-1, 0, 0),
     Qt.Key.Key_Right: (1, 0, 0),

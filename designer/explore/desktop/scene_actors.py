@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from designer.study import Study
 
 _STEEPEST_RAD = np.radians(89.0)
+"""At the vertical itself the picture would have no upward direction."""
 _LARGEST_ZOOM = 1e4
+"""Half the height of the picture at most [m]: no robot is found again beyond that."""
 
 
 @dataclass(slots=True)
@@ -110,6 +112,7 @@ class Camera:
 
 
 _NEAR_PX = 10.0
+"""As far as a hand with a mouse misses a dot."""
 
 _BELOW = 5e-3
 """How far the floor lies below everything, over the size of the scene."""

@@ -23,6 +23,7 @@ from designer.resources import example_file, example_names, example_summary
 
 _PICTURE_PX = (200, 125)
 _COLUMNS = 4
+"""With these pictures and the recent studies as wide as the window at first."""
 
 
 def picture_file(example: str) -> Path:

@@ -1,13 +1,22 @@
-"""Small parts of panels: an entry, a list to choose from, and how labels and layouts change."""
+"""Small parts of panels: an entry, a list, a notice, and how labels and layouts change."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QAction, QKeyEvent, QKeySequence
-from PySide6.QtWidgets import QBoxLayout, QComboBox, QLabel, QLineEdit, QWidget
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QComboBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QWidget,
+)
 
 if TYPE_CHECKING:
     from designer.explore.desktop.live_session import LiveSession
@@ -87,6 +96,34 @@ def emptied(layout: QBoxLayout) -> QBoxLayout:
             widget.hide()
             widget.deleteLater()
     return layout
+
+
+class Notice(QFrame):
+    """One line that asks for attention without stopping anything."""
+
+    answered = Signal(str)
+    """The name of the button that was pressed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("notice")
+        self.setFrameShape(QFrame.Shape.StyledPanel)
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(10, 3, 10, 3)
+        self.hide()
+
+    def show_text(self, text: str, buttons: tuple[str, ...]) -> None:
+        """Show a line with buttons by these names; nothing for no text."""
+        emptied(self._row)
+        label = QLabel(text)
+        label.setWordWrap(True)
+        self._row.addWidget(label, 1)
+        for name in buttons:
+            button = QPushButton(name)
+            button.setObjectName(f"notice {name}")
+            button.clicked.connect(lambda _=False, name=name: self.answered.emit(name))
+            self._row.addWidget(button)
+        self.setVisible(bool(text))
 
 
 def restyle(label: QLabel, role: str) -> None:

@@ -12,10 +12,8 @@ from PySide6.QtGui import QStandardItemModel
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QFrame,
     QHBoxLayout,
     QLabel,
-    QPushButton,
     QSlider,
     QVBoxLayout,
     QWidget,
@@ -26,7 +24,7 @@ from designer.explore.desktop.live_session import LiveSession
 from designer.explore.desktop.painting import Painting
 from designer.explore.desktop.scene import SceneView
 from designer.explore.desktop.theme import LIGHT, Theme
-from designer.explore.desktop.widgets import emptied
+from designer.explore.desktop.widgets import Notice
 from designer.explore.quantities import BY_KEY, QUANTITIES, category_labels
 from designer.model.verdict import Verdict
 from designer.report import format as fmt
@@ -68,7 +66,7 @@ class WorkPage(QWidget):
         self._residuals: Residuals | None = None
         self._shows_rows = self._is_old = False
         self._view = "home"
-        self._notice = _Notice()
+        self._notice = Notice()
         self._notice.answered.connect(self.notice_answered)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
@@ -381,29 +379,3 @@ class WorkPage(QWidget):
     def show_notice(self, text: str, buttons: tuple[str, ...] = ()) -> None:
         """Show a notice above the scene, with buttons; nothing for no text."""
         self._notice.show_text(text, buttons)
-
-
-class _Notice(QFrame):
-    """One line that asks for attention without stopping anything."""
-
-    answered = Signal(str)
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("notice")
-        self.setFrameShape(QFrame.Shape.StyledPanel)
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(10, 3, 10, 3)
-        self.hide()
-
-    def show_text(self, text: str, buttons: tuple[str, ...]) -> None:
-        emptied(self._row)
-        label = QLabel(text)
-        label.setWordWrap(True)
-        self._row.addWidget(label, 1)
-        for name in buttons:
-            button = QPushButton(name)
-            button.setObjectName(f"notice {name}")
-            button.clicked.connect(lambda _=False, name=name: self.answered.emit(name))
-            self._row.addWidget(button)
-        self.setVisible(bool(text))

@@ -1,0 +1,74 @@
+"""Which answers that are shown are of an older state of the study, and since when."""
+
+from __future__ import annotations
+
+import time
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from designer.explore.question import Question
+
+_OLD_MS = 200
+"""A shorter time of an older state is no matter: answers come many times a second."""
+_TIMER_S = 0.01
+"""Timers of Qt are no more exact."""
+
+
+class Ages(QObject):
+    """Ages of what is shown, by its name: the kind of an answer, or ``map``."""
+
+    changed = Signal()
+    """Something has become old."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._states: dict[str, object] = {}
+        self._old_since_s: dict[str, float] = {}
+        self._timer = QTimer(self, singleShot=True, interval=_OLD_MS)
+        self._timer.timeout.connect(self.changed)
+
+    @property
+    def outdated(self) -> frozenset[str]:
+        """What is of an older state, and has been for a while."""
+        before_s = time.monotonic() + _TIMER_S - _OLD_MS * 1e-3
+        since = self._old_since_s.items()
+        return frozenset(aspect for aspect, since_s in since if since_s <= before_s)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether something may become old by itself."""
+        return self._timer.isActive()
+
+    def renew(self, aspect: str, question: Question, present: Question | None) -> None:
+        """Take in that the answer to a question is shown."""
+        self._states[aspect] = _state_of(aspect, question)
+        self._old_since_s.pop(aspect, None)
+        if present is not None:
+            self._compare(aspect, present)
+
+    def follow(self, present: Question) -> None:
+        """Compare all that is shown with the present state."""
+        for aspect in self._states:
+            self._compare(aspect, present)
+
+    def _compare(self, aspect: str, present: Question) -> None:
+        if self._states[aspect] == _state_of(aspect, present):
+            self._old_since_s.pop(aspect, None)
+        elif aspect not in self._old_since_s:
+            self._old_since_s[aspect] = time.monotonic()
+            self._timer.start()
+
+    def forget(self) -> None:
+        """Take in that nothing is shown any more."""
+        self._timer.stop()
+        self._states.clear()
+        self._old_since_s.clear()
+
+
+def _state_of(aspect: str, question: Question) -> object:
+    """Return what an answer depends on of the state of the window."""
+    if aspect == "here":
+        return question.text, question.rope, question.place.tobytes()
+    if aspect in ("map", "worst"):
+        return question.text, question.rope
+    return question.text
