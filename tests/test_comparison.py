@@ -41,7 +41,7 @@ def test_the_field_that_differs_and_what_follows_from_it(results) -> None:
     assert tension.relative == pytest.approx(0.25, rel=1e-9)  # of a family: in proportion
     assert lines["pose.sagging.diameter_m"].relative == pytest.approx(1.25**0.5 - 1.0, rel=1e-9)
     assert not found.is_same
-    assert not any("created" in line.path for line in found.others)
+    assert not any("created" in line.path for line in found.remaining)
 
 
 def test_a_result_with_itself_is_the_same(results) -> None:
@@ -49,7 +49,7 @@ def test_a_result_with_itself_is_the_same(results) -> None:
     later["provenance"]["created"] = "2030-01-01T00:00:00+00:00"
     found = compare(results[0], later)
     assert found.is_same
-    assert (found.inputs, found.products, found.others) == ((), (), ())
+    assert (found.inputs, found.products, found.remaining) == ((), (), ())
     assert found.to_dict()["same"] is True
 
 

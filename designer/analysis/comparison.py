@@ -99,7 +99,7 @@ class Comparison:
         Requirements that do not hold in both, whether they differ or not; in words.
     products : tuple of ComparisonLine
         Sizes of grades that hold in one of the two only, or were tried in one only.
-    others : tuple of ComparisonLine
+    remaining : tuple of ComparisonLine
         All other values that differ.
     """
 
@@ -110,12 +110,12 @@ class Comparison:
     answers: tuple[ComparisonLine, ...]
     unmet: tuple[ComparisonLine, ...]
     products: tuple[ComparisonLine, ...]
-    others: tuple[ComparisonLine, ...]
+    remaining: tuple[ComparisonLine, ...]
 
     @property
     def is_same(self) -> bool:
         """Whether nothing differs but when and where they were computed."""
-        lines = (*self.inputs, *self.answers, *self.unmet, *self.products, *self.others)
+        lines = (*self.inputs, *self.answers, *self.unmet, *self.products, *self.remaining)
         return not any(line.differs for line in lines)
 
     def to_dict(self) -> Json:
@@ -132,7 +132,7 @@ class Comparison:
             "answers": plain(self.answers),
             "unmet": plain(self.unmet),
             "products": plain(self.products),
-            "others": plain(self.others),
+            "others": plain(self.remaining),
             "provenance": [self.a["provenance"], self.b["provenance"]],
         }
 

@@ -60,7 +60,7 @@ class GoverningPose:
 
     Parameters
     ----------
-    found : CaseResult
+    case : CaseResult
         The load case that governs.
     statics : Statics
         The equilibrium (1,).
@@ -70,7 +70,7 @@ class GoverningPose:
         What else acts on the platform, world frame (3,) [N].
     """
 
-    found: CaseResult
+    case: CaseResult
     statics: Statics
     cables: tuple[CableThere, ...]
     loads: tuple[tuple[str, FloatArray], ...]

@@ -32,7 +32,7 @@ def load_cases_dict(analysis: Analysis) -> Json:
 
 
 def _governing(pose: GoverningPose) -> Json:
-    case = pose.found
+    case = pose.case
     place = case.verification.worst_place
     return {
         "load_case": case.case.name,

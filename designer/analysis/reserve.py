@@ -65,10 +65,10 @@ class _Carried:
     case: CaseResult
     place: FloatArray
     at: float
-    way: FloatArray
+    outward: FloatArray
 
     def place_at(self, value: float) -> FloatArray:
-        return np.asarray(self.place + (value - self.at) * self.way)
+        return np.asarray(self.place + (value - self.at) * self.outward)
 
 
 _Changed = Callable[[CaseResult, float], tuple[Loaded, Workspace]]
@@ -112,10 +112,10 @@ def _end(
     """Find where the worst of the cases is used to 100 %: from, to, and first step of a bracket."""
 
     def carried(case: CaseResult, place: FloatArray, at: float) -> _Carried:
-        way = np.zeros_like(place)
+        outward = np.zeros_like(place)
         if is_moving:
-            way[:3] = change(case, at)[1].region.outward(place[:3])
-        return _Carried(case, place, at, way)
+            outward[:3] = change(case, at)[1].region.outward(place[:3])
+        return _Carried(case, place, at, outward)
 
     def used_at(pose: _Carried, value: float) -> float:
         loaded, workspace = change(pose.case, value)

@@ -155,10 +155,10 @@ def _products(found: Comparison, names: tuple[str, str]) -> Section | None:
 
 
 def _others(found: Comparison, names: tuple[str, str]) -> Section | None:
-    if not found.others:
+    if not found.remaining:
         return None
     caption = "Other values of result.json that differ, by their path."
-    shown = _first(caption, found.others, _MOST_OTHERS, names, "Value")
+    shown = _first(caption, found.remaining, _MOST_OTHERS, names, "Value")
     return Section.of("others", "All else that differs", *shown)
 
 

@@ -12,7 +12,7 @@ from scipy.stats import binomtest
 from selection.ropes import rope
 
 from designer.analysis.uncertainty.draws import draws_at
-from designer.analysis.uncertainty.poses import Asked, largest, searched
+from designer.analysis.uncertainty.poses import GoverningCandidates, largest, searched
 from designer.analysis.uncertainty.shares import shares_of
 from designer.analysis.uncertainty.uncertainty import (
     UncertaintyAnalysis,
@@ -157,7 +157,7 @@ def test_each_draw_is_what_brute_force_finds_on_random_robots(seed: int, exits: 
     spreads = {name: one for name, one in ALL.items() if exits or name != "exit_points"}
     draws = draws_at(spreads, robot, rng.random((12, 13 if exits else 4)))
     (loaded,) = LoadCase("static").on(robot, cable)
-    asked = Asked(loaded, replace(POINTS, region=PointList(places)), places)
+    asked = GoverningCandidates(loaded, replace(POINTS, region=PointList(places)), places)
     ours = asked.utilisation(draws)
     for k in range(len(draws)):
         figures = (
@@ -207,10 +207,10 @@ def test_one_pass_and_one_by_one_agree(six_cable_robot: Robot, monkeypatch) -> N
     for robot, at in ((heavy, places), (ROBOT, PLACES)):
         draws = draws_at(spreads, robot, rng.random((20, 4)))
         loaded = list(case.on(robot, Cable(0.02, 1.5, 2e7, 1e5)))[3]
-        asked = Asked(loaded, replace(POINTS, region=PointList(at)), at)
+        asked = GoverningCandidates(loaded, replace(POINTS, region=PointList(at)), at)
         assert asked.is_one_pass
         together = asked.utilisation(draws)
-        monkeypatch.setattr(Asked, "is_one_pass", False)
+        monkeypatch.setattr(GoverningCandidates, "is_one_pass", False)
         np.testing.assert_allclose(together, asked.utilisation(draws), rtol=1e-7)
         monkeypatch.undo()
 
@@ -225,10 +225,10 @@ def test_moved_exit_points_in_one_batch_and_one_by_one_agree(is_planar, monkeypa
     places = PLACES * [1, 0, 1] if is_planar else PLACES
     case = LoadCase("cold", ice=Ice(0.002), acceleration_m_per_s2=0.3)
     loaded = list(case.on(robot, Cable(0.005, 0.15, 1.2e6, 4000.0)))[2]
-    asked = Asked(loaded, replace(POINTS, region=PointList(places)), places)
+    asked = GoverningCandidates(loaded, replace(POINTS, region=PointList(places)), places)
     draws = draws_at(ALL, robot, rng.random((25, 4 + 3 * robot.n_cables)))
     together = asked.utilisation(draws)
-    monkeypatch.setattr(Asked, "is_one_pass", False)
+    monkeypatch.setattr(GoverningCandidates, "is_one_pass", False)
     np.testing.assert_allclose(together, asked.utilisation(draws), rtol=1e-7)
 
 
@@ -237,10 +237,10 @@ def test_wind_and_lost_cables_are_solved_one_by_one() -> None:
     cable = Cable(0.006, 0.15, 1.7e6, 5000.0)
     windy = next(LoadCase("w", wind=Wind(10.0, 1.2, 4)).on(body, cable))
     lost = next(LoadCase("l", cable_lost=1).on(body, cable))
-    assert not Asked(windy, POINTS, PLACES).is_one_pass
-    assert not Asked(lost, POINTS, PLACES).is_one_pass
+    assert not GoverningCandidates(windy, POINTS, PLACES).is_one_pass
+    assert not GoverningCandidates(lost, POINTS, PLACES).is_one_pass
     draws = draws_at({"payload": Normal(0.1)}, body, np.array([[0.1], [0.5], [0.9]]))
-    light, stated, heavy = Asked(windy, POINTS, PLACES).utilisation(draws).max(axis=1)
+    light, stated, heavy = GoverningCandidates(windy, POINTS, PLACES).utilisation(draws).max(axis=1)
     assert light < stated < heavy
 
 
@@ -256,7 +256,7 @@ def test_the_search_adds_poses_that_are_worse() -> None:
     box = Workspace(Prism.box((10, 20), (6, 10), (2, 8)))
     cable = Cable(0.005, 0.1, 1.2e6, 4000.0)
     (loaded,) = LoadCase("static").on(ROBOT, cable)
-    best = Asked(loaded, box, np.array([[15.0, 8, 3]]))
+    best = GoverningCandidates(loaded, box, np.array([[15.0, 8, 3]]))
     draws = draws_at({"payload": Normal(0.1)}, ROBOT, np.random.default_rng(1).random((40, 1)))
     first = largest([best], draws)
     more, used, checked = searched([best], draws, first)
@@ -266,7 +266,9 @@ def test_the_search_adds_poses_that_are_worse() -> None:
     assert (used > 1.05 * first).all()
     rng = np.random.default_rng(2)
     dense = rng.uniform([10, 6, 2], [20, 10, 8], (3000, 3))
-    assert (used >= Asked(loaded, box, dense).utilisation(draws).max(axis=1) * (1 - 1e-9)).all()
+    assert (
+        used >= GoverningCandidates(loaded, box, dense).utilisation(draws).max(axis=1) * (1 - 1e-9)
+    ).all()
 
 
 def test_what_is_not_held_is_not_enough_and_said() -> None:
@@ -360,10 +362,10 @@ def test_a_draw_that_leaves_out_the_kept_poses_is_judged_by_others() -> None:
     cable = Cable(0.012, 0.8, 5e6, 2e4)
     (loaded,) = LoadCase("static").on(robot, cable)
     draws = draws_at({"payload": Normal(0.01)}, robot, np.linspace(0.2, 0.8, 3)[:, None])
-    asked = [Asked(loaded, workspace, places[:1])]
+    asked = [GoverningCandidates(loaded, workspace, places[:1])]
     assert np.isneginf(asked[0].utilisation(draws)).all()
-    both = Asked(loaded, workspace, places).utilisation(draws)
+    both = GoverningCandidates(loaded, workspace, places).utilisation(draws)
     assert np.isfinite(both[:, 1]).all()
     assert largest(asked, draws) == pytest.approx(both[:, 1], rel=1e-12)
     alone = replace(workspace, region=PointList(places[:1]))
-    assert np.isposinf(largest([Asked(loaded, alone, places[:1])], draws)).all()
+    assert np.isposinf(largest([GoverningCandidates(loaded, alone, places[:1])], draws)).all()

@@ -49,7 +49,7 @@ _GLANCE = Effort(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Asked:
+class GoverningCandidates:
     """A load case in one direction, and poses (n_places, n_coordinates) in which it may govern."""
 
     loaded: Loaded
@@ -66,7 +66,7 @@ class Asked:
         still = loaded.wind is None and not loaded.bare[0].platform.centre_force_N.any()
         return still and not loaded.keeps_lengths and is_quick(loaded.robot)
 
-    def elsewhere(self) -> Asked:
+    def elsewhere(self) -> GoverningCandidates:
         """Return the same at poses from all over the region."""
         space = self.workspace.space
         places = np.concatenate([space.landmarks(), self.workspace.thinned(_ELSEWHERE)])
@@ -122,7 +122,9 @@ class Asked:
         return used
 
 
-def largest(poses: Sequence[Asked], draws: Draws, progress: Advance = lambda _: None) -> FloatArray:
+def largest(
+    poses: Sequence[GoverningCandidates], draws: Draws, progress: Advance = lambda _: None
+) -> FloatArray:
     """Return the largest utilisation of each draw (n,); infinite where a pose is not held.
 
     Also where all poses are left out, those beside the given ones too: then nothing is served.
@@ -145,7 +147,7 @@ def largest(poses: Sequence[Asked], draws: Draws, progress: Advance = lambda _: 
 
 def may_govern(
     cases: Sequence[CaseResult], rope_in: Callable[[LoadCase], Cable], probes: Draws
-) -> list[Asked]:
+) -> list[GoverningCandidates]:
     """Return the poses, of each load case and direction, that are among the worst in a probe.
 
     ``cases`` are what was found with the chosen rope, ``rope_in`` gives the rope to ask about.
@@ -161,7 +163,7 @@ def may_govern(
     ]
 
 
-def _all_of(case: CaseResult, rope: Cable) -> Iterator[Asked]:
+def _all_of(case: CaseResult, rope: Cable) -> Iterator[GoverningCandidates]:
     """Yield a case in the direction that asked for most, at many poses; in the others at one."""
     robot, space = case.loaded.bare[0], case.workspace.space
     worst = case.verification.worst_place[None]
@@ -169,10 +171,10 @@ def _all_of(case: CaseResult, rope: Cable) -> Iterator[Asked]:
     starts = _STARTS_SETTLING if settles else _STARTS
     rest = [] if settles else [space.landmarks()]
     places = np.unique(np.concatenate([worst, case.sampled.worst_places[:starts], *rest]), axis=0)
-    yield Asked(case.loaded.on(robot, rope), case.workspace, places)
+    yield GoverningCandidates(case.loaded.on(robot, rope), case.workspace, places)
     for loaded in case.case.on(robot, rope):
         if loaded.words != case.loaded.words:
-            yield Asked(loaded, case.workspace, worst)
+            yield GoverningCandidates(loaded, case.workspace, worst)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,8 +197,8 @@ class Checked:
 
 
 def searched(
-    poses: list[Asked], draws: Draws, used: FloatArray
-) -> tuple[list[Asked], FloatArray, Checked]:
+    poses: list[GoverningCandidates], draws: Draws, used: FloatArray
+) -> tuple[list[GoverningCandidates], FloatArray, Checked]:
     """Search the region in some draws: the least, the largest, the nearest to 100 %, some others.
 
     What is worse than the known poses joins them, for all draws. Load cases on kept lengths,
@@ -229,8 +231,8 @@ def _telling(used: FloatArray, count: int) -> list[int]:
 
 
 def _worse(
-    poses: Sequence[Asked], draw: Draws, used: float, is_slow: bool
-) -> tuple[Asked, float] | None:
+    poses: Sequence[GoverningCandidates], draw: Draws, used: float, is_slow: bool
+) -> tuple[GoverningCandidates, float] | None:
     """Return a pose that a draw uses more than the known ones, and by how much."""
     governing = max(poses, key=lambda pose: float(pose.utilisation(draw).max()))
     if governing.loaded.keeps_lengths:

@@ -13,7 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.analysis.uncertainty.draws import Draws, columns_of, draws_at
-from designer.analysis.uncertainty.poses import Asked, Checked, largest, may_govern, searched
+from designer.analysis.uncertainty.poses import (
+    Checked,
+    GoverningCandidates,
+    largest,
+    may_govern,
+    searched,
+)
 from designer.analysis.uncertainty.shares import SCRAMBLES, Share, shares_of
 from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
@@ -154,21 +160,21 @@ def uncertainty_of(
     spreads = uncertainty.spreads(Uniform(-off, off))
     if not spreads:
         return None
-    trial = _Trial(study.selection, built, chosen, spreads, uncertainty.seed)
-    poses = trial.poses_of(chosen)
+    sampling = _Sampling(study.selection, built, chosen, spreads, uncertainty.seed)
+    poses = sampling.poses_of(chosen)
     if study.uncertainty is not None:
-        return trial.full(
+        return sampling.full(
             selection, poses, uncertainty.samples, uncertainty.modulus is None, reporter
         )
     if any(pose.loaded.keeps_lengths for pose in poses):
         return None
     samples = _ALONE if all(pose.is_one_pass for pose in poses) else _ALONE_SLOWLY
-    odds = SizeOdds(chosen, largest(poses, trial.drawn(samples)))
-    return trial.result(odds, poses, is_asked=False, is_modulus_of_grade=True)
+    odds = SizeOdds(chosen, largest(poses, sampling.drawn(samples)))
+    return sampling.result(odds, poses, is_asked=False, is_modulus_of_grade=True)
 
 
 @dataclass(frozen=True, slots=True)
-class _Trial:
+class _Sampling:
     """What all sizes have in common."""
 
     selection: Selection
@@ -202,7 +208,7 @@ class _Trial:
         shares = ends if self.width == 1 else np.concatenate([ends, unit])
         return draws_at(self.spreads, self.robot, shares)
 
-    def poses_of(self, size: Candidate) -> list[Asked]:
+    def poses_of(self, size: Candidate) -> list[GoverningCandidates]:
         def rope_in(case: LoadCase) -> Cable:
             allowance = Allowance.of(self.selection.under(case))
             cable = self.built.of_products.cable(allowance.cable(size.grade, size.size))
@@ -216,7 +222,7 @@ class _Trial:
     def full(
         self,
         selection: SelectionResult,
-        poses: list[Asked],
+        poses: list[GoverningCandidates],
         samples: int,
         is_modulus_of_grade: bool,
         reporter: Reporter,
@@ -244,7 +250,7 @@ class _Trial:
         )  # fmt: skip
 
     def _shares(
-        self, poses: list[Asked], points: int, advance: Advance
+        self, poses: list[GoverningCandidates], points: int, advance: Advance
     ) -> tuple[tuple[Share, ...] | None, str]:
         if not points:
             return None, ""
@@ -262,7 +268,7 @@ class _Trial:
     def result(
         self,
         odds: SizeOdds,
-        poses: list[Asked],
+        poses: list[GoverningCandidates],
         *,
         is_asked: bool,
         is_modulus_of_grade: bool,

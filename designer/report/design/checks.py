@@ -182,7 +182,7 @@ def _not_asked(study: Study, requirements: tuple[Requirement, ...]) -> str:
 
 
 def _facts(pose: GoverningPose) -> Facts:
-    found = pose.found
+    found = pose.case
     unit = "N" if found.loaded.robot.is_point_mass else "N or N·m"
     facts = [Fact("Load case", found.case.name, fmt.printed(found.loaded.words))]
     if found.loaded.keeps_lengths:
@@ -199,7 +199,7 @@ def _facts(pose: GoverningPose) -> Facts:
 
 def _named(pose: GoverningPose) -> str:
     """Return what tables and pictures of the pose call it: other tables are of all load cases."""
-    return f"The governing pose, in the load case {fmt.printed(pose.found.case.name)}"
+    return f"The governing pose, in the load case {fmt.printed(pose.case.case.name)}"
 
 
 def _cables(pose: GoverningPose) -> Table:
