@@ -51,16 +51,18 @@ def catalog_list(
     from designer.grades.listing import Wanted, listed, split_nominal
 
     catalogue = _loaded(no_plugins)
-    wanted = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
-    products, computed = split_nominal(wanted.among(catalogue.grades))
-    shown, others = (computed, products) if nominal else (products, computed)
+    criteria = Wanted(construction, _material(material, catalogue), maker, _diameter_m(diameter))
+    products, computed = split_nominal(criteria.among(catalogue.grades))
+    listed_grades, further = (computed, products) if nominal else (products, computed)
     if as_json:
-        typer.echo(json.dumps([listed(grade) for grade in shown], indent=2, ensure_ascii=False))
-    elif shown:
-        print_grades(shown)
-    if others and not nominal and not as_json:
-        typer.echo(f"{len(others)} nominal grades, computed by a standard's factors: --nominal")
-    if not shown:
+        typer.echo(
+            json.dumps([listed(grade) for grade in listed_grades], indent=2, ensure_ascii=False)
+        )
+    elif listed_grades:
+        print_grades(listed_grades)
+    if further and not nominal and not as_json:
+        typer.echo(f"{len(further)} nominal grades, computed by a standard's factors: --nominal")
+    if not listed_grades:
         typer.echo("no grade is like that", err=True)
         raise typer.Exit(NEGATIVE_ANSWER)
 
@@ -76,10 +78,10 @@ def _loaded(no_plugins: bool) -> Catalogue:
 
 
 def _material(name: str | None, catalogue: Catalogue) -> str | None:
-    known = sorted({grade.material for grade in catalogue.grades if grade.material})
-    if name is not None and name.casefold() not in map(str.casefold, known):
+    materials = sorted({grade.material for grade in catalogue.grades if grade.material})
+    if name is not None and name.casefold() not in map(str.casefold, materials):
         problem = f"no grade is of {name!r}"
-        raise InputError([Fault("--material", None, "", problem, ", ".join(known))])
+        raise InputError([Fault("--material", None, "", problem, ", ".join(materials))])
     return name
 
 
@@ -163,12 +165,12 @@ def catalog_new_plugin(
 
     folder = path or Path(name)
     write_plugin(name, folder, effect=effect)
-    own = folder / module_name(name)
+    package = folder / module_name(name)
     typer.echo(f"{folder} written. Next:")
     typer.echo(f"  pip install -e {shlex.quote(str(folder))}")
     if effect:
         typer.echo(f"  pip install pytest && pytest {shlex.quote(str(folder))}")
-        typer.echo(f"then write your own law in {own / 'effect.py'}")
+        typer.echo(f"then write your own law in {package / 'effect.py'}")
     else:
         typer.echo("  designer catalog list")
-        typer.echo(f"then put your own figures into {own / 'grades'}")
+        typer.echo(f"then put your own figures into {package / 'grades'}")

@@ -128,8 +128,8 @@ def _options(
         if verbose:
             from designer.cli.versions import versions
 
-            for name, found in versions():
-                typer.echo(f"{name:20} {found}")
+            for name, version_text in versions():
+                typer.echo(f"{name:20} {version_text}")
         else:
             typer.echo(f"cdpr-designer {__version__}")
         raise typer.Exit
@@ -299,13 +299,13 @@ def _check(study: Study, measured: Measured, folder: Path, template: Path | None
     assert study.measurements is not None
     announce_compiling()
     with output_folder(folder) as building, Spinner("checking") as spinner:
-        found = check(study, study.measurements, measured, spinner)
+        result = check(study, study.measurements, measured, spinner)
         spinner("report")
-        write_check(found, building, template)
-        (building / "diagnosis.json").write_text(f"{found.to_json()}\n", encoding="utf-8")
+        write_check(result, building, template)
+        (building / "diagnosis.json").write_text(f"{result.to_json()}\n", encoding="utf-8")
         written = file_names(building)
-    print_check(found, folder, written)
-    if not found.is_positive:
+    print_check(result, folder, written)
+    if not result.is_positive:
         raise typer.Exit(NEGATIVE_ANSWER)
 
 

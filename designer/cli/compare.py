@@ -35,9 +35,11 @@ def compare(
     from designer.plugins.find import find_plugins
 
     plugins = find_plugins(with_plugins=not no_plugins)
-    given = [path if path.suffix == ".json" else study_of(path, plugins) for path in (a, b)]
-    found = [read_result(one) if isinstance(one, Path) else one for one in given]
-    catalogues = [None if isinstance(one, dict) else catalogue_of(one, plugins) for one in found]
+    inputs = [path if path.suffix == ".json" else study_of(path, plugins) for path in (a, b)]
+    sources = [read_result(source) if isinstance(source, Path) else source for source in inputs]
+    catalogues = [
+        None if isinstance(source, dict) else catalogue_of(source, plugins) for source in sources
+    ]
     announce_compiling()
 
     from designer.analysis.analyse import analyse
@@ -48,8 +50,10 @@ def compare(
     folder = output or Path(f"{a.stem}-{b.stem}-comparison")
     with output_folder(folder) as building, ProgressBars() as bars:
         results = [
-            one if isinstance(one, dict) else analyse(one, catalogue, reporter=bars).to_dict()
-            for one, catalogue in zip(found, catalogues, strict=True)
+            source
+            if isinstance(source, dict)
+            else analyse(source, catalogue, reporter=bars).to_dict()
+            for source, catalogue in zip(sources, catalogues, strict=True)
         ]
         comparison = compare_results(*results)
         write_comparison(comparison, (a.name, b.name), building, template)
@@ -72,7 +76,7 @@ def _print_comparison(
     table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
     for line in (*comparison.inputs, *comparison.answers, *comparison.unmet):
         if line.differs:
-            values = (shown(line.path, one) for one in (line.a, line.b))
+            values = (shown(line.path, value) for value in (line.a, line.b))
             table.add_row(*map(escape, (line.label or line.path, *values, change(line))))
     if table.row_count:
         show(table)

@@ -20,10 +20,10 @@ _PACKAGE = Path(__file__).parents[1]
 def end_by_fault(error: Exception) -> NoReturn:
     """End with a line that says what went wrong, and where to report it."""
     with suppress(Exception):  # standard error may be what fails
-        kept = _kept(error)
+        report_text = _kept(error)
         print(
             f"{described(error)}{_place(error)}: a fault of cdpr-designer itself, and no answer. "
-            f"Please report it as an issue of its repository{kept}",
+            f"Please report it as an issue of its repository{report_text}",
             file=sys.stderr,
             flush=True,
         )

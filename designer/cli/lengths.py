@@ -56,17 +56,17 @@ def lengths(
     from designer.analysis.lengths import lengths_of
 
     with ProgressBars() as bars:
-        found = lengths_of(Analysis.begin(study, catalogue, reporter=bars), table.poses)
-    if found is None:
+        answer = lengths_of(Analysis.begin(study, catalogue, reporter=bars), table.poses)
+    if answer is None:
         show("No rope serves this study, so there are no lengths: see designer report.")
         raise typer.Exit(NEGATIVE_ANSWER)
     path = output or Path(f"{config.stem}-lengths.csv")
-    write_file(path, found.to_csv(table.names, table.values))
+    write_file(path, answer.to_csv(table.names, table.values))
     print_left_out(f"{poses}: column {name} holds texts: left out" for name in table.left_out)
-    _print_lengths(found, path)
+    _print_lengths(answer, path)
     if study.load_cases:
         show("These are of the platform at rest, without the load cases of the study.")
-    if not found.holds.all():
+    if not answer.holds.all():
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
@@ -109,8 +109,8 @@ def _remarks(lengths: Lengths) -> Iterator[str]:
     yield from _rows(lengths.outside, "outside the region that the study asks for")
 
 
-def _rows(which: BoolArray, what: str) -> Iterator[str]:
-    rows = [row for row, one in enumerate(which, start=1) if one]
+def _rows(which: BoolArray, fault: str) -> Iterator[str]:
+    rows = [row for row, is_affected in enumerate(which, start=1) if is_affected]
     if rows:
         named = ", ".join(map(str, rows[:_MOST_ROWS])) + " …" * (len(rows) > _MOST_ROWS)
-        yield f"{len(rows)} of {len(which)} poses {what}: row {named}"
+        yield f"{len(rows)} of {len(which)} poses {fault}: row {named}"

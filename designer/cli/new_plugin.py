@@ -58,12 +58,12 @@ def write_plugin(name: str, folder: Path, *, effect: bool = False) -> None:
 
 
 def _problem(name: str) -> str:
-    shown = repr(name[:_LONGEST_NAME])
+    quoted = repr(name[:_LONGEST_NAME])
     if not re.fullmatch(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*", name) or len(name) > _LONGEST_NAME:
-        return f"{shown} cannot be the name of a plugin"
+        return f"{quoted} cannot be the name of a plugin"
     module = module_name(name)
     if keyword.iskeyword(module) or keyword.issoftkeyword(module):
-        return f"{shown} is a word of Python's own"
+        return f"{quoted} is a word of Python's own"
     if module in sys.stdlib_module_names or PathFinder.find_spec(module) is not None:
         return f"there is a module {module!r} already"
     return ""

@@ -85,19 +85,19 @@ def optimise(
         raise typer.Exit(NEGATIVE_ANSWER)
 
 
-def _print_summary(found: Optimum) -> None:
+def _print_summary(optimum: Optimum) -> None:
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
     from designer.optimum.page import headline, trust_lines
 
-    show(headline(found), markup=False)
+    show(headline(optimum), markup=False)
     table = bare_table("", "given", "optimised", "bounds")
-    for variable, value in zip(found.plan.variables, found.best.values, strict=True):
+    for variable, value in zip(optimum.plan.variables, optimum.best.values, strict=True):
         ends = [f"{x:g} {variable.unit}".rstrip() for x in (variable.low, variable.high)]
-        given = "" if variable.given is None else f"{variable.given:g} {variable.unit}".rstrip()
+        before = "" if variable.given is None else f"{variable.given:g} {variable.unit}".rstrip()
         now = f"{value:g} {variable.unit}".rstrip()
-        table.add_row(*map(escape, (variable.name, given, now, " to ".join(ends))))
+        table.add_row(*map(escape, (variable.name, before, now, " to ".join(ends))))
     show(table)
-    for line in trust_lines(found):
+    for line in trust_lines(optimum):
         show(line, markup=False)

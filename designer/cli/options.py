@@ -42,13 +42,13 @@ def _template_of(text: str) -> Path:
 
 def output_option(usual: str, metavar: str = "DIR") -> typer.models.OptionInfo:
     """Return the option for the folder, or FILE, to write; ``usual`` is what else is written."""
-    what = "Folder" if metavar == "DIR" else "File"
+    kind = "Folder" if metavar == "DIR" else "File"
     return typer.Option(  # type: ignore[no-any-return]  # typer types it for use as a default
         "-o",
         "--output",
         parser=path_of,
         metavar=metavar,
-        help=f"{what} to write, {usual} if left out.",
+        help=f"{kind} to write, {usual} if left out.",
     )
 
 

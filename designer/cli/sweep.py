@@ -72,10 +72,10 @@ def sweep(
                 print_left_out([f"{path}: goes on after {before} of {laid_out.n_points} points"])
             with ends_gently() as stop:
                 running.run(laid_out, base, store, make, count, bars, stop)
-            left = sum(map(len, store.pending()))
-            if left:
-                done = f"{laid_out.n_points - left} of {laid_out.n_points} points"
-                why = f"ended with {done}, which stay; the same command goes on"
+            n_pending = sum(map(len, store.pending()))
+            if n_pending:
+                progress = f"{laid_out.n_points - n_pending} of {laid_out.n_points} points"
+                why = f"ended with {progress}, which stay; the same command goes on"
                 print_left_out([f"{path}: {why}"])
                 raise typer.Exit(INTERRUPTED)
         dataset = read_store(path)
@@ -85,7 +85,7 @@ def sweep(
     show(f"{path}, {folder}: {', '.join(written)}", markup=False)
 
 
-def _print_summary(found: xr.Dataset) -> None:
+def _print_summary(dataset: xr.Dataset) -> None:
     """Print the range of each number that is kept, and why points have none."""
     import numpy as np
     from rich.markup import escape
@@ -94,17 +94,21 @@ def _print_summary(found: xr.Dataset) -> None:
     from designer.cli.terminal import bare_table, show
     from designer.report.sweep import NOT_EVALUATED
 
-    table = bare_table("", "least", "median", "most", "points", title=_points(found.sizes["point"]))
-    for name, kept in found.filter_by_attrs(role="kept").items():
-        values = kept.values[~np.isnan(kept.values)] if kept.dtype.kind == "f" else np.array([])
+    table = bare_table(
+        "", "least", "median", "most", "points", title=_points(dataset.sizes["point"])
+    )
+    for name, column in dataset.filter_by_attrs(role="kept").items():
+        values = (
+            column.values[~np.isnan(column.values)] if column.dtype.kind == "f" else np.array([])
+        )
         if len(values):
             figures = (np.min(values), np.median(values), np.max(values))
             table.add_row(escape(str(name)), *(f"{x:.5g}" for x in figures), str(len(values)))
     if table.row_count:
         show(table)
-    if not evaluates_answer(str(name) for name in found.filter_by_attrs(role="kept")):
+    if not evaluates_answer(str(name) for name in dataset.filter_by_attrs(role="kept")):
         show(NOT_EVALUATED, markup=False)
-    reasons, counts = np.unique([why for why in found.reason.values if why], return_counts=True)
+    reasons, counts = np.unique([why for why in dataset.reason.values if why], return_counts=True)
     for count, why in sorted(zip(counts, reasons, strict=True), reverse=True)[:10]:
         show(f"{_points(count)}: {why}", markup=False)
 

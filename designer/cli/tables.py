@@ -118,27 +118,27 @@ def _extreme(diameter_m: float, tension_N: float) -> str:
 
 
 def _summary_of_selection(
-    selection: SelectionResult, label: str, asked: Selection | None
+    selection: SelectionResult, label: str, request: Selection | None
 ) -> Iterator[Row]:
     chosen = selection.chosen
     if chosen is None:
         yield label, f"{bad('none')}: {escape(selection.reason or '')}"
         return
-    assert asked is not None
+    assert request is not None
     yield label, f"[bold]{escape(chosen.grade.id)}, {escape(chosen.size.id)}[/]"
     losses = "no loss" if chosen.efficiency == 1.0 else f"{chosen.efficiency:.3g} left"
-    terms = f"at safety factor {asked.safety_factor:g}, {losses} at end fittings and bends"
+    terms = f"at safety factor {request.safety_factor:g}, {losses} at end fittings and bends"
     case = chosen.governing.case
     terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
-    for one in chosen.cases:
-        if one.case is not STATIC:
-            verification, cable = one.verification, one.most_used
+    for outcome in chosen.cases:
+        if outcome.case is not STATIC:
+            verification, cable = outcome.verification, outcome.most_used
             at = ", ".join(f"{x:.4g}" for x in verification.worst_place[:3])
-            more = f"; {escape(one.loaded.words)}" if one.loaded.words else ""
+            more = f"; {escape(outcome.loaded.words)}" if outcome.loaded.words else ""
             tension = f"{verification.max_tension_N / 1e3:.4g} kN"
             used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
-            yield f"  {escape(one.case.name)}", f"{used}, at ({at}) m{more}"
+            yield f"  {escape(outcome.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
@@ -152,13 +152,13 @@ def _summary_of_requirements(analysis: Analysis) -> Iterator[Row]:
     count = len(analysis.requirements)
     yield "[bold]answer[/]", f"[bold]{answer}[/], {count - len(analysis.unmet)} of {count} hold"
     for requirement in analysis.unmet:
-        where = [] if requirement.cable is None else [f"cable {requirement.cable}"]
+        labels = [] if requirement.cable is None else [f"cable {requirement.cable}"]
         if requirement.load_case != "all":
-            where.insert(0, f"'{requirement.load_case}'")
+            labels.insert(0, f"'{requirement.load_case}'")
         if requirement.place is not None:
             at = ", ".join(f"{x:.4g}" for x in requirement.place[:3])
-            where.append(f"at ({at}) m")
-        words = f"{requirement.words}; {', '.join(where)}" if where else requirement.words
+            labels.append(f"at ({at}) m")
+        words = f"{requirement.words}; {', '.join(labels)}" if labels else requirement.words
         yield f"  {requirement.title.lower()}", bad(escape(words))
 
 
@@ -256,8 +256,8 @@ def _found(diagnosis: Diagnosis) -> Iterator[Row]:
             yield "  or", escape(", ".join(finding.rivals))
     if not diagnosis.findings:
         yield "effects", "none found"
-    for what in diagnosis.not_tried:
-        yield bad("no time for"), escape(what)
+    for effect in diagnosis.not_tried:
+        yield bad("no time for"), escape(effect)
     for event in diagnosis.structure_after.events:
         yield bad("unexplained"), escape(f"goes with {event.text}")
     for carrier in diagnosis.structure_after.present[:1]:
@@ -309,8 +309,8 @@ def _left(check: Check) -> Iterator[Row]:
         for label, model in check.models:
             length_m = model.length_m if name == "length" else model.tension_N
             if length_m is not None:
-                found = (length_m.rms.value, length_m.rms.low, length_m.rms.high, length_m.median)
-                value, low, high, median = (f"{scale * x:.4g}" for x in found)
+                figures = (length_m.rms.value, length_m.rms.low, length_m.rms.high, length_m.median)
+                value, low, high, median = (f"{scale * x:.4g}" for x in figures)
                 yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
     for label, model in check.models:
         if model.foretold is not None and model.foretold.n_solved:
@@ -355,8 +355,8 @@ def _known(*texts: str) -> str:
     return ", ".join(text for text in texts if text not in ("", "not stated")) or "not stated"
 
 
-def _range(first: float, last: float) -> str:
-    ends = (f"{first:.4g}", f"{last:.4g}")
+def _range(start: float, last: float) -> str:
+    ends = (f"{start:.4g}", f"{last:.4g}")
     return "–".join(dict.fromkeys(ends))
 
 

@@ -105,17 +105,17 @@ class ProgressBars:
     def task(self, name: str, total: int) -> Iterator[Callable[[int], None]]:
         """Open a task of ``total`` steps; yields the function that advances it."""
         bar = self._progress.add_task(name, total=total)
-        done, pace = 0, _Pace()
+        n_done, pace = 0, _Pace()
 
         def advance(steps: int) -> None:
-            nonlocal done
-            done += steps
+            nonlocal n_done
+            n_done += steps
             self._progress.advance(bar, steps)
-            share = min(done / max(total, 1), 1.0)
+            share = min(n_done / max(total, 1), 1.0)
             left_s = pace.left_s(share)
             if self._teller is not None:
-                left = "" if left_s is None else f", {left_s:.0f} s left"
-                self._teller(f"{name}, {share:.0%}{left}")
+                remaining = "" if left_s is None else f", {left_s:.0f} s left"
+                self._teller(f"{name}, {share:.0%}{remaining}")
 
         if self._teller is not None:
             self._teller(name)
@@ -142,7 +142,7 @@ class _Pace:
         if len(self._seen) > _MOST_SEEN:
             del self._seen[1:-1:2]
         middle_s = 0.5 * (self._seen[0][0] + now_s)
-        earlier = [one for one in self._seen if one[0] <= middle_s]
+        earlier = [sample for sample in self._seen if sample[0] <= middle_s]
         then_s, then = earlier[-1]
         return (now_s - then_s) * (1.0 - share) / (share - then) if share > then else None
 
@@ -181,15 +181,15 @@ class Spinner:
 
 def bare_table(*headings: str, title: str | None = None) -> Table:
     """Return an empty table whose headings and title are printed as they are, brackets and all."""
-    shown = None if title is None else escape(title)
+    heading = None if title is None else escape(title)
     return Table(
-        *map(escape, headings), title=shown, title_justify="left", show_header=bool(headings)
+        *map(escape, headings), title=heading, title_justify="left", show_header=bool(headings)
     )
 
 
-def show(shown: Table | str, *, markup: bool = True, soft_wrap: bool = False) -> None:
+def show(content: Table | str, *, markup: bool = True, soft_wrap: bool = False) -> None:
     """Print a table, or a line, which may have rich's markup, on standard output."""
-    _out.print(shown, markup=markup, soft_wrap=soft_wrap)
+    _out.print(content, markup=markup, soft_wrap=soft_wrap)
 
 
 def announce_compiling() -> None:

@@ -36,5 +36,5 @@ def verify(
     if output is not None:
         write_file(output, markdown(computed))
         show(f"{output} written.", markup=False)
-    if not all(one.holds for _, figures in computed for one in figures):
+    if not all(figure.holds for _, figures in computed for figure in figures):
         raise typer.Exit(NEGATIVE_ANSWER)

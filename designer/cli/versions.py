@@ -29,10 +29,10 @@ def versions() -> Iterator[tuple[str, str]]:
     yield "system", f"{platform.platform()}, {platform.machine()}"
     for name in (*_required(), *_ALSO):
         try:
-            found = version(name)
+            release = version(name)
         except PackageNotFoundError:
-            found = "not installed"
-        yield name, found
+            release = "not installed"
+        yield name, release
     yield "linear algebra", _linear_algebra()
     yield "OpenGL", _opengl()
     yield from _plugins()
@@ -41,10 +41,12 @@ def versions() -> Iterator[tuple[str, str]]:
 def _required() -> list[str]:
     """Return the libraries that cdpr-designer itself asks for."""
     try:
-        asked = requires("cdpr-designer") or []
+        requirements = requires("cdpr-designer") or []
     except PackageNotFoundError:  # a checkout on Python's path
         return []
-    names = (_NAME.match(one) for one in asked if "extra ==" not in one)
+    names = (
+        _NAME.match(requirement) for requirement in requirements if "extra ==" not in requirement
+    )
     return [name[0] for name in names if name]
 
 
@@ -53,9 +55,12 @@ def _linear_algebra() -> str:
     import scipy.linalg  # noqa: F401  # loads its library
     from threadpoolctl import threadpool_info
 
-    found = (one for one in threadpool_info() if one["user_api"] == "blas")
-    told = (f"{one['internal_api']} {one['version']} {one.get('architecture')}" for one in found)
-    return ", ".join(dict.fromkeys(told)) or "unknown"
+    libraries = (library for library in threadpool_info() if library["user_api"] == "blas")
+    descriptions = (
+        f"{library['internal_api']} {library['version']} {library.get('architecture')}"
+        for library in libraries
+    )
+    return ", ".join(dict.fromkeys(descriptions)) or "unknown"
 
 
 def _opengl() -> str:
@@ -65,20 +70,20 @@ def _opengl() -> str:
     missing = why_no_scenes()
     if missing:
         return missing
-    asked = subprocess.run(
+    answer = subprocess.run(
         [sys.executable, "-P", "-c", _ASK], capture_output=True, text=True, check=False
     )
-    return ", ".join(_CAPABILITY.findall(asked.stdout)) or "draws, and does not say how"
+    return ", ".join(_CAPABILITY.findall(answer.stdout)) or "draws, and does not say how"
 
 
 def _plugins() -> Iterator[tuple[str, str]]:
     from designer.plugins.find import OWN_NAMES, find_plugins
 
     plugins = find_plugins()
-    others = [one for one in plugins.found if one.name not in OWN_NAMES]
-    for one in others:
-        yield f"plugin {one.name}", one.source
+    foreign = [plugin for plugin in plugins.found if plugin.name not in OWN_NAMES]
+    for plugin in foreign:
+        yield f"plugin {plugin.name}", plugin.source
     for problem in plugins.problems:
         yield "plugin", problem
-    if not others and not plugins.problems:
+    if not foreign and not plugins.problems:
         yield "plugins", "none beside ours"

@@ -34,12 +34,12 @@ def folds(fit_rows: BoolArray) -> list[BoolArray]:
     list of array (n_rows,)
         The rows of each part; together they are ``fit_rows``.
     """
-    where = np.flatnonzero(fit_rows)
+    indices = np.flatnonzero(fit_rows)
     # With five parts each fit has four fifths of the rows, at five times the work.
-    part = block_of(len(where), 5)
+    part = block_of(len(indices), 5)
     answer = []
     for k in range(int(part.max()) + 1):
         rows = np.zeros_like(fit_rows)
-        rows[where[part == k]] = True
+        rows[indices[part == k]] = True
         answer.append(rows)
     return answer

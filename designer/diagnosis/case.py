@@ -59,9 +59,9 @@ class Case:
 
     def check_held(self, predict: Predictor) -> None:
         """Refuse poses most of which no cables hold: frames, units or exit points are mixed up."""
-        held = ~np.isnan(predict(()).length_m).any(axis=1)
-        if 2 * held.sum() < held.size:
-            problem = f"the robot as declared can hold {held.sum()} of {held.size} poses"
+        is_held = ~np.isnan(predict(()).length_m).any(axis=1)
+        if 2 * is_held.sum() < is_held.size:
+            problem = f"the robot as declared can hold {is_held.sum()} of {is_held.size} poses"
             raise self.fault(problem, "poses between its exit points, in the same frame and unit")
 
 
@@ -91,11 +91,13 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         poses = first_poses(as_built(machine, declared), measured, study.workspace.region)
         measured = replace(measured, poses=poses)
     fixed = [s for s in declared if not s.effect.is_among(measurements.unknown)]
-    known = {setting.effect.key for setting in fixed}
-    effects = [e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in known]
+    declared_keys = {setting.effect.key for setting in fixed}
+    effects = [
+        e for e in study.known_effects.of(as_built(machine, declared)) if e.key not in declared_keys
+    ]
     recorded = _recorded(study, measured)
     skipped = {e.key: _missing(e, recorded) or _too_few(e, measured) for e in effects}
-    shown = [e for e in effects if not skipped[e.key]]
+    visible = [e for e in effects if not skipped[e.key]]
     # On the machine an effect acts unseen; only wind has to be told.
     in_sight = [s for s in fixed if s.effect.on_machine is None or "wind" in s.effect.needs]
     idle = [s for s in in_sight if _missing(s.effect, recorded)]
@@ -104,8 +106,8 @@ def case_of(study: Study, measurements: Measurements, measured: Measured) -> Cas
         measurements,
         machine,
         measured,
-        candidates=tuple(e for e in shown if not e.is_among(measurements.unknown)),
-        given=tuple(e for e in shown if e.is_among(measurements.unknown)),
+        candidates=tuple(e for e in visible if not e.is_among(measurements.unknown)),
+        given=tuple(e for e in visible if e.is_among(measurements.unknown)),
         skipped=tuple((key, why) for key, why in skipped.items() if why),
         fixed=tuple(s for s in fixed if s not in idle),
         idle=tuple((s.effect.key, _missing(s.effect, recorded)) for s in idle),
@@ -128,10 +130,10 @@ def _too_few(effect: Effect, measured: Measured) -> str:
 
 
 def _recorded(study: Study, measured: Measured) -> frozenset[str]:
-    found = {
+    recorded = {
         "motion": not measured.settled,
         "rotation": not study.robot.is_point_mass,
         "length": not np.isnan(measured.length_m).all(),
         "tension": not np.isnan(measured.tension_N).all(),
     }
-    return measured.columns | {name for name, is_there in found.items() if is_there}
+    return measured.columns | {name for name, is_there in recorded.items() if is_there}

@@ -107,8 +107,10 @@ class Check:
     @property
     def helps(self) -> bool:
         """Whether less is left, in units of noise, than by any model without the effects."""
-        others = [self.without, *([self.fitted] if self.fitted else [])]
-        return all(self._size(self.declared) < self._size(other) for other in others)
+        alternatives = [self.without, *([self.fitted] if self.fitted else [])]
+        return all(
+            self._size(self.declared) < self._size(alternative) for alternative in alternatives
+        )
 
     @property
     def is_positive(self) -> bool:
@@ -119,7 +121,9 @@ class Check:
 
     def _size(self, model: Model) -> float:
         kinds = ((model.length_m, self.noise.length_m), (model.tension_N, self.noise.tension_N))
-        return sum((left.rms.value / noise) ** 2 for left, noise in kinds if left is not None)
+        return sum(
+            (scatter.rms.value / noise) ** 2 for scatter, noise in kinds if scatter is not None
+        )
 
     @property
     def models(self) -> list[tuple[str, Model]]:
@@ -203,7 +207,7 @@ def _check(
         noise = replace(noise, source=CARRIED)
     declared = Problem(measured, predict, noise)
     without = Problem(measured, bare.predictor(), noise)
-    tried: dict[str, tuple[Problem, tuple[Setting, ...]]] = {
+    problems: dict[str, tuple[Problem, tuple[Setting, ...]]] = {
         "declared": (declared, ()),
         "without": (without, ()),
     }
@@ -211,13 +215,13 @@ def _check(
     # A check holds no rows out: as many readings as unknowns are enough.
     if unknown and without.free_readings(np.isfinite(without.readings)) > unknown:
         progress("what is unknown, fitted without the effects")
-        tried["fitted"] = (without, fit(without, bare.given, everywhere).settings)
-    held = {name: _held(*model) for name, model in tried.items()}
-    compared = np.asarray(np.all([*held.values()], axis=0))
+        problems["fitted"] = (without, fit(without, bare.given, everywhere).settings)
+    held_rows = {name: _held(*model) for name, model in problems.items()}
+    compared = np.asarray(np.all([*held_rows.values()], axis=0))
     models = {}
-    for name, (problem, settings) in tried.items():
+    for name, (problem, settings) in problems.items():
         progress(f"poses by the lengths alone, {name}")
-        models[name] = _model(problem, settings, held[name], compared)
+        models[name] = _model(problem, settings, held_rows[name], compared)
     progress("what is left")
     return Check(
         study=study,

@@ -74,28 +74,28 @@ INDEPENDENT = Lasting(0.0, 0.0)
 
 def lasting(residual: FloatArray) -> Lasting:
     """Return how the residual (n_rows, n_channels) lasts, over all its channels; gaps are NaN."""
-    known = ~np.isnan(residual)
-    mean = np.nan_to_num(residual).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    centred = np.where(known, residual - mean, 0.0)
+    is_read = ~np.isnan(residual)
+    mean = np.nan_to_num(residual).sum(axis=0) / np.maximum(is_read.sum(axis=0), 1)
+    centred = np.where(is_read, residual - mean, 0.0)
     lags = range(1, min(8, len(residual) - 2) + 1)
-    square = float(np.sum(centred**2)) / max(int(known.sum()), 1)
+    square = float(np.sum(centred**2)) / max(int(is_read.sum()), 1)
     if square == 0.0 or len(lags) < 2:
         return INDEPENDENT
-    pairs = np.array([np.sum(known[k:] & known[:-k]) for k in lags])
+    pairs = np.array([np.sum(is_read[k:] & is_read[:-k]) for k in lags])
     sums = np.array([np.sum(centred[k:] * centred[:-k]) for k in lags])
-    found = sums / np.maximum(pairs, 1) / square
+    correlations = sums / np.maximum(pairs, 1) / square
     # Channels of a row that share its errors count as one.
     alike = centred.T @ centred
     channels = np.trace(alike) ** 2 / np.sum(alike**2)
-    doubt = 1.0 / np.sqrt(max(pairs[0] / known.shape[1] * channels, 1.0))
+    doubt = 1.0 / np.sqrt(max(pairs[0] / is_read.shape[1] * channels, 1.0))
     # Correlations of independent rows seldom are three standard deviations from 0.
-    if found[0] + doubt**2 < 3.0 * doubt:
+    if correlations[0] + doubt**2 < 3.0 * doubt:
         return INDEPENDENT
-    answer, n_rows = INDEPENDENT, int(known.any(axis=1).sum())
+    answer, n_rows = INDEPENDENT, int(is_read.any(axis=1).sum())
     for _ in range(10):  # until what lasts, and what the mean takes of it, agree
         # The mean holds that share of the rows' variance; no more than a quarter is made up for.
-        taken = min(answer.rows / n_rows, 0.25)
-        correlation = found + (1.0 - found) * taken
+        absorbed = min(answer.rows / n_rows, 0.25)
+        correlation = correlations + (1.0 - correlations) * absorbed
         earlier, later = np.maximum(correlation[:-1], 0.0), np.maximum(correlation[1:], 0.0)
         decay = float(np.clip(earlier @ later / (earlier @ earlier), 0.0, _LONGEST))
         powers = decay ** np.arange(1, len(correlation) + 1)

@@ -48,16 +48,16 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
     is_other = any(not effect.of_rope for effect in reaching)
     last = _selected(better, grades) if is_other else selected
     mounted = mounted_use(study)
-    kept = None  # where the product chosen before is as good as any
+    old_use = None  # where the product chosen before is as good as any
     before, after = selected.product, last.product
     if before is not None and (after is None or after.name != before.name):
         cable = Allowance.of(study.selection).cable(before.grade, before.size)
-        kept = _use(last.built.of_products, study.workspace, cable)
+        old_use = _use(last.built.of_products, study.workspace, cable)
     return replace(
         diagnosis,
         design_before=selected.choice,
         design_after=last.choice,
-        kept=kept,
+        kept=old_use,
         mounted_before=mounted,
         mounted_after=mounted_use(better) if reaching else mounted,
     )
@@ -100,11 +100,11 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
 
 
 def _use(built: AsBuilt, workspace: Workspace, cable: Cable) -> Use:
-    def max_tension_N(one: Cable) -> float:
-        return verify(built.robot, workspace, one).max_tension_N
+    def max_tension_N(rope: Cable) -> float:
+        return verify(built.robot, workspace, rope).max_tension_N
 
-    found = verify(built.robot, workspace, as_it_meets(built.cable(cable), max_tension_N))
-    return Use(found.max_tension_N, found.utilisation)
+    verification = verify(built.robot, workspace, as_it_meets(built.cable(cable), max_tension_N))
+    return Use(verification.max_tension_N, verification.utilisation)
 
 
 def mounted_use(study: Study) -> Use | None:

@@ -111,10 +111,10 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
     compared = heldout & with_sound_lengths(problem, search.fit.settings)
     covariates = covariates_of(measured, problem.surroundings(search.fit.settings))
     findings = tuple(_finding(outcome, e, gains[e.key]) for e in search.found)
-    where = correction = None
+    trend = correction = None
     if outcome.structure.present:
         name = outcome.structure.present[0].name
-        where = whereabouts(after, covariates[name], measured.row_numbers)
+        trend = whereabouts(after, covariates[name], measured.row_numbers)
         correction = smooth_correction(after, name, covariates[name], heldout)
     return Diagnosis(
         study=case.study,
@@ -135,7 +135,7 @@ def _diagnose(case: Case, progress: Pace) -> Diagnosis:
         predicted=predicted,
         covariates=covariates,
         outliers=outliers_of(after, measured.row_numbers),
-        left_in=where,
+        left_in=trend,
         correction=correction,
         proposals=_proposals(case, outcome, findings),
         doubts=tuple(_doubts(case, search.fit)),
@@ -153,9 +153,9 @@ def _with_settled_noise(case: Case, rows: BoolArray, progress: Pace) -> Outcome:
     outcome: Outcome | None = None
     for _ in range(2):  # the second time with the noise that the first one's model leaves
         problem = Problem(measured, predict, noise)
-        found = search_and_hold(problem, case.candidates, case.given, rows, progress)
+        latest = search_and_hold(problem, case.candidates, case.given, rows, progress)
         # A search that came to its end is better than a later one that did not.
-        outcome = outcome if outcome and progress.is_over else found
+        outcome = outcome if outcome and progress.is_over else latest
         # The fast part of a motion's residual is the sensors' own; that of poses at rest still
         # holds what neighbours do not share, and is taken again from the better model.
         if noise.source == "declared" or not measured.settled:
@@ -212,23 +212,23 @@ def _estimates(model: Fit) -> dict[str, dict[str, Estimate]]:
         setting.effect.key: {
             name: Estimate(value, std)
             for (name, value), std in zip(
-                setting.values.items(), model.std[own].tolist(), strict=True
+                setting.values.items(), model.std[columns].tolist(), strict=True
             )
         }
-        for setting, own in with_places(model.settings)
+        for setting, columns in with_places(model.settings)
     }
 
 
 def _stages(outcome: Outcome, problem: Problem, base: Fit, heldout: BoolArray) -> tuple[Stage, ...]:
     """Errors as declared, then with the found effects one after the other."""
-    found, last = outcome.search.found, outcome.search.fit
+    effects, last = outcome.search.found, outcome.search.fit
     label = "as declared, unknowns fitted" if base.settings else "as declared"
     sound = ~np.isnan(without_outliers(problem.residual(last.settings)))
     stages = [stage(problem, label, base.settings, heldout, sound)]
-    near = base
-    for count, effect in enumerate(found, start=1):
-        near = last if count == len(found) else outcome.searcher.fit(found[:count], near)
-        stages.append(stage(problem, f"+ {effect.key}", near.settings, heldout, sound))
+    model = base
+    for count, effect in enumerate(effects, start=1):
+        model = last if count == len(effects) else outcome.searcher.fit(effects[:count], model)
+        stages.append(stage(problem, f"+ {effect.key}", model.settings, heldout, sound))
     return tuple(stages)
 
 
@@ -241,12 +241,12 @@ def _proposals(case: Case, outcome: Outcome, findings: Sequence[Finding]) -> tup
     search = outcome.search
     answer = []
     for finding in findings:
-        own = finding.effect.key
-        rest = [effect for effect in search.found if effect.key != own]
+        key = finding.effect.key
+        rest = [effect for effect in search.found if effect.key != key]
         for rival in finding.rivals[:2]:  # the best
             swapped = outcome.searcher.fit([*rest, by_key[rival]], search.fit)
             pair = (search.fit.settings, swapped.settings)
-            answer.append(propose(problem, region, *pair, (own, rival)))
+            answer.append(propose(problem, region, *pair, (key, rival)))
     return tuple(answer)
 
 
@@ -258,15 +258,15 @@ def _taken_up(case: Case, rows: BoolArray) -> dict[str, str]:
 
 
 def _without(case: Case, hidden: Mapping[str, str]) -> Case:
-    kept = tuple(effect for effect in case.candidates if effect.key not in hidden)
-    return replace(case, candidates=kept, skipped=(*case.skipped, *hidden.items()))
+    candidates = tuple(effect for effect in case.candidates if effect.key not in hidden)
+    return replace(case, candidates=candidates, skipped=(*case.skipped, *hidden.items()))
 
 
 def _check_size(case: Case, heldout: BoolArray) -> None:
     measured = case.measured
     given_up = 0 if measured.has_poses else case.machine.robot.n_cables
-    known = int(np.maximum(measured.n_readings[~heldout] - given_up, 0).sum())
+    n_free = int(np.maximum(measured.n_readings[~heldout] - given_up, 0).sum())
     unknown = sum(len(effect.parameters) for effect in case.given)
-    if known <= unknown + 2:
-        problem = f"{known} readings to fit, after holding some out, for {unknown} unknowns"
+    if n_free <= unknown + 2:
+        problem = f"{n_free} readings to fit, after holding some out, for {unknown} unknowns"
         raise case.fault(problem, f"at least {unknown + 3}")

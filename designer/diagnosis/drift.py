@@ -38,26 +38,26 @@ def drifting(
     limit = 4.0 * np.sqrt(model.variance)  # so that no outlier makes a drift
     unclipped = problem.residual(model.settings)
     residual = np.clip(unclipped, -limit, limit)
-    taken = rows[:, None] & ~np.isnan(residual)
+    is_used = rows[:, None] & ~np.isnan(residual)
     slopes = jacobian(problem, [s.effect for s in model.settings], model.vector)
-    orthonormal = _orthonormal(slopes[taken])
-    left = beside(orthonormal, residual[taken])
+    orthonormal = _orthonormal(slopes[is_used])
+    remainder = beside(orthonormal, residual[is_used])
     unexplained = model.loss - model.n_data
     predicted = problem.surroundings(model.settings)
     covariates = covariates_of(problem.measured, predicted)
     worst: Withdrawn | None = None
-    for setting, own in with_places(model.settings):
+    for setting, columns in with_places(model.settings):
         if setting.effect.key not in keys:
             continue
         # What the effect takes off the sum of squares that the others, fitted anew, leave.
         rest = [s for s in model.settings if s.effect.key != setting.effect.key]
-        change = problem.residual(rest)[taken] - unclipped[taken]
-        others = _orthonormal(np.delete(slopes, own, axis=-1)[taken])
-        size = np.sqrt(max(np.sum(beside(others, change) ** 2), model.variance))
+        change = problem.residual(rest)[is_used] - unclipped[is_used]
+        other_slopes = _orthonormal(np.delete(slopes, columns, axis=-1)[is_used])
+        size = np.sqrt(max(np.sum(beside(other_slopes, change) ** 2), model.variance))
         for name, z in _weights(structure, covariates, predicted, rows):
-            moved = (slopes[..., own] * z[..., None])[taken]
+            moved = (slopes[..., columns] * z[..., None])[is_used]
             further = _orthonormal(beside(orthonormal, moved))
-            gain = float(np.sum((further.T @ left) ** 2))
+            gain = float(np.sum((further.T @ remainder) ** 2))
             # With six covariates for each of up to five effects, the chance of any is below 0.001.
             drift = gain if chi2.sf(gain / model.variance, moved.shape[1]) < 1e-5 else 0.0
             variation = float(np.sqrt(drift) / size)
@@ -84,11 +84,11 @@ def _weights(
     for carrier in structure.carriers[:_MOST_CARRIERS]:
         if carrier.chance < SIGNIFICANCE and not carrier.is_speed:
             yield carrier.name, _standard(covariates[carrier.name], rows)[:, None]
-    for name, own in (
+    for name, per_cable in (
         ("the cable's own tension", predicted.tension_N),
         ("the cable's own length", predicted.length_m),
     ):
-        yield name, np.tile(_standard(own, rows), 2)
+        yield name, np.tile(_standard(per_cable, rows), 2)
 
 
 def _standard(values: FloatArray, rows: BoolArray) -> FloatArray:

@@ -65,9 +65,11 @@ def find_events(
     rows : array (n_rows,)
         Numbers of the rows in the file.
     """
-    found = (*_steps(residual, rows), *_ends(residual, predicted))
+    candidates = (*_steps(residual, rows), *_ends(residual, predicted))
     strongest = max((c.fraction_of_variance for c in structure.present), default=0.0)
-    events = [e for e in found if e.fraction_of_variance > strongest and e.chance < SIGNIFICANCE]
+    events = [
+        e for e in candidates if e.fraction_of_variance > strongest and e.chance < SIGNIFICANCE
+    ]
     return tuple(sorted(events, key=lambda e: -e.fraction_of_variance))
 
 
@@ -88,22 +90,27 @@ def find_swapped(residual: FloatArray, predicted: FloatArray) -> Event | None:
     names = channel_names(residual.shape[1] // 2)
     read = residual + predicted
     texts: list[str] = []
-    most = 0.0
+    largest = 0.0
     for kind in np.split(np.arange(residual.shape[1]), 2):
-        known = kind[~np.isnan(residual[:, kind]).all(axis=0)]
-        left = np.array([[spread(read[:, i] - predicted[:, j]) ** 2 for j in known] for i in known])
-        if len(known) < 2:
+        read_channels = kind[~np.isnan(residual[:, kind]).all(axis=0)]
+        costs = np.array(
+            [
+                [spread(read[:, i] - predicted[:, j]) ** 2 for j in read_channels]
+                for i in read_channels
+            ]
+        )
+        if len(read_channels) < 2:
             continue
-        fits = linear_sum_assignment(left)[1]
+        fits = linear_sum_assignment(costs)[1]
         for ring in _rings(fits):
-            as_it_is, exchanged = left[ring, ring].sum(), left[ring, fits[ring]].sum()
+            as_it_is, exchanged = costs[ring, ring].sum(), costs[ring, fits[ring]].sum()
             # On wrong plugs readings are far off; exchanged, they fit nearly as well as right ones.
             if as_it_is > len(ring) * 3.0**2 and exchanged < 0.1 * as_it_is:
-                *others, last = (names[known[k]] for k in sorted(ring))
+                *leading, last = (names[read_channels[k]] for k in sorted(ring))
                 how = "with each other" if len(ring) == 2 else "in a ring"
-                texts.append(f"{', '.join(others)} and {last} exchanged {how}")
-                most = max(most, 1.0 - exchanged / as_it_is)
-    return Event(", ".join(texts), most, 0.0) if texts else None
+                texts.append(f"{', '.join(leading)} and {last} exchanged {how}")
+                largest = max(largest, 1.0 - exchanged / as_it_is)
+    return Event(", ".join(texts), largest, 0.0) if texts else None
 
 
 def _rings(order: IntArray) -> Iterator[list[int]]:
@@ -166,7 +173,7 @@ def _steps(residual: FloatArray, rows: IntArray) -> Iterator[Event]:
     # What a step explains does not last of itself.
     lasts = lasting(channels - np.where(late, means[1], means[0]))
     rng = np.random.default_rng(0)
-    by_accident = [_step_in(one).share for one in draws(channels, lasts, rng, _DRAWS)]
+    by_accident = [_step_in(draw).share for draw in draws(channels, lasts, rng, _DRAWS)]
     (chance,) = chances_of(np.array([best.share]), by_accident)
     yield Event(f"a step at row {rows[best.which]}", best.share, float(chance))
 
@@ -184,17 +191,19 @@ def _step_in(channels: FloatArray) -> _Best:
 def _ends(residual: FloatArray, predicted: FloatArray) -> Iterator[Event]:
     """Yield each reading that stops at a value while what is predicted goes on."""
     for channel, name in enumerate(channel_names(residual.shape[1] // 2)):
-        known = ~np.isnan(residual[:, channel])
-        if known.sum() < 4 * _LEAST_ROWS:
+        is_read = ~np.isnan(residual[:, channel])
+        if is_read.sum() < 4 * _LEAST_ROWS:
             continue
-        own, left = predicted[known, channel], residual[known, channel]
+        values, remainder = predicted[is_read, channel], residual[is_read, channel]
         for sign, end in ((1.0, "upper"), (-1.0, "lower")):
-            event = _end_of(sign * own, sign * left, f"the {end} end of the range of {name}")
+            event = _end_of(
+                sign * values, sign * remainder, f"the {end} end of the range of {name}"
+            )
             if event is not None:
                 yield event
 
 
-def _end_of(values: FloatArray, left: FloatArray, text: str) -> Event | None:
+def _end_of(values: FloatArray, remainder: FloatArray, text: str) -> Event | None:
     """Return the saturation of one reading that grows with ``values``; see `find_events`.
 
     Of all knees, the one is taken at which a bend explains most. Beyond it readings must not follow
@@ -202,7 +211,7 @@ def _end_of(values: FloatArray, left: FloatArray, text: str) -> Event | None:
     """
     from scipy.stats import beta
 
-    centred = left - np.median(left)
+    centred = remainder - np.median(remainder)
     variance = float(np.sum((centred - centred.mean()) ** 2))
     best, slope, at = 0.0, 0.0, 0.0
     for knee in np.quantile(values, _KNEES):
@@ -223,30 +232,30 @@ def _end_of(values: FloatArray, left: FloatArray, text: str) -> Event | None:
 
 
 def _of_a_sensor(gone: BoolArray, residual: FloatArray) -> Iterator[Common]:
-    known = ~np.isnan(residual)
+    is_read = ~np.isnan(residual)
     total = int(gone.sum())
     for channel, name in enumerate(channel_names(gone.shape[1] // 2)):
         inside = int(gone[:, channel].sum())
-        share = known[:, channel].sum() / known.sum()
+        share = is_read[:, channel].sum() / is_read.sum()
         chance = float(_chance(inside, total, share, gone.shape[1]))
         yield chance, inside / total, f"{inside} are of {name}"
 
 
 def _in_a_range(off: BoolArray, rows: IntArray) -> Iterator[Common]:
-    where = np.flatnonzero(off)
-    n = len(where)
+    places = np.flatnonzero(off)
+    n = len(places)
     if n < 2:
         return
     # Of many, ranges between some: all pairs would be the square of them.
-    tried = np.unique(np.linspace(0, n - 1, min(n, _MOST_ENDS)).astype(np.int64))
-    first, last = (tried[k] for k in np.triu_indices(len(tried), 1))
-    width = (where[last] - where[first] + 1) / len(off)
-    inside = last - first + 1
+    bounds = np.unique(np.linspace(0, n - 1, min(n, _MOST_ENDS)).astype(np.int64))
+    starts, last = (bounds[k] for k in np.triu_indices(len(bounds), 1))
+    width = (places[last] - places[starts] + 1) / len(off)
+    inside = last - starts + 1
     # Its two ends are where they are by choice.
     chance = _chance(inside - 2, n - 2, width, n * n // 2)
     # Of many rows several are too improbable for a number: then the one with most too many.
     best = int(np.lexsort((n * width - inside, chance))[0])
-    ends = f"{rows[where[first[best]]]} to {rows[where[last[best]]]}"
+    ends = f"{rows[places[starts[best]]]} to {rows[places[last[best]]]}"
     text = f"{inside[best]} of {n} rows from {ends}"
     yield float(chance[best]), float(inside[best]) / n, text
 

@@ -86,10 +86,10 @@ def starting_vector(
     effects: Sequence[Effect], settings: Sequence[Setting], start: Values
 ) -> FloatArray:
     """Return values to start from: those known, else ``start``, else a typical change."""
-    found = {setting.effect.key: setting.values for setting in settings}
+    values_of = {setting.effect.key: setting.values for setting in settings}
     vector = []
     for effect in effects:
-        values = found.get(effect.key, start)
+        values = values_of.get(effect.key, start)
         for p in effect.parameters:
             low, high = p.bounds
             vector.append(np.clip(values.get(p.name, p.neutral + 0.1 * p.typical), low, high))
@@ -100,7 +100,7 @@ def fit(
     problem: Problem,
     effects: Sequence[Effect],
     rows: BoolArray,
-    known: Sequence[Setting] = (),
+    start: Sequence[Setting] = (),
     *,
     thorough: bool = False,
     anew: bool = False,
@@ -119,7 +119,7 @@ def fit(
         In the order in which they act.
     rows : array (n_rows,) of bool
         What may be seen.
-    known : sequence of Setting
+    start : sequence of Setting
         Effects whose values are already near.
     thorough : bool
         Whether to go on until nothing moves; a trial need not, nor one part of a validation.
@@ -127,37 +127,37 @@ def fit(
         Whether known effects that have several valleys start in each of them again: the valley
         that an effect was found in alone need not be the one that it has beside another.
     """
-    taken = rows[:, None] & ~np.isnan(problem.readings)
+    is_used = rows[:, None] & ~np.isnan(problem.readings)
     if not effects:
-        loss = float(huber(problem.residual(())[taken]).sum())
-        return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(taken))
+        loss = float(huber(problem.residual(())[is_used]).sum())
+        return Fit((), np.empty(0), np.empty(0), loss, problem.free_readings(is_used))
     anew = anew and any(effect.starts or effect.starts_from for effect in effects)
     # Evaluations from anywhere, and from near the end.
-    turns = 80 if thorough or anew or not known else 12
+    turns = 80 if thorough or anew or not start else 12
     # Relative: the final model is told, a trial is only compared with others.
     tolerance = 1e-8 if thorough else 1e-5
     fits = [
-        _fit_from(problem, effects, taken, start, turns, tolerance)
-        for start in _starts(problem, effects, known, anew=anew)
+        _fit_from(problem, effects, is_used, vector, turns, tolerance)
+        for vector in _starts(problem, effects, start, anew=anew)
     ]
-    return min(fits, key=lambda one: one.loss)
+    return min(fits, key=lambda candidate: candidate.loss)
 
 
 def _starts(
-    problem: Problem, effects: Sequence[Effect], known: Sequence[Setting], *, anew: bool
+    problem: Problem, effects: Sequence[Effect], start: Sequence[Setting], *, anew: bool
 ) -> list[FloatArray]:
-    keys = {s.effect.key for s in known}
+    keys = {s.effect.key for s in start}
     several = [e for e in effects if e.starts or e.starts_from]
     fresh = [e for e in several if anew or e.key not in keys]
-    starts = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, known, {})]
+    starts = [] if any(e.key not in keys for e in fresh) else [starting_vector(effects, start, {})]
     fitted = {effect.key for effect in effects}
     for effect in fresh:
-        others = [s for s in known if s.effect.key != effect.key]
-        tried = list(effect.starts)
+        rest_settings = [s for s in start if s.effect.key != effect.key]
+        values_to_try = list(effect.starts)
         if effect.starts_from is not None:
-            rest = tuple(s for s in others if s.effect.key in fitted)
-            tried += effect.starts_from(problem.measured, problem.residual(rest))
-        starts += [starting_vector(effects, others, values) for values in tried]
+            rest = tuple(s for s in rest_settings if s.effect.key in fitted)
+            values_to_try += effect.starts_from(problem.measured, problem.residual(rest))
+        starts += [starting_vector(effects, rest_settings, values) for values in values_to_try]
     return starts
 
 
@@ -172,8 +172,8 @@ def jacobian(problem: Problem, effects: Sequence[Effect], vector: FloatArray) ->
             moved = vector.copy()
             # So short that one side will do, and far above the solver's residual.
             moved[k] += 1e-3 * max(p.typical, 0.1 * abs(vector[k] - p.neutral))
-            there = problem.residual(settings_at(effects, moved))
-            slopes[..., k] = (there - residual) / (moved[k] - vector[k])
+            residual_moved = problem.residual(settings_at(effects, moved))
+            slopes[..., k] = (residual_moved - residual) / (moved[k] - vector[k])
         return slopes
 
     key = (problem.noise, *(effect.key for effect in effects), vector.tobytes())
@@ -232,19 +232,25 @@ def _doubts(
     unit = slopes / scale
     bread = np.linalg.pinv(np.einsum("rcp,rcq->pq", unit, unit), rcond=1e-12)
     plain = variance * bread
-    clustered = [bread @ one @ bread for one in score_covariances(unit, residual)]
-    spread = np.max([np.diag(one) for one in (plain, *clustered)], axis=0)
+    clustered = [bread @ covariance @ bread for covariance in score_covariances(unit, residual)]
+    spread = np.max([np.diag(covariance) for covariance in (plain, *clustered)], axis=0)
     inflation, wald = {}, {}
-    for setting, own in with_places(settings):
-        away = [setting.values[p.name] - p.neutral for p in setting.effect.parameters] * scale[own]
+    for setting, columns in with_places(settings):
+        away = [setting.values[p.name] - p.neutral for p in setting.effect.parameters] * scale[
+            columns
+        ]
         wald[setting.effect.key] = min(
-            float(away @ np.linalg.pinv(one[own, own], rcond=1e-9, hermitian=True) @ away)
-            for one in (plain, *clustered)
+            float(
+                away
+                @ np.linalg.pinv(covariance[columns, columns], rcond=1e-9, hermitian=True)
+                @ away
+            )
+            for covariance in (plain, *clustered)
         )
-        inverse = np.linalg.pinv(plain[own, own], rcond=1e-9, hermitian=True)
+        inverse = np.linalg.pinv(plain[columns, columns], rcond=1e-9, hermitian=True)
         # A time of a step has no slope: no ratio either, and no share in the mean.
-        seen = max(int(np.sum(~is_unseen[own])), 1)
-        ratios = [np.sum(inverse * one[own, own]) / seen for one in clustered]
+        seen = max(int(np.sum(~is_unseen[columns])), 1)
+        ratios = [np.sum(inverse * covariance[columns, columns]) / seen for covariance in clustered]
         inflation[setting.effect.key] = float(max(1.0, *ratios))
     std = np.where(is_unseen, np.inf, np.sqrt(np.maximum(spread, 0.0)) / scale)
     return std, inflation, wald

@@ -90,9 +90,9 @@ def foretell(problem: Problem, settings: Sequence[Setting], chosen: BoolArray) -
     )
 
 
-def _turn_rad(poses: Poses, there: Poses) -> FloatArray:
+def _turn_rad(poses: Poses, targets: Poses) -> FloatArray:
     """Return the angle between two sets of poses (n_rows,); NaN where there is none."""
-    between = np.swapaxes(there.rotation, -1, -2) @ poses.rotation
+    between = np.swapaxes(targets.rotation, -1, -2) @ poses.rotation
     cosine = 0.5 * (np.trace(between, axis1=-2, axis2=-1) - 1.0)
     axis = np.stack([between[..., i, j] - between[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
     return np.asarray(np.arctan2(0.5 * np.linalg.norm(axis, axis=0), cosine))

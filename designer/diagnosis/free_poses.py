@@ -50,9 +50,9 @@ class FreePredictor(Predictor):
         machine: Machine,
         measured: Measured,
         fixed: Sequence[Setting] = (),
-        known: KnownEffects = SHIPPED,
+        effects: KnownEffects = SHIPPED,
     ) -> None:
-        super().__init__(machine, measured, fixed, known)
+        super().__init__(machine, measured, fixed, effects)
         self._near: dict[tuple[object, ...], tuple[Poses, FloatArray]] = {}
 
     @property
@@ -84,25 +84,25 @@ class FreePredictor(Predictor):
         kind = (noise, *(setting.effect.key for setting in settings))
         start = self._near.get(kind, self._near.get((noise,)))
         poses, slopes = start if start else (self._measured.poses, None)
-        answer, left = self._left_at(poses, settings, noise)
-        share = np.ones(len(left))
+        answer, residual = self._left_at(poses, settings, noise)
+        share = np.ones(len(residual))
         for _ in range(6):  # turns at most
             slopes = self._slopes_at(poses, settings, noise) if slopes is None else slopes
             for _ in range(4):  # steps with these slopes: near the end two will do
-                step = share[:, None] * _step(slopes, left)
+                step = share[:, None] * _step(slopes, residual)
                 rest = np.einsum("rcp,rp->rc", slopes, step)
-                still = _STILL * np.maximum(1.0, np.abs(left).max(axis=1))
+                still = _STILL * np.maximum(1.0, np.abs(residual).max(axis=1))
                 if np.all(np.abs(rest).max(axis=1) < still):
                     self._near[kind] = poses, slopes
                     return _further(answer, rest, noise)
                 trial = moved_poses(self._machine.robot, poses, step)
-                answer, there = self._left_at(trial, settings, noise)
-                closer = _loss(there) <= _loss(left)
+                answer, residual_trial = self._left_at(trial, settings, noise)
+                closer = _loss(residual_trial) <= _loss(residual)
                 poses = _either(closer, trial, poses)
-                left = np.where(closer[:, None], there, left)
+                residual = np.where(closer[:, None], residual_trial, residual)
                 share = np.where(closer, np.minimum(1.0, 4.0 * share), 0.25 * share)
                 if not closer.all():
-                    answer, left = self._left_at(poses, settings, noise)
+                    answer, residual = self._left_at(poses, settings, noise)
             slopes = None
         self._near[kind] = poses, self._slopes_at(poses, settings, noise)
         return self._left_at(poses, settings, noise)[0]
@@ -117,25 +117,25 @@ class FreePredictor(Predictor):
         else:
             true, _ = self._physical(settings, noise)
             answer = true, self._shown(true, settings)
-        shown = answer[1]
-        length = (measured.length_m - shown.length_m) / noise.length_m
-        tension = (measured.tension_N - shown.tension_N) / noise.tension_N
-        left = np.hstack([length, tension])
+        displayed = answer[1]
+        length = (measured.length_m - displayed.length_m) / noise.length_m
+        tension = (measured.tension_N - displayed.tension_N) / noise.tension_N
+        residual = np.hstack([length, tension])
         is_read = np.isfinite(np.hstack([measured.length_m, measured.tension_N]))
-        left = np.where(np.isnan(left), _UNHELD, left)
-        return answer, np.where(is_read, left, 0.0)
+        residual = np.where(np.isnan(residual), _UNHELD, residual)
+        return answer, np.where(is_read, residual, 0.0)
 
     def _slopes_at(self, poses: Poses, settings: Sequence[Setting], noise: Noise) -> FloatArray:
         """Return how much less is left for a step of each degree of freedom (rows, …, dof)."""
         robot = self._machine.robot
-        here = self._left_at(poses, settings, noise)[1]
+        residual = self._left_at(poses, settings, noise)[1]
         step_m = _STEP * frame_size_m(self._machine)
-        slopes = np.empty((*here.shape, robot.degrees_of_freedom))
+        slopes = np.empty((*residual.shape, robot.degrees_of_freedom))
         for k in range(robot.degrees_of_freedom):
-            step = np.zeros((len(here), robot.degrees_of_freedom))
+            step = np.zeros((len(residual), robot.degrees_of_freedom))
             step[:, k] = step_m
-            there = self._left_at(moved_poses(robot, poses, step), settings, noise)[1]
-            slopes[..., k] = (here - there) / step_m
+            residual_moved = self._left_at(moved_poses(robot, poses, step), settings, noise)[1]
+            slopes[..., k] = (residual - residual_moved) / step_m
         self._left_at(poses, settings, noise)
         return slopes
 
@@ -169,7 +169,7 @@ def first_poses(machine: Machine, measured: Measured, region: Region) -> Poses:
 
 
 def taken_up(
-    problem: Problem, effects: Sequence[Effect], given: Sequence[Effect], rows: BoolArray
+    problem: Problem, effects: Sequence[Effect], unconditional: Sequence[Effect], rows: BoolArray
 ) -> list[tuple[str, str]]:
     """Return effects that poses take up, each with the reason.
 
@@ -185,24 +185,26 @@ def taken_up(
 
     answer = []
     for effect in effects:
-        both = [*given, effect]
-        slopes = jacobian(problem, both, starting_vector(both, (), {}))[rows]
-        own = np.nan_to_num(slopes[..., -len(effect.parameters) :])  # 0 where nothing was read
-        most = [max(abs(end - p.neutral) for end in p.plausible) for p in effect.parameters]
-        gain = float(np.max(np.sum(own**2, axis=(0, 1)) * np.square(most)))
+        all_effects = [*unconditional, effect]
+        slopes = jacobian(problem, all_effects, starting_vector(all_effects, (), {}))[rows]
+        effect_slopes = np.nan_to_num(
+            slopes[..., -len(effect.parameters) :]
+        )  # 0 where nothing was read
+        largest = [max(abs(end - p.neutral) for end in p.plausible) for p in effect.parameters]
+        gain = float(np.max(np.sum(effect_slopes**2, axis=(0, 1)) * np.square(largest)))
         if chi2.sf(gain, len(effect.parameters)) * len(effects) > SIGNIFICANCE:
             size = f"{np.sqrt(gain):.2g} standard deviations in all at its largest plausible value"
             answer.append((effect.key, f"{TAKEN_UP}: {size}"))
     return answer
 
 
-def _step(slopes: FloatArray, left: FloatArray) -> FloatArray:
+def _step(slopes: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the Gauss-Newton step of each row (n_rows, dof), outliers weighted down."""
-    size = np.abs(left)
+    size = np.abs(residual)
     weight = np.where(size < _UNHELD, np.minimum(1.0, HUBER / np.maximum(size, HUBER)), 0.0)
     weighted = slopes * weight[..., None]
     square = np.einsum("rcp,rcq->rpq", weighted, slopes)
-    pull = np.einsum("rcp,rc->rp", weighted, left)
+    pull = np.einsum("rcp,rc->rp", weighted, residual)
     # Nothing moves where nothing was read; no slope has the last digits of a double.
     least = 1e-13 * np.trace(square, axis1=1, axis2=2) + np.finfo(np.float64).tiny
     ridge = least[:, None, None] * np.eye(square.shape[-1])
@@ -213,19 +215,19 @@ def _further(
     answer: tuple[Readings, Readings], rest: FloatArray, noise: Noise
 ) -> tuple[Readings, Readings]:
     """Return readings after a last short step, which takes ``rest`` off what is left."""
-    true, shown = answer
+    true, displayed = answer
     length, tension = np.hsplit(rest, 2)
     length, tension = noise.length_m * length, noise.tension_N * tension
-    return true, Readings(shown.length_m + length, shown.tension_N + tension)
+    return true, Readings(displayed.length_m + length, displayed.tension_N + tension)
 
 
 def _loss(values: FloatArray) -> FloatArray:
     return np.asarray(huber(values).sum(axis=1))
 
 
-def _either(mask: BoolArray, poses: Poses, other: Poses) -> Poses:
+def _either(mask: BoolArray, poses: Poses, alternative: Poses) -> Poses:
     """Return the poses of one where ``mask`` (n_rows,), else of the other."""
     rotation = poses.rotation
     if rotation.ndim > 2:
-        rotation = np.where(mask[:, None, None], rotation, other.rotation)
-    return Poses(np.where(mask[:, None], poses.position_m, other.position_m), rotation)
+        rotation = np.where(mask[:, None, None], rotation, alternative.rotation)
+    return Poses(np.where(mask[:, None], poses.position_m, alternative.position_m), rotation)

@@ -62,9 +62,9 @@ class Outcome:
     def without(self, gone: Withdrawn, progress: Pace) -> Outcome:
         """Withdraw an effect, and fit the rest anew."""
         progress(f"{gone.effect} withdrawn")
-        found = without(self.search.found, gone.effect)
-        model = self.searcher.fit(found, self.search.fit, thorough=True)
-        search = replace(self.search, fit=model, found=tuple(found))
+        effects = without(self.search.found, gone.effect)
+        model = self.searcher.fit(effects, self.search.fit, thorough=True)
+        search = replace(self.search, fit=model, found=tuple(effects))
         return replace(self, search=search, withdrawn=(*self.withdrawn, gone))
 
 
@@ -108,7 +108,7 @@ def search_and_hold(
         outcome = outcome.without(gone, progress)
         structure = structure_left(problem, outcome.search.fit.settings, rows)
         outcome = replace(outcome, structure=structure)
-    rest = without(candidates, *(one.effect for one in outcome.withdrawn))
+    rest = without(candidates, *(withdrawal.effect for withdrawal in outcome.withdrawn))
     return replace(outcome, searcher=Searcher(problem, rest, effects, rows, progress))
 
 
@@ -134,14 +134,16 @@ def keep_what_helps(
         Gain of each effect that is kept.
     """
     while True:
-        found, model = outcome.search.found, outcome.search.fit
+        effects, model = outcome.search.found, outcome.search.fit
         gains, structure = dict[str, Gain](), outcome.structure
-        gone = implausible(model, found) or _faint(model, found)
+        gone = implausible(model, effects) or _faint(model, effects)
         if gone is None:
-            left = problem.residual(model.settings)[heldout]
-            for effect in found:  # the others fitted anew without it
-                rest = outcome.searcher.fit(without(found, effect.key), model)
-                gains[effect.key] = _gain(problem.residual(rest.settings)[heldout], left, heldout)
+            residual = problem.residual(model.settings)[heldout]
+            for effect in effects:  # the others fitted anew without it
+                rest = outcome.searcher.fit(without(effects, effect.key), model)
+                gains[effect.key] = _gain(
+                    problem.residual(rest.settings)[heldout], residual, heldout
+                )
             least = min(
                 gains, key=lambda key: gains[key].share - _CLEAR * gains[key].std, default=""
             )
@@ -151,7 +153,7 @@ def keep_what_helps(
         if gone is None:
             structure = structure_left(problem, model.settings, np.ones_like(heldout))
             # What begins at a time is no step if what is left goes with time all the same.
-            steps = [effect.key for effect in found if effect.starts_from is not None]
+            steps = [effect.key for effect in effects if effect.starts_from is not None]
             if steps and any(carrier.is_order for carrier in structure.present):
                 gone = Withdrawn(steps[0], reason=Reason.NO_STEP)
         if gone is None:
@@ -184,21 +186,21 @@ def _residual_and_predicted(
 def _loose(outcome: Outcome, rows: BoolArray) -> Withdrawn | None:
     """Return the found effect that holds least; None where all hold."""
     problem, structure = outcome.problem, outcome.structure
-    found, model = outcome.search.found, outcome.search.fit
-    if not found:
+    effects, model = outcome.search.found, outcome.search.fit
+    if not effects:
         return None
-    gone = implausible(model, found)
+    gone = implausible(model, effects)
     if gone is not None or not (structure.events or structure.may_bend):
         return gone
-    left = model.loss - model.n_data
+    unexplained = model.loss - model.n_data
     gains = {
-        effect.key: outcome.searcher.fit(without(found, effect.key), model).loss - model.loss
-        for effect in found
+        effect.key: outcome.searcher.fit(without(effects, effect.key), model).loss - model.loss
+        for effect in effects
     }
     least = min(gains, key=gains.__getitem__)
-    if gains[least] < _SMALL * left:
+    if gains[least] < _SMALL * unexplained:
         return Withdrawn(least, reason=Reason.SMALL)
-    return drifting(problem, model, found, structure, rows)
+    return drifting(problem, model, effects, structure, rows)
 
 
 def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
@@ -208,8 +210,8 @@ def implausible(model: Fit, effects: Sequence[Effect]) -> Withdrawn | None:
         for p in setting.effect.parameters:
             value = setting.values[p.name]
             if setting.effect.key in keys and not p.is_plausible(value):
-                told = f"{p.name} = {value:.4g} {p.unit}".rstrip()
-                detail = f"{told} ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
+                figure = f"{p.name} = {value:.4g} {p.unit}".rstrip()
+                detail = f"{figure} ({p.plausible[0]:.4g} to {p.plausible[1]:.4g} would be)"
                 return Withdrawn(setting.effect.key, reason=Reason.IMPLAUSIBLE, detail=detail)
     return None
 
@@ -235,7 +237,7 @@ def _gain(before: FloatArray, after: FloatArray, heldout: BoolArray) -> Gain:
     Where there are enough blocks, the scatter of their gains is a measure of the doubt as well.
     """
     suits = ~(np.isnan(without_outliers(before)) & np.isnan(without_outliers(after)))
-    before, after = (np.where(suits, one, 0.0) for one in (before, after))
+    before, after = (np.where(suits, losses, 0.0) for losses in (before, after))
     total = float(np.sum(before**2))
     if total == 0.0:
         return Gain(0.0, 0.0)

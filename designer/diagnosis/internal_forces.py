@@ -41,10 +41,10 @@ class InternalForces:
     def __init__(
         self,
         built: Callable[[Sequence[Setting]], Machine],
-        shown: Callable[[Readings, Sequence[Setting]], Readings],
+        sensors: Callable[[Readings, Sequence[Setting]], Readings],
     ) -> None:
         self._built = built
-        self._shown = shown
+        self._shown = sensors
         self._guesses: dict[tuple[object, ...], _Guess] = {}
 
     def trust_anew(self, settings: Sequence[Setting], noise: Noise, measured: Measured) -> bool:
@@ -63,9 +63,9 @@ class InternalForces:
         """Return lengths and tensions that are there, and those that the sensors show."""
         kind = _kind(settings, noise)
         judges = kind not in self._guesses
-        guess, true, shown = self._settled(settings, noise, measured, judges=judges)
+        guess, true, displayed = self._settled(settings, noise, measured, judges=judges)
         self._guesses[kind] = guess  # near what it will be for the next values of these effects
-        return true, shown
+        return true, displayed
 
     def _settled(
         self, settings: Sequence[Setting], noise: Noise, measured: Measured, *, judges: bool
@@ -79,11 +79,11 @@ class InternalForces:
         guess = self._guesses.get(_kind(settings, noise), _Guess(np.zeros(shape)))
         for _ in range(_MOST_TURNS):
             true, straightened = _balanced(machine, measured, guess, noise)
-            shown = self._shown(straightened, settings)
-            before, guess = guess, guess.after(measured, true, shown, noise, judges=judges)
+            displayed = self._shown(straightened, settings)
+            before, guess = guess, guess.after(measured, true, displayed, noise, judges=judges)
             if guess.is_near(before, noise):
                 break
-        return guess, true, shown
+        return guess, true, displayed
 
 
 def _kind(settings: Sequence[Setting], noise: Noise) -> tuple[object, ...]:
@@ -119,17 +119,17 @@ class _Guess:
         distrust = (_distrust(length, self.distrust[0]), _distrust(tension, self.distrust[1]))
         return _Guess(np.nan_to_num(more), distrust)
 
-    def is_near(self, other: _Guess, noise: Noise) -> bool:
+    def is_near(self, previous: _Guess, noise: Noise) -> bool:
         """Tell whether another guess would give the same, to a small share of the noise."""
-        change = np.abs(self.added - other.added).max(axis=(1, 2))
+        change = np.abs(self.added - previous.added).max(axis=(1, 2))
         still = change[0] <= _STILL * noise.length_m and change[1] <= _STILL * noise.tension_N
-        return bool(still) and self.distrust == other.distrust
+        return bool(still) and self.distrust == previous.distrust
 
 
 def _distrust(off: FloatArray, before: float) -> float:
     """Return how far readings are off in units of noise; as before where that is about right."""
-    known = off[~np.isnan(off)]
-    size = MAD_TO_STD * float(np.median(known)) if known.size else 0.0
+    finite = off[~np.isnan(off)]
+    size = MAD_TO_STD * float(np.median(finite)) if finite.size else 0.0
     if _ABOUT[0] <= size / before <= _ABOUT[1]:
         return before
     return float(2.0 ** np.floor(np.log2(max(size, 1.0))))

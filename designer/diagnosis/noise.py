@@ -50,7 +50,7 @@ def first_noise(
     rough = Problem(measured, predict, Noise(0.01 * length, 0.1 * tension, "rough"))
     settings = fit(rough, effects, rows).settings if effects else ()
     kinds = np.hsplit(rough.residual(settings) * rough.sigma, 2)
-    found = [
+    estimates = [
         _fast_part(kind, measured) if value is None else value
         for value, kind in zip(declared, kinds, strict=True)
     ]
@@ -61,7 +61,7 @@ def first_noise(
     ]
     how = "neighbouring poses" if measured.settled else "second differences in time"
     source = f"{' and '.join(missing)} estimated from {how} of the residual"
-    return Noise(found[0], found[1], source if missing else "declared")
+    return Noise(estimates[0], estimates[1], source if missing else "declared")
 
 
 def rescaled(noise: Noise, measurements: Measurements, residual: FloatArray) -> Noise:

@@ -63,23 +63,23 @@ class Pace:
     def each(self, part: str, steps: Sequence[One]) -> Iterator[One]:
         """Yield the steps of a part of the search, telling of each; leave out those too late."""
         start_s = self._clock()
-        for done, step in enumerate(steps):
+        for count, step in enumerate(steps):
             if self.is_over:
-                names = ", ".join(one.key for one in steps[done:])
-                self.leave_out(f"{part}: {names if done else 'all'}")
+                names = ", ".join(named.key for named in steps[count:])
+                self.leave_out(f"{part}: {names if count else 'all'}")
                 return
-            left = self._left(start_s, done, len(steps))
-            self._tell(f"{part}, {done + 1} of {len(steps)}: {step.key}{left}")
+            remaining = self._left(start_s, count, len(steps))
+            self._tell(f"{part}, {count + 1} of {len(steps)}: {step.key}{remaining}")
             yield step
 
-    def _left(self, start_s: float, done: int, total: int) -> str:
+    def _left(self, start_s: float, count: int, total: int) -> str:
         """Say how long the rest of a part will take, and the search at most."""
         now_s = self._clock()
         most_s = self._end_s - now_s
-        most = f"{in_words(most_s)} at most" if math.isfinite(most_s) else ""
-        rest = f"about {in_words((now_s - start_s) * (total - done) / done)}" if done else ""
-        told = ", ".join(filter(None, (rest, most)))
-        return f" ({told})" if told else ""
+        limit = f"{in_words(most_s)} at most" if math.isfinite(most_s) else ""
+        rest = f"about {in_words((now_s - start_s) * (total - count) / count)}" if count else ""
+        parts = ", ".join(filter(None, (rest, limit)))
+        return f" ({parts})" if parts else ""
 
 
 def in_words(time_s: float) -> str:

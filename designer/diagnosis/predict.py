@@ -41,12 +41,12 @@ class Predictor:
         machine: Machine,
         measured: Measured,
         fixed: Sequence[Setting] = (),
-        known: KnownEffects = SHIPPED,
+        effects: KnownEffects = SHIPPED,
     ) -> None:
         self._machine = machine
         self._measured = measured
         self._fixed = tuple(fixed)
-        self._effects = known
+        self._effects = effects
         self._forces = InternalForces(self.built, self._shown)
         self._known: dict[tuple[object, ...], tuple[Readings, Readings]] = {}
         self._slopes: dict[tuple[object, ...], FloatArray] = {}
@@ -61,9 +61,11 @@ class Predictor:
 
     def _all(self, settings: Sequence[Setting]) -> list[Setting]:
         """Return the effects that show in these rows, in the order in which they act."""
-        both = (*self._fixed, *settings)
+        all_settings = (*self._fixed, *settings)
         is_still = self._measured.settled
-        return self._effects.in_order(s for s in both if not (is_still and s.effect.needs_motion))
+        return self._effects.in_order(
+            s for s in all_settings if not (is_still and s.effect.needs_motion)
+        )
 
     @property
     def row_unknowns(self) -> int:
@@ -96,15 +98,15 @@ class Predictor:
 
     def true_readings(self, settings: Sequence[Setting], noise: Noise) -> Readings:
         """Return what was measured, less what sensors and stiff ends add to it in the model."""
-        shown = self(settings, noise)
+        displayed = self(settings, noise)
         if self.spare_cables:
             true = self._remembered(settings, noise, self._with_forces)[0]
         else:
             limp = replace(self.built(settings), flexural_rigidity_N_m2=0.0)
             true = readings_of(limp, self._measured.poses, self._measured)
         return Readings(
-            self._measured.length_m - shown.length_m + true.length_m,
-            self._measured.tension_N - shown.tension_N + true.tension_N,
+            self._measured.length_m - displayed.length_m + true.length_m,
+            self._measured.tension_N - displayed.tension_N + true.tension_N,
         )
 
     def _remembered(

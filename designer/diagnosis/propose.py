@@ -43,7 +43,7 @@ class Proposal:
 def propose(
     problem: Problem,
     region: Region | None,
-    found: Sequence[Setting],
+    fitted: Sequence[Setting],
     rival: Sequence[Setting],
     names: tuple[str, str],
 ) -> Proposal:
@@ -55,7 +55,7 @@ def propose(
         As in the diagnosis; the surroundings of a new pose are taken from the middle row.
     region : Region or None
         Where to look; the box of the measured poses if there is none.
-    found, rival : sequence of Setting
+    fitted, rival : sequence of Setting
         The two models.
     names : tuple of str
         What to call them.
@@ -63,9 +63,11 @@ def propose(
     positions = _candidates(problem.measured, region)
     measured = _measured_at(problem.measured, positions)
     elsewhere = replace(problem, measured=measured, predict=problem.predict.at(measured))
-    one, other = (elsewhere.predicted(settings).stacked for settings in (found, rival))
+    readings, rival_readings = (
+        elsewhere.predicted(settings).stacked for settings in (fitted, rival)
+    )
     is_measured = ~np.isnan(problem.readings).all(axis=0)
-    gap = (one - other)[:, is_measured] / problem.sigma[is_measured]
+    gap = (readings - rival_readings)[:, is_measured] / problem.sigma[is_measured]
     separation = np.sqrt(np.nansum(gap**2, axis=1))
     size = np.maximum(np.ptp(positions, axis=0), 1e-9)
     chosen: list[int] = []
@@ -92,7 +94,7 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
     rotation = measured.poses.rotation
     unread = np.full((count, measured.length_m.shape[1]), np.nan)
 
-    def same(column: FloatArray | None) -> FloatArray | None:
+    def repeated(column: FloatArray | None) -> FloatArray | None:
         return None if column is None else np.repeat(column[middle : middle + 1], count, axis=0)
 
     return replace(
@@ -101,9 +103,9 @@ def _measured_at(measured: Measured, positions: FloatArray) -> Measured:
         poses=Poses(positions, rotation if rotation.ndim == 2 else rotation[middle]),
         length_m=unread,
         tension_N=unread,
-        time_s=same(measured.time_s),
-        temperature_C=same(measured.temperature_C),
-        wind_m_per_s=same(measured.wind_m_per_s),
+        time_s=repeated(measured.time_s),
+        temperature_C=repeated(measured.temperature_C),
+        wind_m_per_s=repeated(measured.wind_m_per_s),
         covariates={},
         row_numbers=np.arange(1, count + 1),
     )

@@ -252,8 +252,8 @@ class Diagnosis:
     @property
     def settings(self) -> tuple[Setting, ...]:
         """Found effects with their values, without those unknown from the start."""
-        found = {finding.effect.key for finding in self.findings}
-        return tuple(s for s in self.final.settings if s.effect.key in found)
+        keys = {finding.effect.key for finding in self.findings}
+        return tuple(s for s in self.final.settings if s.effect.key in keys)
 
     @property
     def is_unexplained(self) -> bool:
@@ -290,8 +290,8 @@ class Diagnosis:
     def verdict(self) -> Verdict:
         """The answer."""
         if self.findings:
-            whole = not (self.is_unexplained or self.is_scattered or self.doubts)
-            return Verdict.FOUND if whole else Verdict.IN_PART
+            is_complete = not (self.is_unexplained or self.is_scattered or self.doubts)
+            return Verdict.FOUND if is_complete else Verdict.IN_PART
         if self.is_unexplained:
             return Verdict.UNEXPLAINED
         if self.doubts:

@@ -20,8 +20,8 @@ def spread(values: FloatArray) -> float:
 
 def rms(residual: FloatArray) -> float:
     """Root mean square of what was measured; NaN if nothing was."""
-    known = residual[~np.isnan(residual)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
+    finite = residual[~np.isnan(residual)]
+    return float(np.sqrt(np.mean(finite**2))) if finite.size else float("nan")
 
 
 def without_outliers(residual: FloatArray) -> FloatArray:

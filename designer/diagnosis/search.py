@@ -105,12 +105,12 @@ def _simplest(trials: Sequence[Trial]) -> Trial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
     good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
-    near = [
+    close = [
         t
         for t, score in zip(good, scores, strict=True)
         if score > max(scores) - RIVAL_MARGIN * t.fit.inflation[t.effect.key]
     ]
-    return min(near, key=lambda t: len(t.effect.parameters), default=None)
+    return min(close, key=lambda t: len(t.effect.parameters), default=None)
 
 
 def _chance(gain: float, effect: Effect, looks: int) -> float:
@@ -145,13 +145,13 @@ class Searcher:
         self,
         problem: Problem,
         candidates: Sequence[Effect],
-        given: Sequence[Effect],
+        unconditional: Sequence[Effect],
         rows: BoolArray,
         progress: Pace | None = None,
     ) -> None:
         self._problem = problem
         self._candidates = tuple(candidates)
-        self._given = tuple(given)
+        self._given = tuple(unconditional)
         self._rows = rows
         self._progress = progress or Pace()
 
@@ -160,9 +160,9 @@ class Searcher:
         effects: list[Effect] = []
         steps: list[Step] = []
         present = self.fit(effects)
-        tried: list[set[Effect]] = []
-        while set(effects) not in tried:
-            tried.append(set(effects))
+        visited: list[set[Effect]] = []
+        while set(effects) not in visited:
+            visited.append(set(effects))
             trials = self.trials(effects, present, f"round {len(steps) + 1}")
             is_over = self._progress.is_over
             best = None if is_over else _simplest(trials)
@@ -182,35 +182,35 @@ class Searcher:
 
     def fit(
         self,
-        found: Sequence[Effect],
-        near: Fit | None = None,
+        effects_found: Sequence[Effect],
+        start: Fit | None = None,
         *,
         thorough: bool = False,
         anew: bool = False,
     ) -> Fit:
         """Fit the given effects and the found ones together."""
-        effects = self._sorted([*self._given, *found])
-        settings = near.settings if near else ()
+        effects = self._sorted([*self._given, *effects_found])
+        settings = start.settings if start else ()
         return fit(self._problem, effects, self._rows, settings, thorough=thorough, anew=anew)
 
     def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[Trial]:
         """Try every other candidate in addition, best first."""
-        others = self._others(effects)
-        tried: list[Trial] = []
-        for effect in self._progress.each(part, others):
+        outsiders = self._others(effects)
+        trials: list[Trial] = []
+        for effect in self._progress.each(part, outsiders):
             model = self.fit([*effects, effect], present, anew=True)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
-            chance = _chance(gain, effect, len(others))
-            tried.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
-        variance = _best_variance(tried)
-        tried.sort(key=lambda trial: -trial.score(variance))
+            chance = _chance(gain, effect, len(outsiders))
+            trials.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
+        variance = _best_variance(trials)
+        trials.sort(key=lambda trial: -trial.score(variance))
         answer: list[Trial] = []
-        for trial in tried:  # cross-validated from the best down, until one earns its place
+        for trial in trials:  # cross-validated from the best down, until one earns its place
             # Three are, whatever comes of it: a report shows them.
             settled = len(answer) >= 3 and any(t.may_be_added for t in answer)
             if self._progress.is_over and not settled and trial.chance < SIGNIFICANCE:
                 self._progress.leave_out(f"{trial.effect.key} and below on rows not seen")
-                return answer + tried[len(answer) :]
+                return answer + trials[len(answer) :]
             if settled or trial.chance >= SIGNIFICANCE:  # needs no proof
                 answer.append(trial)
                 continue
@@ -235,46 +235,46 @@ class Searcher:
         gains = {t.effect.key: t.heldout_gain for step in added[-1:] for t in step.trials}
         good = {key for key, gain in gains.items() if gain >= 0.5 * gains[effect.key]}
         answer = []
-        for other in self._progress.each(f"rivals of {effect.key}", self._others(effects)):
-            trials = [t.fit for step in steps for t in step.trials if t.effect.key == other.key]
-            fits = [self.fit([*rest, other], present, anew=True)]
+        for rival in self._progress.each(f"rivals of {effect.key}", self._others(effects)):
+            trials = [t.fit for step in steps for t in step.trials if t.effect.key == rival.key]
+            fits = [self.fit([*rest, rival], present, anew=True)]
             last = dict.fromkeys([*trials[:1], *trials[-1:]])
-            fits += [self.fit([*rest, other], near) for near in last]
-            swapped = min(fits, key=lambda one: one.loss)
-            if not swapped.is_plausible(other):
+            fits += [self.fit([*rest, rival], start) for start in last]
+            swapped = min(fits, key=lambda model: model.loss)
+            if not swapped.is_plausible(rival):
                 continue
             gaps = (
                 swapped.loss - present.loss,
                 self._penalised(swapped) - self._penalised(present),
             )
             suits = min(gaps) / scale < RIVAL_MARGIN
-            if not suits and other.key in good:
-                gap = self._unseen_loss([*rest, other], swapped) - self._unseen_loss(
+            if not suits and rival.key in good:
+                gap = self._unseen_loss([*rest, rival], swapped) - self._unseen_loss(
                     effects, present
                 )
                 suits = gap / scale < RIVAL_MARGIN
             if suits:
-                answer.append(other)
+                answer.append(rival)
         return answer
 
-    def _others(self, found: Sequence[Effect]) -> list[Effect]:
-        taken = {effect.key for effect in (*found, *self._given)}
-        return [effect for effect in self._candidates if effect.key not in taken]
+    def _others(self, effects_found: Sequence[Effect]) -> list[Effect]:
+        keys = {effect.key for effect in (*effects_found, *self._given)}
+        return [effect for effect in self._candidates if effect.key not in keys]
 
-    def _unseen_loss(self, found: Sequence[Effect], near: Fit) -> float:
+    def _unseen_loss(self, effects_found: Sequence[Effect], start: Fit) -> float:
         """Return the loss over each part of the rows, fitted to the other parts."""
-        effects = self._sorted([*self._given, *found])
+        effects = self._sorted([*self._given, *effects_found])
         loss = 0.0
         for part in folds(self._rows):
-            model = fit(self._problem, effects, self._rows & ~part, near.settings)
+            model = fit(self._problem, effects, self._rows & ~part, start.settings)
             loss += float(huber(self._problem.residual(model.settings)[part]).sum())
         return loss
 
     def _exchanged(
-        self, effects: list[Effect], near: Fit, outsiders: Sequence[Effect]
+        self, effects: list[Effect], start: Fit, outsiders: Sequence[Effect]
     ) -> list[Effect]:
         """Replace a member by an outsider where that is clearly better: greed errs at times."""
-        present = self.fit(effects, near)
+        present = self.fit(effects, start)
         for k in range(len(effects) - 1):  # the newest was chosen among all
             for outsider in outsiders:
                 if outsider not in self._others(effects) or self._progress.is_over:

@@ -114,30 +114,32 @@ def covariates_of(measured: Measured, predicted: Readings) -> dict[str, FloatArr
     surroundings, and every unnamed column.
     """
     position = measured.poses.position_m
-    found = {f"{axis}_m": position[:, k] for k, axis in enumerate("xyz")}
+    covariates = {f"{axis}_m": position[:, k] for k, axis in enumerate("xyz")}
     for k in range(predicted.length_m.shape[1]):
-        found[f"length_{k + 1}_m"] = predicted.length_m[:, k]
-        found[f"tension_{k + 1}_N"] = predicted.tension_N[:, k]
-        found[f"direction_{k + 1}"] = np.sign(np.diff(predicted.length_m[:, k], prepend=np.nan))
+        covariates[f"length_{k + 1}_m"] = predicted.length_m[:, k]
+        covariates[f"tension_{k + 1}_N"] = predicted.tension_N[:, k]
+        covariates[f"direction_{k + 1}"] = np.sign(
+            np.diff(predicted.length_m[:, k], prepend=np.nan)
+        )
     if measured.time_s is not None:
-        found["time_s"] = measured.time_s
+        covariates["time_s"] = measured.time_s
         step = np.linalg.norm(np.gradient(position, axis=0), axis=1)
         if not measured.settled:
             passed_s = np.maximum(np.gradient(measured.time_s), 1e-9)
-            found["speed_m_per_s"] = step / passed_s
+            covariates["speed_m_per_s"] = step / passed_s
             for k, length_m in enumerate(predicted.length_m.T, start=1):
-                found[f"speed_{k}_m_per_s"] = np.gradient(length_m) / passed_s
+                covariates[f"speed_{k}_m_per_s"] = np.gradient(length_m) / passed_s
     else:
-        found["row"] = np.arange(measured.n_rows, dtype=np.float64)
+        covariates["row"] = np.arange(measured.n_rows, dtype=np.float64)
     if measured.temperature_C is not None:
-        found["temperature_C"] = measured.temperature_C
+        covariates["temperature_C"] = measured.temperature_C
     if measured.wind_m_per_s is not None:
         for k, axis in enumerate("xyz"):
-            found[f"wind_{axis}_m_per_s"] = measured.wind_m_per_s[:, k]
-    found.update(measured.covariates)
+            covariates[f"wind_{axis}_m_per_s"] = measured.wind_m_per_s[:, k]
+    covariates.update(measured.covariates)
     return {
         name: column
-        for name, column in found.items()
+        for name, column in covariates.items()
         if np.isfinite(column).any()
         and np.nanstd(column) > 1e-12 * (1.0 + np.abs(np.nanmean(column)))
     }
@@ -172,12 +174,12 @@ def find_structure(
     lasts = lasting(beside(bases[int(np.argmax(observed))], channels))
     rng = np.random.default_rng(0)
     chances = chances_of(
-        observed, [_largest_share(bases, one).max() for one in draws(channels, lasts, rng)]
+        observed, [_largest_share(bases, draw).max() for draw in draws(channels, lasts, rng)]
     )
     excess = float(np.mean(channels**2))
     # What lasts at such a multiple of the noise is a drift; by less, a declared noise may be wrong.
     if settled and lasts.share and excess > 1.3**2:
-        best = [_largest_share(bases, one).max() for one in draws(channels, INDEPENDENT, rng)]
+        best = [_largest_share(bases, draw).max() for draw in draws(channels, INDEPENDENT, rng)]
         of_order = np.isin(list(covariates), ORDER)
         chances = np.where(of_order, chances_of(observed, best), chances)
     carriers = [
@@ -225,8 +227,8 @@ def channels_of(residual: FloatArray) -> FloatArray:
     for kind in (residual[:, :n], residual[:, n:]):
         if np.isnan(kind).all():
             continue
-        known = kind[:, ~np.isnan(kind).all(axis=0)]
-        centred = known - np.nanmedian(known, axis=0)
+        read_channels = kind[:, ~np.isnan(kind).all(axis=0)]
+        centred = read_channels - np.nanmedian(read_channels, axis=0)
         # So that no outlier makes structure.
         limit = 4.0 * np.maximum(MAD_TO_STD * np.nanmedian(np.abs(centred), axis=0), 1.0)
         filled = np.clip(np.nan_to_num(centred, nan=0.0), -limit, limit)

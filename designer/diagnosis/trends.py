@@ -83,20 +83,20 @@ def strongest_channel(residual: FloatArray, covariate: FloatArray) -> int:
 
 
 def _explained(column: FloatArray, covariate: FloatArray) -> float:
-    known = np.isfinite(column) & np.isfinite(covariate)
-    if known.sum() < 4:  # a parabola goes through three of anything
+    is_known = np.isfinite(column) & np.isfinite(covariate)
+    if is_known.sum() < 4:  # a parabola goes through three of anything
         return -1.0
     # A reading farther off counts as one at this distance: noise reaches it once in 16 000.
     middle, limit = np.nanmedian(column), 4.0 * spread(column)
-    clipped = np.where(known, np.clip(column, middle - limit, middle + limit), np.nan)
-    y = clipped[known] - clipped[known].mean()
-    left = clipped[known] - _parabola(clipped, covariate)[known]
-    return float((y @ y - left @ left) / max(y @ y, 1e-300))
+    clipped = np.where(is_known, np.clip(column, middle - limit, middle + limit), np.nan)
+    y = clipped[is_known] - clipped[is_known].mean()
+    remainder = clipped[is_known] - _parabola(clipped, covariate)[is_known]
+    return float((y @ y - remainder @ remainder) / max(y @ y, 1e-300))
 
 
 def _parabola(column: FloatArray, covariate: FloatArray) -> FloatArray:
     """Return the parabola in a covariate that comes nearest to a column (n_rows,)."""
-    known = np.isfinite(column) & np.isfinite(covariate)
-    x = covariate[known]
+    is_known = np.isfinite(column) & np.isfinite(covariate)
+    x = covariate[is_known]
     powers = np.vander((covariate - x.mean()) / (x.std() or 1.0), 3)
-    return np.asarray(powers @ np.linalg.lstsq(powers[known], column[known], rcond=None)[0])
+    return np.asarray(powers @ np.linalg.lstsq(powers[is_known], column[is_known], rcond=None)[0])

@@ -88,15 +88,15 @@ def _flaws_of_parameter(parameter: object) -> Iterator[str]:
 
 def flaws_of_size(parameter: Parameter, machine: Machine) -> Iterator[str]:
     """Yield what keeps a parameter from being fitted on a machine."""
-    here = parameter.sized(machine)
-    (low, high), (least, most) = here.bounds, here.plausible
-    numbers = (low, high, least, most, here.neutral, here.typical)
+    sized = parameter.sized(machine)
+    (low, high), (least, greatest) = sized.bounds, sized.plausible
+    numbers = (low, high, least, greatest, sized.neutral, sized.typical)
     if not all(math.isfinite(number) for number in numbers):
-        yield f"{here.name} has a number that is not finite"
-    elif not (low < high and low <= here.neutral <= high):
-        yield f"{here.name} has no bounds around its neutral value {here.neutral:g}"
-    elif here.typical <= 0.0 or least > most:
-        yield f"{here.name} has no typical size above 0, or no plausible range"
-    elif parameter.is_optional and here.neutral != parameter.neutral:
+        yield f"{sized.name} has a number that is not finite"
+    elif not (low < high and low <= sized.neutral <= high):
+        yield f"{sized.name} has no bounds around its neutral value {sized.neutral:g}"
+    elif sized.typical <= 0.0 or least > greatest:
+        yield f"{sized.name} has no typical size above 0, or no plausible range"
+    elif parameter.is_optional and sized.neutral != parameter.neutral:
         expected = f"expected {parameter.neutral:g}, as it may be left out"
-        yield f"{here.name} is neutral at {here.neutral:g} ({expected})"
+        yield f"{sized.name} is neutral at {sized.neutral:g} ({expected})"

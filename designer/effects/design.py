@@ -70,8 +70,8 @@ class AsBuilt:
         They are where every effect scales; not where one adds, such as a film of ice, which is
         little on a thick cable and much on a thin one.
         """
-        first, *others = (astuple(self._at(material, d)) for d in _PROBES_M)
-        return all(np.allclose(other, first, rtol=_SAME, atol=0.0) for other in others)
+        reference, *cables = (astuple(self._at(material, d)) for d in _PROBES_M)
+        return all(np.allclose(cable, reference, rtol=_SAME, atol=0.0) for cable in cables)
 
     def material(self, material: Material, diameter_m: float | None = None) -> Material:
         """Return a family of cables as it is on this machine.
@@ -136,8 +136,8 @@ def built_with(machine: Machine, settings_of: SettingsOf) -> AsBuilt:
     return AsBuilt(thin, _unchanged if has_none else lambda cable: built(cable).cable)
 
 
-def _is_same(robot: Robot, other: Robot) -> bool:
-    pairs: list[tuple[Any, Any]] = [(robot, other), (robot.platform, other.platform)]
+def _is_same(robot: Robot, before: Robot) -> bool:
+    pairs: list[tuple[Any, Any]] = [(robot, before), (robot.platform, before.platform)]
     return all(
         np.array_equal(getattr(mine, field.name), getattr(theirs, field.name))
         for mine, theirs in pairs

@@ -250,7 +250,7 @@ class Effect:
 
     def parameters_for(self, n_cables: int) -> tuple[Parameter, ...]:
         """Return the parameters on a robot with so many cables."""
-        return tuple(one for parameter in self.parameters for one in parameter.of_cables(n_cables))
+        return tuple(own for parameter in self.parameters for own in parameter.of_cables(n_cables))
 
     def on(self, machine: Machine) -> list[Effect]:
         """Return what a machine may have of it: the effect, one for each cable, or none."""
@@ -260,7 +260,9 @@ class Effect:
         sized = tuple(p.sized(machine) for p in self.parameters)
         effect = replace(
             self,
-            parameters=tuple(parameter for each in sized for parameter in each.of_cables(n_cables)),
+            parameters=tuple(
+                parameter for template in sized for parameter in template.of_cables(n_cables)
+            ),
         )
         if self.takes_machine:
             effect = effect._given(machine=machine)

@@ -24,9 +24,9 @@ def guarded(effect: Effect, label: str) -> Effect:
         line = f"{label}: effect {effect.id!r} fails at work: {one_line(problem)}"
         return EffectError(effect.id, line)
 
-    def attempt(action: Callable[..., Value], *given: object, **more: object) -> Value:
+    def attempt(action: Callable[..., Value], *arguments: object, **more: object) -> Value:
         try:
-            return action(*given, **more)
+            return action(*arguments, **more)
         except (Exception, SystemExit) as error:  # a stranger's code may raise anything
             asks = " (does it ask for measurements.cable.diameter?)" * ("not nan" in str(error))
             raise fail(f"{described(error)}{asks}") from error

@@ -37,7 +37,7 @@ class KnownEffects:
         designer.errors.EffectError
             If an effect of a plugin fails at this machine.
         """
-        return [one for effect in self.effects for one in effect.on(machine)]
+        return [variant for effect in self.effects for variant in effect.on(machine)]
 
     def in_order(self, settings: Iterable[Setting]) -> list[Setting]:
         """Return settings in the order in which they act: a model is one, however it was found."""
@@ -46,5 +46,5 @@ class KnownEffects:
 
     def without(self, effect_id: str, problem: str) -> KnownEffects:
         """Return all effects but one, with the reason why it is left out."""
-        kept = tuple(effect for effect in self.effects if effect.id != effect_id)
-        return KnownEffects(kept, (*self.problems, problem))
+        remaining = tuple(effect for effect in self.effects if effect.id != effect_id)
+        return KnownEffects(remaining, (*self.problems, problem))

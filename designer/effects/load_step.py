@@ -25,11 +25,11 @@ def _starts(measured: Measured, residual: FloatArray) -> tuple[dict[str, float],
     assert measured.time_s is not None
     n = residual.shape[1] // 2
     for kind in (residual[:, n:], residual[:, :n]):
-        known = ~np.isnan(kind)
-        rows = np.flatnonzero(known.any(axis=1))
+        is_read = ~np.isnan(kind)
+        rows = np.flatnonzero(is_read.any(axis=1))
         if len(rows) < 2 * _LEAST_ROWS:
             continue
-        mean = np.nan_to_num(kind).sum(axis=1)[rows] / known.sum(axis=1)[rows]
+        mean = np.nan_to_num(kind).sum(axis=1)[rows] / is_read.sum(axis=1)[rows]
         at = np.arange(_LEAST_ROWS, len(rows) - _LEAST_ROWS + 1)
         gap = np.cumsum(mean - mean.mean())[at - 1] ** 2 / (at * (len(rows) - at))
         row = rows[at[int(np.argmax(gap))]]

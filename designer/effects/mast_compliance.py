@@ -61,8 +61,8 @@ def _wrench(force: FloatArray, lever: FloatArray, robot: Robot) -> FloatArray:
 
 def _size(machine: Machine) -> Size:
     """A mast gives way by 2 % of the frame at most under the platform's weight."""
-    most = 0.02 * frame_size_m(machine) / machine.robot.weight_N
-    return Size(0.02 * most, bounds=(0.0, 50 * most), plausible=(0.0, most))
+    largest = 0.02 * frame_size_m(machine) / machine.robot.weight_N
+    return Size(0.02 * largest, bounds=(0.0, 50 * largest), plausible=(0.0, largest))
 
 
 EFFECT = Effect(

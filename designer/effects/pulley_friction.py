@@ -16,8 +16,8 @@ _SIZE = Size(5e-3, bounds=(0.0, 1.0), plausible=(0.0, 0.3))
 def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
     # The direction is that of the predicted lengths, since measured ones may be missing.
     change = np.diff(readings.length_m, axis=0, prepend=readings.length_m[:1])
-    kept = np.exp(-values["coefficient"] * np.sign(change))
-    return replace(readings, tension_N=readings.tension_N * kept)
+    ratio = np.exp(-values["coefficient"] * np.sign(change))
+    return replace(readings, tension_N=readings.tension_N * ratio)
 
 
 EFFECT = Effect(

@@ -17,8 +17,8 @@ def _change(readings: Readings, values: Values, measured: Measured) -> Readings:
 
 def _size(machine: Machine) -> Size:
     """As much as twice the frame's size of further cable would give."""
-    most = 2.0 * frame_size_m(machine) / machine.cable.axial_stiffness_N
-    return Size(0.02 * most, bounds=(-50 * most, 50 * most), plausible=(-most, most))
+    largest = 2.0 * frame_size_m(machine) / machine.cable.axial_stiffness_N
+    return Size(0.02 * largest, bounds=(-50 * largest, 50 * largest), plausible=(-largest, largest))
 
 
 EFFECT = Effect(

@@ -52,16 +52,18 @@ def _origin(diagnosis: Diagnosis) -> str:
     """Return where the effects come from, for whoever reads the config later."""
     measured = diagnosis.study.measurements
     assert measured is not None
-    told = [f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"]
+    lines = [
+        f"From the diagnosis of {measured.file.name}, SHA-256 {diagnosis.measured.sha256[:16]}"
+    ]
     for kind, scale, unit in (("length", 1e3, "mm"), ("tension", 1.0, "N")):
-        first, last = (
+        before, last = (
             stage.length_m if kind == "length" else stage.tension_N
             for stage in (diagnosis.stages[0], diagnosis.final)
         )
-        if first is not None and last is not None:
-            was, now = scale * first.heldout.value, scale * last.heldout.value
-            told.append(f"{kind} error on unseen rows {was:.3g} -> {now:.3g} {unit}")
-    return "; ".join(told)
+        if before is not None and last is not None:
+            was, now = scale * before.heldout.value, scale * last.heldout.value
+            lines.append(f"{kind} error on unseen rows {was:.3g} -> {now:.3g} {unit}")
+    return "; ".join(lines)
 
 
 def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
@@ -74,6 +76,7 @@ def _estimated_noise(diagnosis: Diagnosis) -> dict[str, float]:
     }
     return {
         kind: float(size)
-        for kind, (given, readings, size) in kinds.items()
-        if (given is None or kind in declared.estimated_noise) and np.isfinite(readings).any()
+        for kind, (declared_size, readings, size) in kinds.items()
+        if (declared_size is None or kind in declared.estimated_noise)
+        and np.isfinite(readings).any()
     }

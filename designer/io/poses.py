@@ -74,10 +74,10 @@ def read_poses(path: Path, robot: Robot) -> PoseTable:
     faults = list(_robot_faults(table, robot, place))
     if faults:
         raise InputError(table.first_few(faults, len(faults), "of this kind"))
-    kept = [column for column in table.columns if column.name and not column.n_texts]
+    columns_kept = [column for column in table.columns if column.name and not column.n_texts]
     return PoseTable(
-        tuple(column.name for column in kept),
-        np.stack([column.values for column in kept], axis=1),
+        tuple(column.name for column in columns_kept),
+        np.stack([column.values for column in columns_kept], axis=1),
         Poses.at(place),
         tuple(column.name for column in table.columns if column.n_texts),
     )
@@ -97,18 +97,18 @@ def _column_faults(table: LogTable, columns: dict[str, RawColumn]) -> Iterator[F
 
 
 def _cell_faults(table: LogTable, columns: list[RawColumn]) -> list[Fault]:
-    most = BOUNDS["distance"].most
-    found = []
+    largest_m = BOUNDS["distance"].most
+    faults = []
     for column in columns:
         texts = {cell.row: cell.text for cell in column.texts}
-        limit = most if column.name in POSITION else 2.0 * np.pi
+        limit = largest_m if column.name in POSITION else 2.0 * np.pi
         unit = column.name.rpartition("_")[2]
         for row in np.flatnonzero(~(np.abs(column.values) <= limit)).tolist():
             value = repr(texts[row]) if row in texts else f"{column.values[row]:g}"
             value = "nothing" if value == "nan" else value
             expected = f"a number between -{limit:.6g} and {limit:.6g} {unit}"
-            found.append(table.fault(row, column.name, f"holds {value}", expected))
-    return table.first_few(found, len(found), "of this kind")
+            faults.append(table.fault(row, column.name, f"holds {value}", expected))
+    return table.first_few(faults, len(faults), "of this kind")
 
 
 def _robot_faults(table: LogTable, robot: Robot, place: FloatArray) -> Iterator[Fault]:

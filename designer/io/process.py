@@ -85,7 +85,9 @@ def silence_broken_output() -> None:
 
 def _streams() -> list[TextIO]:
     """Return those of the two streams that the program was started with and has not closed."""
-    return [one for one in (sys.stdout, sys.stderr) if one is not None and not one.closed]
+    return [
+        stream for stream in (sys.stdout, sys.stderr) if stream is not None and not stream.closed
+    ]
 
 
 class Undo:
@@ -127,11 +129,11 @@ def undone_at_end() -> Iterator[Undo]:
 @contextmanager
 def ends_gently() -> Iterator[Callable[[], bool]]:
     """Hand out what tells whether Ctrl-C was pressed in the block; a second time it ends all."""
-    asked = False
+    is_requested = False
 
     def ask(*_: object) -> None:
-        nonlocal asked
-        asked = True
+        nonlocal is_requested
+        is_requested = True
         signal.signal(signal.SIGINT, before)
 
     before = signal.getsignal(signal.SIGINT)
@@ -139,7 +141,7 @@ def ends_gently() -> Iterator[Callable[[], bool]]:
     if is_ours:
         signal.signal(signal.SIGINT, ask)
     try:
-        yield lambda: asked
+        yield lambda: is_requested
     finally:
         if is_ours:
             signal.signal(signal.SIGINT, before)
@@ -180,8 +182,8 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
     An exception from here could come up anywhere, such as inside a library that is half-loaded,
     which may then crash; so may libraries where Python takes them down. So neither is done.
     """
-    for other in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(other, signal.SIG_IGN)
+    for signal_number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(signal_number, signal.SIG_IGN)
     for undo in reversed(_undo_at_end):
         undo.run()
     if is_terminal(sys.stderr):

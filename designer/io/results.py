@@ -41,9 +41,9 @@ def read_result(path: Path) -> Json:
     try:
         values = json.loads(read_input(path))
     except (OSError, ValueError, RecursionError) as error:
-        found = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
+        reason = (error.strerror or "").lower() if isinstance(error, OSError) else str(error)
         raise InputError(
-            [Fault(str(path), None, "", f"cannot be read: {found}", _RESULT)]
+            [Fault(str(path), None, "", f"cannot be read: {reason}", _RESULT)]
         ) from None
     if not isinstance(values, dict) or "provenance" not in values:
         raise InputError([Fault(str(path), None, "", "is no result", _RESULT)])

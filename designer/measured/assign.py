@@ -133,12 +133,12 @@ def _assign_by_name(assigned: Assigned, column: RawColumn, study: Study) -> None
         assigned.covariates[name] = column
 
 
-def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Fault]:
+def _missing(assigned: Assigned, study: Study, *, has_poses: bool) -> Iterator[Fault]:
     lengths, tensions = (names(study.robot.n_cables) for names in (length_names, tension_names))
-    known = {*found.ours, *found.awaited}
+    present = {*assigned.ours, *assigned.awaited}
     if not has_poses:
         pass
-    elif known.isdisjoint(POSITION):
+    elif present.isdisjoint(POSITION):
         problem = (
             "there is no measured pose; the diagnosis holds readings against the pose of each row, "
             "which has to be measured by other means than the winches"
@@ -147,26 +147,26 @@ def _missing(found: Assigned, study: Study, *, has_poses: bool) -> Iterator[Faul
             f"columns {', '.join(POSITION)}, or others mapped onto them in {_MAP}; or, with both "
             f"lengths and tensions, 'unknown: [{POSES}]'"
         )
-        hint = did_you_mean(POSITION[0], found.covariates)
-        yield found.table.fault(None, ", ".join(POSITION), problem, expected + hint)
+        hint = did_you_mean(POSITION[0], assigned.covariates)
+        yield assigned.table.fault(None, ", ".join(POSITION), problem, expected + hint)
     else:
-        yield from _missing_of(found, POSITION)
-        rotations = [name for name in (*found.ours, *found.awaited) if is_rotation(name)]
+        yield from _missing_of(assigned, POSITION)
+        rotations = [name for name in (*assigned.ours, *assigned.awaited) if is_rotation(name)]
         forms = {rotation_form(name): name for name in rotations}
         if not study.robot.is_point_mass and len(forms) > 1:
             problem = f"the orientation is given in two forms, with {' and '.join(forms.values())}"
-            yield found.table.fault(None, "", problem, "one; the columns of the other ignored")
+            yield assigned.table.fault(None, "", problem, "one; the columns of the other ignored")
         elif not study.robot.is_point_mass:
-            yield from _missing_of(found, next(iter(forms), ROTATION_VECTOR))
-    if known.isdisjoint(lengths + tensions):
+            yield from _missing_of(assigned, next(iter(forms), ROTATION_VECTOR))
+    if present.isdisjoint(lengths + tensions):
         expected = f"{lengths[0]} … {lengths[-1]}, or {tensions[0]} … {tensions[-1]}, or both"
         problem = "there is neither a column for lengths nor one for tensions"
-        yield found.table.fault(
+        yield assigned.table.fault(
             None, "", problem, f"{expected}; {_MAP} says which columns they are"
         )
     for names in (lengths, tensions):
-        if not known.isdisjoint(names):
-            yield from _missing_of(found, names)
+        if not present.isdisjoint(names):
+            yield from _missing_of(assigned, names)
 
 
 def _missing_of(assigned: Assigned, names: tuple[str, ...]) -> Iterator[Fault]:

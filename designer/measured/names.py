@@ -47,8 +47,8 @@ def standard_names(n_cables: int) -> frozenset[str]:
 
 def cable_of(name: str) -> int | None:
     """Return the number of the cable that a length or tension belongs to; None for others."""
-    found = re.fullmatch(r"length_([0-9]{1,9})_m|tension_([0-9]{1,9})_N", name)
-    return None if found is None else int(found[1] or found[2])
+    match = re.fullmatch(r"length_([0-9]{1,9})_m|tension_([0-9]{1,9})_N", name)
+    return None if match is None else int(match[1] or match[2])
 
 
 def is_rotation(name: str) -> bool:
@@ -83,8 +83,8 @@ def column_hint(name: str) -> str:
     """Return a hint at the column of ours whose name is most like this one."""
     readings = (*length_names(64), *tension_names(64))
     common_euler = (
-        f"euler_{way}_{axes}_{number}"
-        for way in ("intrinsic", "extrinsic")
+        f"euler_{sense}_{axes}_{number}"
+        for sense in ("intrinsic", "extrinsic")
         for axes in ("xyz", "zyx", "zxz", "zyz")
         for number in (1, 2, 3)
     )

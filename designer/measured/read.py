@@ -68,9 +68,9 @@ def read_measured(study: Study) -> Measured:
         measured = replace(measured, has_poses=False)
         _refuse_without_spare_readings(study.robot, measured, table)
         return measured
-    told = (*(effect.id for effect in study.effects), *measurements.unknown)
+    suspects = (*(effect.id for effect in study.effects), *measurements.unknown)
     effects = study.known_effects.effects
-    is_homed = not any(effect.shifts_lengths and effect.is_among(told) for effect in effects)
+    is_homed = not any(effect.shifts_lengths and effect.is_among(suspects) for effect in effects)
     _refuse(unit_faults(study.robot, measured, table.name, is_homed=is_homed))
     _refuse(sense_faults(study.robot, measured, table, is_homed=is_homed))
     return measured
@@ -97,12 +97,12 @@ def _table(study: Study, measurements: Measurements) -> LogTable:
     raise InputError([study.source.fault("measurements.file", problem, expected)])
 
 
-def _poses(found: Assigned, kept: BoolArray, *, is_point_mass: bool) -> Poses:
-    position = _stacked(found, POSITION, kept)
+def _poses(assigned: Assigned, mask: BoolArray, *, is_point_mass: bool) -> Poses:
+    position = _stacked(assigned, POSITION, mask)
     if is_point_mass:
         return Poses.at(position)
-    values = _stacked(found, found.rotation, kept)
-    return Poses(frozen_array(position), frozen_array(orientation(found.rotation, values)))
+    values = _stacked(assigned, assigned.rotation, mask)
+    return Poses(frozen_array(position), frozen_array(orientation(assigned.rotation, values)))
 
 
 def _stacked(assigned: Assigned, names: tuple[str, ...], mask: BoolArray) -> FloatArray:
@@ -117,12 +117,14 @@ def _refuse_without_spare_readings(robot: Robot, measured: Measured, table: LogT
     if not robot.has_enough_cables:
         problem = "poses of a platform with fewer cables than degrees of freedom cannot be told"
         raise InputError([Fault(table.name, None, "", problem, "measured poses")])
-    most = int(measured.n_readings.max())
-    if most <= robot.n_cables:
+    n_readings = int(measured.n_readings.max())
+    if n_readings <= robot.n_cables:
         spare = robot.n_cables - robot.degrees_of_freedom
         unknown = f"{robot.degrees_of_freedom} of the pose"
         unknown += f" and {spare} of internal forces" if spare else ""
-        problem = f"rows have at most {most} readings, for {robot.n_cables} unknowns: {unknown}"
+        problem = (
+            f"rows have at most {n_readings} readings, for {robot.n_cables} unknowns: {unknown}"
+        )
         expected = f"more than {robot.n_cables}, so lengths and tensions; or measured poses"
         raise InputError([Fault(table.name, None, "", problem, expected)])
 
@@ -131,25 +133,25 @@ def _measured(
     assigned: Assigned, rows: Rows, poses: Poses, n_cables: int, *, settled: bool
 ) -> Measured:
     notes = [*assigned.notes, *rows.notes]
-    kept = rows.kept
+    mask = rows.kept
     lengths, tensions = (names(n_cables) for names in (length_names, tension_names))
     notes += [
         f"{column.name} has no reading"
         for column in assigned.present(lengths + tensions)
-        if np.isnan(column.values[kept]).all()
+        if np.isnan(column.values[mask]).all()
     ]
-    row_numbers = np.flatnonzero(kept).astype(np.int64) + 1
+    row_numbers = np.flatnonzero(mask).astype(np.int64) + 1
     row_numbers.setflags(write=False)
-    time = time_s(assigned, kept, notes)
+    time = time_s(assigned, mask, notes)
     return Measured(
         poses=poses,
-        length_m=frozen_array(_stacked(assigned, lengths, kept)),
-        tension_N=frozen_array(_stacked(assigned, tensions, kept)),
+        length_m=frozen_array(_stacked(assigned, lengths, mask)),
+        tension_N=frozen_array(_stacked(assigned, tensions, mask)),
         settled=settled,
         time_s=time,
-        temperature_C=temperature_C(assigned, kept, time, notes),
-        wind_m_per_s=wind_m_per_s(assigned, kept, time, notes),
-        covariates=covariates(assigned, kept, notes),
+        temperature_C=temperature_C(assigned, mask, time, notes),
+        wind_m_per_s=wind_m_per_s(assigned, mask, time, notes),
+        covariates=covariates(assigned, mask, notes),
         row_numbers=row_numbers,
         notes=tuple(notes),
         thinned=rows.thinned,
@@ -173,8 +175,8 @@ def orientation(columns: tuple[str, ...], values: FloatArray) -> FloatArray:
     elif columns == QUATERNION:
         rotation = Rotation.from_quat(np.roll(values, -1, axis=1))  # SciPy has w last
     else:
-        _, way, axes, _ = columns[0].split("_")
-        rotation = Rotation.from_euler(axes.upper() if way == "intrinsic" else axes, values)
+        _, sense, axes, _ = columns[0].split("_")
+        rotation = Rotation.from_euler(axes.upper() if sense == "intrinsic" else axes, values)
     return np.asarray(rotation.as_matrix(), dtype=np.float64)
 
 

@@ -62,8 +62,8 @@ def is_numeric(column: RawColumn) -> bool:
 
 def cell_faults(assigned: Assigned) -> list[Fault]:
     """Return what is wrong in single cells: texts and numbers beyond all bounds."""
-    others = [("", column) for column in assigned.covariates.values() if is_numeric(column)]
-    columns = [*assigned.ours.items(), *others]
+    numeric = [("", column) for column in assigned.covariates.values() if is_numeric(column)]
+    columns = [*assigned.ours.items(), *numeric]
     faults: list[Fault] = []
     total = 0
     for name, column in columns:
@@ -79,7 +79,7 @@ def cell_faults(assigned: Assigned) -> list[Fault]:
             problem = f"has the value {value:g}"
             faults.append(assigned.table.fault(int(row), column.name, problem, expected))
     wild = assigned.table.first_few(faults, total, "values out of all bounds")
-    return [*_text_faults(assigned, [one for _, one in columns]), *wild]
+    return [*_text_faults(assigned, [column for _, column in columns]), *wild]
 
 
 def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
@@ -98,21 +98,21 @@ def usable_rows(assigned: Assigned, n_cables: int, *, settled: bool) -> Rows:
     has_reading = np.ones_like(has_pose)
     if readings := assigned.present(length_names(n_cables) + tension_names(n_cables)):
         has_reading = ~np.all([np.isnan(column.values) for column in readings], axis=0)
-    kept = has_pose & has_reading
+    is_usable = has_pose & has_reading
     notes = [
-        f"{_row_list(np.flatnonzero(left_out) + 1)} without {what} left out"
-        for left_out, what in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
+        f"{_row_list(np.flatnonzero(left_out) + 1)} without {lack} left out"
+        for left_out, lack in ((~has_pose, "a pose"), (has_pose & ~has_reading, "any reading"))
         if left_out.any()
     ]
     if time := assigned.ours.get(TIME_NAME):
-        faults += _time_faults(assigned.table, time, kept, settled=settled)
-    if kept.sum() < FEWEST_ROWS:
+        faults += _time_faults(assigned.table, time, is_usable, settled=settled)
+    if is_usable.sum() < FEWEST_ROWS:
         total = assigned.table.n_rows
-        problem = f"{kept.sum()} of {total} rows have a pose and a reading"
+        problem = f"{is_usable.sum()} of {total} rows have a pose and a reading"
         problem = problem if total else "there are no rows"
         expected = f"at least {FEWEST_ROWS} rows"
         faults.append(Fault(assigned.table.name, None, "", problem, expected))
-    return Rows(kept, faults, notes)
+    return Rows(is_usable, faults, notes)
 
 
 def thinned(rows: Rows, *, settled: bool) -> Rows:
@@ -121,19 +121,19 @@ def thinned(rows: Rows, *, settled: bool) -> Rows:
     Samples of a motion: evenly apart. Poses at rest: runs of neighbours, one somewhere in each of
     equal stretches, so that no programme that is driven again and again hides the rest of it.
     """
-    where = np.flatnonzero(rows.kept)
-    every = -(-len(where) // MOST_ROWS)
+    usable = np.flatnonzero(rows.kept)
+    every = -(-len(usable) // MOST_ROWS)
     if every == 1:
         return rows
     run = _RUN if settled else 1
-    stretch, turn = np.divmod(np.arange(len(where)) // run, every)
+    stretch, turn = np.divmod(np.arange(len(usable)) // run, every)
     chosen = np.random.default_rng(0).integers(every if settled else 1, size=stretch[-1] + 1)
-    used = where[turn == chosen[stretch]]
-    kept = np.zeros_like(rows.kept)
-    kept[used] = True
+    used = usable[turn == chosen[stretch]]
+    mask = np.zeros_like(rows.kept)
+    mask[used] = True
     which = f"{run} rows of each {run * every}" if settled else f"one row of each {every}"
-    text = f"{len(used)} of {len(where)} rows are used, {which}: so many tell as much"
-    return replace(rows, kept=kept, notes=[*rows.notes, text], thinned=text)
+    text = f"{len(used)} of {len(usable)} rows are used, {which}: so many tell as much"
+    return replace(rows, kept=mask, notes=[*rows.notes, text], thinned=text)
 
 
 def _text_faults(assigned: Assigned, columns: list[RawColumn]) -> list[Fault]:
@@ -161,7 +161,7 @@ def _with_pose(assigned: Assigned) -> tuple[BoolArray, list[Fault]]:
     table = assigned.table
     columns = assigned.present((*POSITION, *assigned.rotation)) if table.n_rows else []
     empty = [column for column in columns if column.is_empty]
-    faults = [table.fault(None, one.name, "is empty", "a pose in each row") for one in empty]
+    faults = [table.fault(None, column.name, "is empty", "a pose in each row") for column in empty]
     filled = [column for column in columns if not column.is_empty and not column.n_texts]
     if not filled:
         return np.ones(table.n_rows, dtype=np.bool_), faults

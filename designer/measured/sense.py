@@ -77,8 +77,8 @@ def unit_faults(robot: Robot, measured: Measured, file: str, *, is_homed: bool) 
         return [Fault(file, 1, ", ".join(POSITION), problem, _METRES)]
     names, units = length_names(len(ratios)), [ratio.unit for ratio in ratios]
     faults = []
-    for unit in dict.fromkeys(one for one in units if one):
-        cables = [k for k, one in enumerate(units) if one == unit]
+    for unit in dict.fromkeys(unit for unit in units if unit):
+        cables = [k for k, own_unit in enumerate(units) if own_unit == unit]
         problem = (
             f"lengths change about {_about([ratios[k].spread for k in cables])} times as much as "
             f"the poses ask for, as if they were in {unit}"

@@ -38,10 +38,10 @@ def wind_m_per_s(
             wind[:, axis] = present[name].values[mask]
         else:
             notes.append(f"the wind is taken as horizontal: there is no {name}")
-    told = ", ".join(column.name for column in present.values())
+    names = ", ".join(column.name for column in present.values())
     is_empty = np.isnan(wind).all(axis=0).any()
     if is_empty or all(_is_constant(component) for component in wind.T):
-        notes.append(f"{told} left out, {'one is empty' if is_empty else 'the same in all rows'}")
+        notes.append(f"{names} left out, {'one is empty' if is_empty else 'the same in all rows'}")
         return None
     filled = [_filled(wind[:, axis], time, name, notes) for axis, name in enumerate(WIND)]
     return frozen_array(np.stack(filled, axis=1))

@@ -86,15 +86,17 @@ class LogTable:
     def fault(self, row: int | None, column: str, problem: str, expected: str = "") -> Fault:
         """Return a fault in a row, counted from 0; in the head for None."""
         line = 1 if row is None else int(self.lines[row])
-        where = "" if row is None else f"row {row + 1} "
-        return Fault(self.name, line, column, f"{where}{problem}", expected)
+        place = "" if row is None else f"row {row + 1} "
+        return Fault(self.name, line, column, f"{place}{problem}", expected)
 
     def first_few(self, faults: Iterable[Fault], total: int, kind: str) -> list[Fault]:
         """Return the first of ``total`` faults of one kind, and one that counts the others."""
-        told = list(islice(faults, MOST_ALIKE))
-        if total > len(told):
-            told.append(Fault(self.name, None, "", f"and {total - len(told)} more {kind}"))
-        return told
+        shortlist = list(islice(faults, MOST_ALIKE))
+        if total > len(shortlist):
+            shortlist.append(
+                Fault(self.name, None, "", f"and {total - len(shortlist)} more {kind}")
+            )
+        return shortlist
 
 
 def read_table(file: BinaryIO, name: str) -> LogTable:
@@ -117,11 +119,13 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
         lines += [line for line, _ in block]
         widths = enumerate((len(cells) for _, cells in block), start=first_row)
         misfits += [(row, width) for row, width in widths if width != len(names)]
-        nothing = [""] * len(names)  # a row of another width stays as one without anything in it
-        kept = (cells if len(cells) == len(names) else nothing for _, cells in block)
-        for column, filled in zip(columns, zip(*kept, strict=True), strict=True):
+        blanks = [""] * len(names)  # a row of another width stays as one without anything in it
+        whole_rows = (cells if len(cells) == len(names) else blanks for _, cells in block)
+        for column, filled in zip(columns, zip(*whole_rows, strict=True), strict=True):
             column.add(filled, first_row)
-    filled_columns = tuple(one.column(own) for own, one in zip(names, columns, strict=True))
+    filled_columns = tuple(
+        column.column(title) for title, column in zip(names, columns, strict=True)
+    )
     table = LogTable(name, filled_columns, np.array(lines, dtype=np.int64), (), digest.hexdigest())
     expected = f"{len(names)}, as the first line has names"
     of_another_width = (
@@ -131,11 +135,11 @@ def read_table(file: BinaryIO, name: str) -> LogTable:
     faults = table.first_few(of_another_width, len(misfits), "rows of another width")
     places: dict[str, int] = {}
     repeated = []
-    for place, own in enumerate(names, start=1):
-        if own and own in places:
-            problem = f"columns {places[own]} and {place} have the same name"
-            repeated.append(table.fault(None, own, problem, "a name for each column"))
-        places.setdefault(own, place)
+    for place, heading in enumerate(names, start=1):
+        if heading and heading in places:
+            problem = f"columns {places[heading]} and {place} have the same name"
+            repeated.append(table.fault(None, heading, problem, "a name for each column"))
+        places.setdefault(heading, place)
     return replace(table, faults=(*repeated, *faults))
 
 

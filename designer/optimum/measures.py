@@ -72,7 +72,7 @@ class Quick:
             return workspace
         border, rng = workspace.region.border(), np.random.default_rng(workspace.seed)
         quarter = 1 + workspace.samples // 4
-        counts = (1 + quarter // max(len(each), 1) for each in (border.edges_m, border.faces_m))
+        counts = (1 + quarter // max(len(parts), 1) for parts in (border.edges_m, border.faces_m))
         points = [border.landmarks_m(), border.samples_m(rng, *counts)]
         points.append(workspace.region.inside_m(rng, 2 * quarter))
         return replace(workspace, region=PointList(frozen_array(np.concatenate(points))))
@@ -141,7 +141,7 @@ class Quick:
         decides: Objective = next(
             (o for o in self.selection.objectives if o != "stiffness"), "mass"
         )
-        ranked = sorted(holding, key=lambda one: one.figures.burden(decides))
+        ranked = sorted(holding, key=lambda candidate: candidate.figures.burden(decides))
         criteria = criteria_of(self._built.robot, self.workspace, self.selection)
         screen = Screen(criteria, self.selection, SILENT)
         for candidate in ranked:
@@ -158,16 +158,16 @@ class Quick:
 
     def _tension_N(self, candidate: Candidate) -> float:
         """Return what a rope meets in the case that governs, about its worst sample as well."""
-        found = governing(candidate.cases)
-        one, hangs_below = found.loaded, self.evenly.hangs_below
-        if one.lost_cable is not None:
-            return found.verification.max_tension_N
-        demand = rope_demand(one.robot, one.cable, hangs_below, seeks_better=False)
+        case = governing(candidate.cases)
+        loaded, hangs_below = case.loaded, self.evenly.hangs_below
+        if loaded.lost_cable is not None:
+            return case.verification.max_tension_N
+        demand = rope_demand(loaded.robot, loaded.cable, hangs_below, seeks_better=False)
         worst = climbed(
-            self.evenly.of_case(found.case).space,
+            self.evenly.of_case(case.case).space,
             lambda places: demand(places)[:, 0],
-            found.verification.worst_place,
-            found.verification.max_tension_N,
+            case.verification.worst_place,
+            case.verification.max_tension_N,
         )
         return worst.demand
 
@@ -187,7 +187,9 @@ class Quick:
         loads = CaseLoads(self.workspace, (Loaded(STATIC, bare, *bare),))
         criteria = criteria_of(built.robot, self.workspace, None)
         unmet = [
-            one.requirement for one in evaluate([loads], criteria) if not one.requirement.holds
+            evaluated.requirement
+            for evaluated in evaluate([loads], criteria)
+            if not evaluated.requirement.holds
         ]
         if unmet:
             raise _violated(unmet)
@@ -210,9 +212,9 @@ class Quick:
     def usable_volume_m3(self) -> float:
         """What the rope serves that serves most [m³]."""
         cables = [candidate.cable for candidate in self._candidates]
-        met = verify_sizes(self._built.robot, self.evenly, cables, gives_up=False)
+        verifications = verify_sizes(self._built.robot, self.evenly, cables, gives_up=False)
         volume = self.evenly.region.volume_m3 or 0.0
-        return volume * max(one.served for one in met)
+        return volume * max(verification.served for verification in verifications)
 
 
 def climbed(space: Space, demand: Demand, place: FloatArray, value: float) -> Worst:
@@ -223,21 +225,23 @@ def climbed(space: Space, demand: Demand, place: FloatArray, value: float) -> Wo
     rng, size = np.random.default_rng(0), np.ptp(space.bounds, axis=0)
     for reach in _REACHES if not space.is_discrete else ():
         cloud = space.nearest(place + reach * size * rng.uniform(-1.0, 1.0, (_CLOUD, len(size))))
-        asked = demand(cloud)
-        at = int(np.argmax(asked))
-        if asked[at] > value:
-            place, value = cloud[at], float(asked[at])
+        demands = demand(cloud)
+        at = int(np.argmax(demands))
+        if demands[at] > value:
+            place, value = cloud[at], float(demands[at])
     return Worst(place, value)
 
 
-def _why_no_rope(found: list[Candidate]) -> tuple[float, str]:
+def _why_no_rope(candidates: list[Candidate]) -> tuple[float, str]:
     """Return how far the ropes are from holding, and why none does."""
-    if not found:
+    if not candidates:
         return 2.0, "no rope can be tried"
-    least = min(one.verification.utilisation for one in found)
+    least = min(candidate.verification.utilisation for candidate in candidates)
     if np.isfinite(least):
         return 1.0 - 1.0 / least, "no rope is strong enough"
-    shares = [one.sampled.not_held / max(one.sampled.samples, 1) for one in found]
+    shares = [
+        candidate.sampled.not_held / max(candidate.sampled.samples, 1) for candidate in candidates
+    ]
     return 1.0 + min(*shares, 1.0), "no rope holds in all of the workspace"
 
 
@@ -268,8 +272,10 @@ def _nearest_to_holding(screen: Screen, strong: Sequence[Candidate]) -> NotHeldE
     ]
     if not rejected:
         return NotHeldError(_HARDLY, "no rope is strong enough")
-    nearest, by = min(rejected, key=lambda each: _shortfall(each[1]))
-    return _violated([by, *(one for one in screen.evaluated(nearest) if not one.holds)])
+    nearest, by = min(rejected, key=lambda rejection: _shortfall(rejection[1]))
+    return _violated(
+        [by, *(requirement for requirement in screen.evaluated(nearest) if not requirement.holds)]
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -308,37 +314,37 @@ class Measure:
         KeyError
             If results never have it, see `designer.sweep.point.value_at`.
         """
-        found: Any = (self.of_result or (lambda one: value_at(dict(one), self.path)))(result)
-        return float(found) if isinstance(found, int | float) else None
+        value: Any = (self.of_result or (lambda values: value_at(dict(values), self.path)))(result)
+        return float(value) if isinstance(value, int | float) else None
 
 
 def _usable(result: Mapping[str, Any]) -> float | None:
     sizes = (result.get("selection") or {}).get("usable", [])
-    return max((one["volume_m3"] for one in sizes if one["volume_m3"] is not None), default=None)
+    return max((size["volume_m3"] for size in sizes if size["volume_m3"] is not None), default=None)
 
 
 MEASURES: Mapping[str, Measure] = {
-    one.name: one
-    for one in (
+    measure.name: measure
+    for measure in (
         Measure(
             "rope_mass", "mass of all ropes", "answer.total_mass_kg", MASS,
-            quick=lambda met: met.rope.figures.mass_kg,
+            quick=lambda quick: quick.rope.figures.mass_kg,
         ),
         Measure(
             "rope_cost", "price of all ropes", "selection.chosen.cost", NUMBER,
-            quick=lambda met: met.rope.figures.cost,
+            quick=lambda quick: quick.rope.figures.cost,
         ),
         Measure(
             "max_tension", "largest tension", "selection.chosen.max_tension_N", FORCE,
-            quick=lambda met: met.max_tension_N,
+            quick=lambda quick: quick.max_tension_N,
         ),
         Measure(
             "diameter", "needed diameter", "workspace.sagging.diameter_m", LENGTH,
-            quick=lambda met: met.diameter_m,
+            quick=lambda quick: quick.diameter_m,
         ),
         Measure(
             "usable_volume", "usable volume", "selection.usable", VOLUME, -1,
-            quick=lambda met: met.usable_volume_m3, of_result=_usable,
+            quick=lambda quick: quick.usable_volume_m3, of_result=_usable,
         ),
     )
 }  # fmt: skip

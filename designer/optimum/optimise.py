@@ -75,7 +75,7 @@ def _verified(
     examiner: Examiner,
     catalogue: Catalogue,
     searched: Searched,
-    given: Analysis,
+    original: Analysis,
     reporter: Reporter,
 ) -> Optimum:
     """Return the best design that holds in full, or the one that looked best where none does."""
@@ -84,13 +84,15 @@ def _verified(
     if not ranked:
         raise DesignerError("the search was ended before it had tried a design")
     holding = [trial for trial in ranked if trial.holds]
-    most = FEW_VERIFIED if searched.ended in ("asked", "time") else MOST_VERIFIED
-    with reporter.task("verification", most) as advance:
-        verifier = Verifier(plan, lambda trial: _in_full(plan, catalogue, trial), advance, most)
+    n_verified = FEW_VERIFIED if searched.ended in ("asked", "time") else MOST_VERIFIED
+    with reporter.task("verification", n_verified) as advance:
+        verifier = Verifier(
+            plan, lambda trial: _in_full(plan, catalogue, trial), advance, n_verified
+        )
         verifier.verify(holding, examiner.trial)
     best = verifier.best or ranked[0]
     return replace(
-        _analysed(plan, catalogue, searched, given, best, reporter),
+        _analysed(plan, catalogue, searched, original, best, reporter),
         rejected=tuple(trial for trial in verifier.failed if trial is not best),
         unverified=len(verifier.unverified(holding)),
         profiles=_profiles(examiner, best),
@@ -100,9 +102,9 @@ def _verified(
 def _ranked(plan: Plan, searched: Searched) -> list[Trial]:
     """Return the designs within the bounds, each once, the best first."""
     sign = plan.objective.sign
-    tried = {t.values: t for t in searched.trials if t.values and plan.is_within(t.values)}
+    designs = {t.values: t for t in searched.trials if t.values and plan.is_within(t.values)}
     return sorted(
-        tried.values(), key=lambda t: (t.violation, sign * t.value if t.holds else math.inf)
+        designs.values(), key=lambda t: (t.violation, sign * t.value if t.holds else math.inf)
     )
 
 
@@ -118,17 +120,19 @@ def _analysed(
     plan: Plan,
     catalogue: Catalogue,
     searched: Searched,
-    given: Analysis,
+    original: Analysis,
     trial: Trial,
     reporter: Reporter,
 ) -> Optimum:
     analysis = analyse(_study_of(plan, trial), catalogue, reporter=reporter)
-    before, after = given.to_dict(), analysis.to_dict()
+    before, after = original.to_dict(), analysis.to_dict()
     values = plan.objective.value(before), plan.objective.value(after)
     breaches = tuple(limit for limit in plan.limits if limit.is_broken_by(after))
     comparison = compare(before, after)
     text = optimised_text(plan, trial.values)
-    return Optimum(plan, searched, trial, given, analysis, *values, breaches, (), comparison, text)
+    return Optimum(
+        plan, searched, trial, original, analysis, *values, breaches, (), comparison, text
+    )
 
 
 def _study_of(plan: Plan, trial: Trial) -> Study:
@@ -150,10 +154,10 @@ def optimised_text(plan: Plan, values: Values) -> str:
 
 def _profiles(examiner: Examiner, best: Trial) -> tuple[Profile, ...]:
     """Return what each variable does by itself about the optimum."""
-    found = []
+    profiles = []
     for k, variable in enumerate(examiner.plan.variables[:_MOST_PROFILES]):
         values = {variable.at(float(x)) for x in np.linspace(0.0, 1.0, LINE)} | {best.values[k]}
         line = tuple(sorted(values))
         trials = [examiner.trial((*best.values[:k], x, *best.values[k + 1 :])) for x in line]
-        found.append(Profile(line, tuple(t.value if t.holds else math.nan for t in trials)))
-    return tuple(found)
+        profiles.append(Profile(line, tuple(t.value if t.holds else math.nan for t in trials)))
+    return tuple(profiles)

@@ -88,11 +88,11 @@ class Variable:
         Empty where the variable is of the robot, or its value that of the study.
         """
         senses = {tie: demand_sense(tie.keys) for tie in self.ties}
-        asked = {tie: sense for tie, sense in senses.items() if sense is not None}
-        if not asked or value == self.given:
+        demands = {tie: sense for tie, sense in senses.items() if sense is not None}
+        if not demands or value == self.given:
             return ""
         change = math.nan if self.given is None else value - self.given
-        changes = {tie.slope * sense * change for tie, sense in asked.items()}
+        changes = {tie.slope * sense * change for tie, sense in demands.items()}
         if all(x > 0.0 for x in changes):
             return "more"
         return "less" if all(x < 0.0 for x in changes) else "other"

@@ -78,27 +78,27 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
     study_path = path.parent / section.study
     raw = read_bytes(study_path, str(study_path))
     text = decode(raw, str(study_path))
-    given = document_of(raw, str(study_path))
-    study = Base(given, (), with_plugins).study()
-    variables = variables_of(document, given, faults)
+    original = document_of(raw, str(study_path))
+    study = Base(original, (), with_plugins).study()
+    variables = variables_of(document, original, faults)
     moves_anchors = any("anchors" in tie.keys for variable in variables for tie in variable.ties)
-    fixed = _with_fixed_regions(text, given, study) if moves_anchors else text
+    fixed = _with_fixed_regions(text, original, study) if moves_anchors else text
     if section.region == "follows":
         fixed = text
     objective = _objective(document, section.objective, faults)
     limits = _limits(document, section.constraints, faults)
-    measures = [one for one in (objective, *(limit.measure for limit in limits)) if one]
-    kept = tuple(measure.path for measure in measures)
+    measures = [measure for measure in (objective, *(limit.measure for limit in limits)) if measure]
+    keep = tuple(measure.path for measure in measures)
     if study.workspace is not None:  # all that the study asks for constrains the search
-        kept += ("answer",)
-    base = Base(document_of(fixed.encode(), str(study_path)), kept, with_plugins)
+        keep += ("answer",)
+    base = Base(document_of(fixed.encode(), str(study_path)), keep, with_plugins)
     faults += _faults_of_measures(document, study, measures, base)
     if faults or objective is None:
         raise InputError(faults)
     evaluations = _FIRST_EVALUATIONS + _EVALUATIONS_EACH * len(variables)
     return Plan(
         name=path.stem,
-        document=given,
+        document=original,
         text=fixed,
         base=base,
         region_stays=fixed != text,
@@ -138,24 +138,26 @@ def _objective(document: Document, value: Any, faults: list[Fault]) -> Measure |
     if isinstance(value, str) and value in MEASURES:
         return MEASURES[value]
     if isinstance(value, dict) and len(value) == 1:
-        ((way, path),) = value.items()
-        if way in ("minimise", "maximise") and isinstance(path, str):
-            return measure_at(path, 1 if way == "minimise" else -1)
+        ((goal, path),) = value.items()
+        if goal in ("minimise", "maximise") and isinstance(path, str):
+            return measure_at(path, 1 if goal == "minimise" else -1)
     name = value if isinstance(value, str) else ""
     expected = _OBJECTIVE + did_you_mean(name, MEASURES)
     faults.append(document.fault(("objective",), f"{describe(value)} is not known", expected))
     return None
 
 
-def _limits(document: Document, given: Mapping[str, Any], faults: list[Fault]) -> tuple[Limit, ...]:
-    found = []
-    for name, one in given.items():
+def _limits(
+    document: Document, constraints: Mapping[str, Any], faults: list[Fault]
+) -> tuple[Limit, ...]:
+    limits = []
+    for name, constraint in constraints.items():
         place: tuple[Key, ...] = ("constraints", name)
         measure = MEASURES.get(name) or measure_at(name)
         usual = "at_most" if measure.sign > 0 else "at_least"
-        is_told = isinstance(one, dict) and len(one) == 1
-        ((way, value),) = one.items() if is_told else ((usual, one),)
-        if way not in ("at_most", "at_least") or isinstance(value, dict | list):
+        is_told = isinstance(constraint, dict) and len(constraint) == 1
+        ((sense, value),) = constraint.items() if is_told else ((usual, constraint),)
+        if sense not in ("at_most", "at_least") or isinstance(value, dict | list):
             faults.append(document.fault(place, f"{describe(value)} is no limit", _LIMIT))
             continue
         try:
@@ -164,9 +166,9 @@ def _limits(document: Document, given: Mapping[str, Any], faults: list[Fault]) -
         except QuantityError as error:
             faults.append(document.fault(place, error.problem, error.expected))
             continue
-        most, least = (limit, -math.inf) if way == "at_most" else (math.inf, limit)
-        found.append(Limit(measure, most, least))
-    return tuple(found)
+        upper, least = (limit, -math.inf) if sense == "at_most" else (math.inf, limit)
+        limits.append(Limit(measure, upper, least))
+    return tuple(limits)
 
 
 def _faults_of_measures(

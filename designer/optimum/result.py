@@ -198,7 +198,7 @@ class Optimum:
                 "samples": plan.samples,
                 "region_stays": plan.region_stays,
                 "not_held": [{"reason": why, "designs": count} for why, count in self.reasons],
-                "rejected": [list(one.values) for one in self.rejected],
+                "rejected": [list(trial.values) for trial in self.rejected],
                 "unverified": self.unverified,
             },
             "convergence": [

@@ -67,8 +67,8 @@ class Searched:
 
     def best_of(self, start: int | None, sign: int) -> Trial | None:
         """Return the best design that holds of a start, or of all; None where none does."""
-        some = [t for t in self.trials if t.holds and start in (None, t.start)]
-        return min(some, key=lambda trial: sign * trial.value, default=None)
+        holding = [t for t in self.trials if t.holds and start in (None, t.start)]
+        return min(holding, key=lambda trial: sign * trial.value, default=None)
 
 
 def search(examiner: Examiner, advance: Advance, stop: Stop) -> Searched:
@@ -122,19 +122,21 @@ class _Run:
         n = len(self._plan.variables)
         size = min(max(_EACH * n, _LEAST), _MOST, max(self._left // 3, 5))
         rng, spread = np.random.default_rng(seed), np.full(n, np.nan)
-        first = qmc.LatinHypercube(n, rng=rng).random(size)  # one design in each part of a range
+        population = qmc.LatinHypercube(n, rng=rng).random(
+            size
+        )  # one design in each part of a range
 
         def generation(intermediate_result: object) -> None:
             spread[:] = np.std(getattr(intermediate_result, "population"), axis=0)  # noqa: B009
 
         self.spreads.append(spread)
-        given = self._plan.given if self._start == 1 else None
+        original = self._plan.given if self._start == 1 else None
         try:
             differential_evolution(
                 self._rate_all,
                 [(0.0, 1.0)] * n,
-                init=first,
-                x0=None if given is None else self._shares(given),
+                init=population,
+                x0=None if original is None else self._shares(original),
                 maxiter=max(self._left, 1),
                 tol=_SETTLED,
                 rng=rng,
@@ -185,12 +187,12 @@ class _Run:
 
     def _shares(self, values: Values) -> FloatArray:
         pairs = zip(self._plan.variables, values, strict=True)
-        return np.clip([one.share(value) for one, value in pairs], 0.0, 1.0)
+        return np.clip([variable.share(value) for variable, value in pairs], 0.0, 1.0)
 
     def _rate_all(self, shares: FloatArray) -> FloatArray:
         """Rate designs at shares of the ranges (n_variables, n_designs); less is better."""
         self._round += 1
-        return np.array([self._rate(self._plan.values(one)) for one in shares.T])
+        return np.array([self._rate(self._plan.values(column)) for column in shares.T])
 
     def _rate(self, values: Values) -> float:
         if values not in self._known:

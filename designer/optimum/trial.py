@@ -74,7 +74,7 @@ class Examiner:
         require_enough_cables(study)
         figures = _Figures(self, study)
         value = figures.of(self.plan.objective)
-        breaches = [(one.excess(figures.of(one.measure)), one) for one in self.plan.limits]
+        breaches = [(limit.excess(figures.of(limit.measure)), limit) for limit in self.plan.limits]
         excess, limit = max(breaches, key=lambda breach: breach[0], default=(0.0, None))
         if excess == 0.0 or limit is None:
             return value, 0.0, ""
@@ -83,8 +83,8 @@ class Examiner:
 
 def broken(limit: Limit) -> str:
     """Return that a limit is broken, for the reader of a report."""
-    what = f"{limit.value:.6g} {limit.measure.dimension.unit}".rstrip()
-    return f"{limit.measure.title} is not {limit.words} {what}"
+    bound = f"{limit.value:.6g} {limit.measure.dimension.unit}".rstrip()
+    return f"{limit.measure.title} is not {limit.words} {bound}"
 
 
 class _Figures:
@@ -116,8 +116,8 @@ class _Figures:
         if self._result is None:
             study, workspace = self._study, self._study.workspace
             if workspace is not None:
-                few = min(self._plan.samples, workspace.samples)
-                study = replace(study, workspace=replace(workspace, samples=few))
+                samples = min(self._plan.samples, workspace.samples)
+                study = replace(study, workspace=replace(workspace, samples=samples))
             self._result = self._plan.base.result(study)
         reason = why_negative(self._result)
         if reason:

@@ -27,7 +27,7 @@ def variables_of(document: Document, study: Document, faults: list[Fault]) -> tu
     root = document.root.child("variables")
     assert root is not None and isinstance(root.content, dict)
     variables: list[Variable] = []
-    taken: dict[str, str] = {}
+    owners: dict[str, str] = {}
     for name, node in root.content.items():
         try:
             variable = _variable(name, node, study.root)
@@ -36,10 +36,10 @@ def variables_of(document: Document, study: Document, faults: list[Fault]) -> tu
             faults.append(document.fault(("variables", name, *error.keys), *error.args))
             continue
         for field in variable.fields:
-            if field in taken:
-                problem = f"{field} is set by '{taken[field]}' already"
+            if field in owners:
+                problem = f"{field} is set by '{owners[field]}' already"
                 faults.append(document.fault(("variables", name), problem, "each field once"))
-            taken[field] = name
+            owners[field] = name
         variables.append(variable)
     return tuple(variables)
 
@@ -60,10 +60,10 @@ def _variable(name: str, node: Node, study: Node) -> Variable:
     if unknown:
         raise _WrongError(f"unknown field '{unknown[0]}'", "one of fields, bounds, offset")
     bounds, offset = node.child("bounds"), node.child("offset")
-    given = bounds or offset
-    if given is None or (bounds and offset):
+    interval = bounds or offset
+    if interval is None or (bounds and offset):
         raise _WrongError("has not one of bounds and offset")
-    low, high, unit = _ends(given)
+    low, high, unit = _ends(interval)
     factors = _factors(name, node.child("fields"))
     return _tied(name, factors, low, high, unit, study, is_offset=offset is not None)
 
@@ -71,15 +71,15 @@ def _variable(name: str, node: Node, study: Node) -> Variable:
 def _ends(node: Node) -> tuple[float, float, str]:
     """Return both ends of a range, and their unit."""
     content = node.content if isinstance(node.content, tuple) else ()
-    ends = [part for part in (one.quantity() for one in content) if part is not None]
+    ends = [part for part in (child.quantity() for child in content) if part is not None]
     if len(content) != 2 or len(ends) != 2:
         raise _WrongError(f"{describe(node.data())} is no range")
-    (low, unit), (high, other) = ends
-    if unit != other:
-        raise _WrongError(f"its bounds are in '{unit}' and '{other}'", "both in one unit")
+    (low, unit), (high, high_unit) = ends
+    if unit != high_unit:
+        raise _WrongError(f"its bounds are in '{unit}' and '{high_unit}'", "both in one unit")
     if not low < high:
-        shown = f"{low:g} {unit}".rstrip(), f"{high:g} {unit}".rstrip()
-        raise _WrongError(f"the lower bound {shown[0]} is not below {shown[1]}", "[lower, upper]")
+        texts = f"{low:g} {unit}".rstrip(), f"{high:g} {unit}".rstrip()
+        raise _WrongError(f"the lower bound {texts[0]} is not below {texts[1]}", "[lower, upper]")
     return low, high, unit
 
 
@@ -127,12 +127,12 @@ def _tied(
             if is_offset:
                 values.append(0.0)
             elif written is not None:
-                value, own = written
-                in_unit = value if own == unit else _SI(value, own) / _SI(1.0, unit)
+                value, own_unit = written
+                in_unit = value if own_unit == unit else _SI(value, own_unit) / _SI(1.0, unit)
                 values.append(in_unit / factor)
-    same = len(values) == len(ties) and max(values) - min(values) <= 1e-9 * (high - low)
-    given = float(f"{values[0]:.10g}") if same else None
-    return Variable(name, tuple(ties), low, high, unit, given, is_offset)
+    agree = len(values) == len(ties) and max(values) - min(values) <= 1e-9 * (high - low)
+    initial = float(f"{values[0]:.10g}") if agree else None
+    return Variable(name, tuple(ties), low, high, unit, initial, is_offset)
 
 
 def _spread(keys: tuple[Key, ...], study: Node, field: str) -> list[tuple[Key, ...]]:
@@ -143,8 +143,8 @@ def _spread(keys: tuple[Key, ...], study: Node, field: str) -> list[tuple[Key, .
     node = study.at(keys[:at])
     if node is None or not isinstance(node.content, tuple):
         raise _WrongError(f"{field}: the study has no list there", "the path of a list before '*'")
-    each = ((*keys[:at], k, *keys[at + 1 :]) for k in range(len(node.content)))
-    return list(chain.from_iterable(_spread(one, study, field) for one in each))
+    paths = ((*keys[:at], k, *keys[at + 1 :]) for k in range(len(node.content)))
+    return list(chain.from_iterable(_spread(path, study, field) for path in paths))
 
 
 def _tie(
@@ -156,12 +156,12 @@ def _tie(
     is_offset: bool,
 ) -> Tie:
     """Return the tie of a field, which keeps the unit that the study has there where it can."""
-    own = unit if written is None else written[1]
-    scale = 1.0 if own == unit else _SI(1.0, unit)
+    own_unit = unit if written is None else written[1]
+    scale = 1.0 if own_unit == unit else _SI(1.0, unit)
     origin = written[0] if is_offset and written is not None else 0.0
-    if own not in (unit, ""):
-        return Tie(keys, _SI(origin, own), factor * scale, "")
-    return Tie(keys, origin, factor * scale, own)
+    if own_unit not in (unit, ""):
+        return Tie(keys, _SI(origin, own_unit), factor * scale, "")
+    return Tie(keys, origin, factor * scale, own_unit)
 
 
 def _SI(value: float, unit: str) -> float:
@@ -183,8 +183,8 @@ def _check_values(variable: Variable, study: Document) -> None:
     """Refuse a field that there is not, bounds that it cannot have by itself, and whole numbers."""
     # Within its bounds a variable takes any value, which a whole number cannot.
     between = variable.low + (variable.high - variable.low) / math.pi
-    each = (variable.low, variable.high, between)
-    for tie, value in ((tie, value) for tie in variable.ties for value in each):
+    values = (variable.low, variable.high, between)
+    for tie, value in ((tie, value) for tie in variable.ties for value in values):
         field = path_text(tie.keys)
         try:
             root = study.root.with_value(tie.keys, _in_bounds_unit(variable, tie, value))

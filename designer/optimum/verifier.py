@@ -105,8 +105,8 @@ class Verifier:
     def _distance(self, trial: Trial) -> float:
         """Return how far the nearest verified design is, over the ranges."""
         at = self._shares(trial.values)
-        each = (np.abs(self._shares(values) - at).max() for values in self.verified)
-        return min(map(float, each), default=math.inf)
+        distances = (np.abs(self._shares(values) - at).max() for values in self.verified)
+        return min(map(float, distances), default=math.inf)
 
     def _is_better(self, looks: float) -> bool:
         value = None if self.best is None else self.verified[self.best.values]

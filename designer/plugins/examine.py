@@ -69,15 +69,15 @@ def kept_folder() -> Path:
     return user_cache_path("cdpr-designer", appauthor=False) / "plugins"
 
 
-def _kept_or_new(asked: PluginQuestion) -> PluginAnswer:
-    name = sha256(f"{asked.entry.name} {asked.entry.value} {sys.prefix}".encode()).hexdigest()
+def _kept_or_new(request: PluginQuestion) -> PluginAnswer:
+    name = sha256(f"{request.entry.name} {request.entry.value} {sys.prefix}".encode()).hexdigest()
     path = kept_folder() / f"{name[:16]}.json"
-    state = _state(asked)
+    state = _state(request)
     with suppress(OSError, ValueError, TypeError, KeyError):
-        kept = json.loads(path.read_bytes())
-        if state and kept["state"] == state:
-            return _answer(kept["answer"])
-    answer = _from_process(asked)
+        cached = json.loads(path.read_bytes())
+        if state and cached["state"] == state:
+            return _answer(cached["answer"])
+    answer = _from_process(request)
     if state and answer.items and not answer.problems:
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -91,13 +91,13 @@ def _answer(plain: Mapping[str, Any]) -> PluginAnswer:
     return PluginAnswer(dict(plain["items"]), tuple(map(str, plain["problems"])))
 
 
-def _state(asked: PluginQuestion) -> str:
+def _state(request: PluginQuestion) -> str:
     """Return a digest of all that an answer depends on; empty where it cannot be told.
 
     A plugin that is installed to be edited keeps its version while its files change.
     """
     try:
-        spec = find_spec(asked.entry.module.partition(".")[0])  # imports nothing of the plugin
+        spec = find_spec(request.entry.module.partition(".")[0])  # imports nothing of the plugin
         assert spec is not None
         roots = spec.submodule_search_locations or [spec.origin or ""]
         files = [line for root in roots for line in _files(Path(root))]
@@ -105,7 +105,7 @@ def _state(asked: PluginQuestion) -> str:
         return ""
     if not 0 < len(files) <= _MOST_FILES:
         return ""
-    versions = (designer.__version__, platform.python_version(), asked.source, asked.label)
+    versions = (designer.__version__, platform.python_version(), request.source, request.label)
     return sha256(repr((versions, files)).encode()).hexdigest()
 
 
@@ -118,11 +118,11 @@ def _files(root: Path) -> Iterator[tuple[str, int, int]]:
             yield str(path), state.st_mtime_ns, state.st_size
 
 
-def _from_process(asked: PluginQuestion) -> PluginAnswer:
-    entry, wait_s = asked.entry, guard.LONGEST_WAIT_S
+def _from_process(request: PluginQuestion) -> PluginAnswer:
+    entry, wait_s = request.entry, guard.LONGEST_WAIT_S
     program = [sys.executable, "-P", "-c", _START, json.dumps(sys.path)]
     process = subprocess.Popen(
-        [*program, entry.name, entry.value, asked.label, str(wait_s)],
+        [*program, entry.name, entry.value, request.label, str(wait_s)],
         # Pydantic's own plugins would be looked for, where unreadable metadata end all.
         env={**os.environ, "PYDANTIC_DISABLE_PLUGINS": "__all__"},
         stdin=subprocess.DEVNULL,
@@ -152,4 +152,4 @@ def _from_process(asked: PluginQuestion) -> PluginAnswer:
             doing, limit_s = message["doing"], wait_s + _GRACE_S
     timeout = f"TimeoutError: no answer within {wait_s:g} s"
     reason = timeout if late.is_set() else "it ended its process"
-    return PluginAnswer(problems=(f"{asked.label} {doing}: {reason}: left out",))
+    return PluginAnswer(problems=(f"{request.label} {doing}: {reason}: left out",))

@@ -71,28 +71,28 @@ def find_plugins(with_plugins: bool = True) -> Plugins:
     Those of others are loaded, and asked, in processes of their own first.
     """
     problems: list[str] = []
-    found: dict[str, Plugin] = {}
+    plugins: dict[str, Plugin] = {}
     for entry in OWN_ENTRIES:
-        found[entry.name] = Plugin(entry.name, OWN_SOURCE, hooks_of(entry))
+        plugins[entry.name] = Plugin(entry.name, OWN_SOURCE, hooks_of(entry))
     strangers = []
     for entry in _strangers(problems) if with_plugins else ():
         name, source = one_line(entry.name), _distribution(entry, problems)
         if source is None:
             continue
         plugin = Plugin(name, source, {})
-        if name in found:
-            problems.append(f"{plugin.label} has the name of {found[name].source}: left out")
+        if name in plugins:
+            problems.append(f"{plugin.label} has the name of {plugins[name].source}: left out")
             continue
-        found[name] = plugin
+        plugins[name] = plugin
         strangers.append(PluginQuestion(entry, source, plugin.label))
     for stranger, answer in zip(strangers, examine(strangers), strict=True):
         problems += answer.problems
         name = one_line(stranger.entry.name)
-        plugin = found.pop(name)
+        plugin = plugins.pop(name)
         if answer.items:
             hooks = {hook: _hook(stranger, hook, items) for hook, items in answer.items.items()}
-            found[name] = Plugin(name, plugin.source, hooks)
-    return Plugins(tuple(found.values()), tuple(problems), with_plugins)
+            plugins[name] = Plugin(name, plugin.source, hooks)
+    return Plugins(tuple(plugins.values()), tuple(problems), with_plugins)
 
 
 def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
@@ -112,11 +112,11 @@ def ask(plugins: Plugins, hook: str) -> tuple[list[Offer], list[str]]:
     return offers, problems
 
 
-def _hook(asked: PluginQuestion, hook: str, items: Sequence[object]) -> Callable[[], object]:
+def _hook(request: PluginQuestion, hook: str, items: Sequence[object]) -> Callable[[], object]:
     """Return what gives a plugin's answer: from plain data, or by the plugin itself."""
     if hook in hookspecs.PLAIN:
         return partial(import_module(hookspecs.PLAIN[hook]).from_plain, items)
-    return lambda: hooks_of(asked.entry)[hook]()  # noqa: PLW0108  # loads the plugin when called
+    return lambda: hooks_of(request.entry)[hook]()  # noqa: PLW0108  # loads the plugin when called
 
 
 def _strangers(problems: list[str]) -> list[EntryPoint]:

@@ -16,11 +16,11 @@ Computed = Sequence[tuple[ReferenceCase, Sequence[Figure]]]
 
 def compute(tell: Callable[[str], None] = lambda title: None) -> Computed:
     """Return all cases with their figures; ``tell`` is called with each title before it."""
-    found = []
+    computed = []
     for case in CASES:
         tell(case.title)
-        found.append((case, tuple(case.figures())))
-    return found
+        computed.append((case, tuple(case.figures())))
+    return computed
 
 
 def markdown(computed: Computed) -> str:
@@ -81,9 +81,9 @@ def _converted() -> Iterator[str]:
     for robot in ROBOTS:
         answer = robot.reason if robot.verdict is None else robot.verdict.reason
         figures = (robot.diameter_mm, robot.tension_N)
-        shown = ("" if figure is None else f"{figure:.6g}" for figure in figures)
+        texts = ("" if figure is None else f"{figure:.6g}" for figure in figures)
         left_out = ", ".join(robot.gaps)
-        yield row((robot.name, robot.source, str(robot.n_cables), left_out, answer, *shown))
+        yield row((robot.name, robot.source, str(robot.n_cables), left_out, answer, *texts))
 
 
 def table(heading: Sequence[str], sides: str) -> Iterator[str]:

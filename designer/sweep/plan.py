@@ -134,11 +134,12 @@ def columns_of(
     McKay, Beckman and Conover, Technometrics 21 (1979): Latin hypercubes.
     """
     if sampling == "grid":
-        each = [
-            one.values() if isinstance(one, Range) else np.arange(len(one.nodes)) for one in varied
+        axes = [
+            field.values() if isinstance(field, Range) else np.arange(len(field.nodes))
+            for field in varied
         ]
-        grids = np.meshgrid(*each, indexing="ij")
-        return tuple(Column(one, grid.ravel()) for one, grid in zip(varied, grids, strict=True))
+        grids = np.meshgrid(*axes, indexing="ij")
+        return tuple(Column(field, grid.ravel()) for field, grid in zip(varied, grids, strict=True))
     from scipy.stats import qmc
 
     if sampling == "random":
@@ -147,10 +148,10 @@ def columns_of(
         shares = qmc.LatinHypercube(len(varied), rng=seed).random(points)
     return tuple(
         Column(
-            one,
-            one.at(share)
-            if isinstance(one, Range)
-            else np.minimum((share * len(one.nodes)).astype(int), len(one.nodes) - 1),
+            field,
+            field.at(share)
+            if isinstance(field, Range)
+            else np.minimum((share * len(field.nodes)).astype(int), len(field.nodes) - 1),
         )
-        for one, share in zip(varied, shares.T, strict=True)
+        for field, share in zip(varied, shares.T, strict=True)
     )

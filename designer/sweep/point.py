@@ -46,10 +46,10 @@ class Base:
         root = self.document.root
         for keys, node in changes:
             root = root.with_value(keys, node)
-        plugins, known = _plugins(self.with_plugins)
+        plugins, effects = _plugins(self.with_plugins)
         document = replace(self.document, root=root)
         path = Path(document.name)
-        return study_of(checked(document, known), document, path, known, plugins)
+        return study_of(checked(document, effects), document, path, effects, plugins)
 
     def catalogue(self) -> Catalogue:
         """Return the grades that its studies choose from."""
@@ -156,5 +156,8 @@ def why_negative(result: Json) -> str:
         is_held = workspace is None or workspace["sagging"] is not None
         return "" if is_held else "no cable of the family holds in all of the workspace"
     unmet = answer["reasons"]
-    parts = [f"{each['id']} in {each['load_case']}: {each['state']}" for each in unmet]
+    parts = [
+        f"{requirement['id']} in {requirement['load_case']}: {requirement['state']}"
+        for requirement in unmet
+    ]
     return "; ".join(parts)

@@ -63,16 +63,18 @@ def read_sweep(path: Path, with_plugins: bool) -> tuple[Plan, Base]:
     faults += _faults_of_sampling(document, section)
     varied = {name: _varied(document, name, section.sampling, faults) for name in section.vary}
     _refuse(faults)
-    known = {name: one for name, one in varied.items() if one is not None}
-    faults += _faults_of_points(document, section, known)
+    fields = {name: field for name, field in varied.items() if field is not None}
+    faults += _faults_of_points(document, section, fields)
     _refuse(faults)
     study_path = path.parent / section.study
     base = Base(read_document(study_path), section.keep, with_plugins)
-    faults += _faults_of_fields(document, base, known)
+    faults += _faults_of_fields(document, base, fields)
     _refuse(faults)
     kinds = _kinds(document, base, section.keep)
     goals = _goals(document, section, kinds)
-    columns = columns_of(tuple(known.values()), section.sampling, section.points or 0, section.seed)
+    columns = columns_of(
+        tuple(fields.values()), section.sampling, section.points or 0, section.seed
+    )
     grades = [source.sha256 for source in base.catalogue().sources]
     origin = [document.root.as_written(), base.document.sha256, *grades, __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
@@ -98,21 +100,24 @@ def _faults_of_points(
     document: Document, section: SweepSection, varied: Mapping[str, Range | Choice]
 ) -> Iterator[Fault]:
     """Yield a fault where two columns of the store would have one name, or there are too many."""
-    taken = {*section.keep, "done", "reason"}
-    for name, one in varied.items():
-        if path_text(one.keys) in taken:
+    names = {*section.keep, "done", "reason"}
+    for name, field in varied.items():
+        if path_text(field.keys) in names:
             yield document.fault(("vary", name), "is named twice, or is the name of a result", "")
-        taken.add(path_text(one.keys))
-    for name, one in varied.items():
-        for other, inner in varied.items():
-            if one is not inner and inner.keys[: len(one.keys)] == one.keys != inner.keys:
+        names.add(path_text(field.keys))
+    for name, field in varied.items():
+        for inner_name, inner in varied.items():
+            if field is not inner and inner.keys[: len(field.keys)] == field.keys != inner.keys:
                 # One of the two would stand in the store as if the study had it.
                 problem = f"holds {path_text(inner.keys)}, which is varied too"
-                yield document.fault(("vary", name), problem, f"one of {name} and {other}")
-    each = [one.count or 1 if isinstance(one, Range) else len(one.nodes) for one in varied.values()]
-    if section.sampling == "grid" and math.prod(each) > MOST_POINTS:
+                yield document.fault(("vary", name), problem, f"one of {name} and {inner_name}")
+    counts = [
+        field.count or 1 if isinstance(field, Range) else len(field.nodes)
+        for field in varied.values()
+    ]
+    if section.sampling == "grid" and math.prod(counts) > MOST_POINTS:
         expected = f"{MOST_POINTS:,} at most, or latin_hypercube"
-        yield document.fault(("vary",), f"the grid has {math.prod(each):.3g} points", expected)
+        yield document.fault(("vary",), f"the grid has {math.prod(counts):.3g} points", expected)
 
 
 def _varied(
@@ -125,11 +130,13 @@ def _varied(
     if isinstance(node.content, tuple) and node.content:
         return _choice(path_keys(name), node.content)
     if not isinstance(node.content, dict):
-        found = "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
-        faults.append(document.fault(place, found, _LISTED))
+        problem = (
+            "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
+        )
+        faults.append(document.fault(place, problem, _LISTED))
         return None
-    given = (node.child(key) for key in ("from", "to", "count"))
-    low, high, count = (None if one is None else one.quantity() for one in given)
+    ends = (node.child(key) for key in ("from", "to", "count"))
+    low, high, count = (None if end is None else end.quantity() for end in ends)
     unknown = [key for key in node.content if key not in ("from", "to", "count")]
     if unknown:
         problem = f"unknown field '{unknown[0]}'"
@@ -168,10 +175,10 @@ def _faults_of_fields(
     A value that it cannot have is no fault of the sweep: those points are kept with their reason.
     """
     base.study()
-    for name, one in varied.items():
-        node = one.node(one.low) if isinstance(one, Range) else one.nodes[0]
+    for name, field in varied.items():
+        node = field.node(field.low) if isinstance(field, Range) else field.nodes[0]
         try:
-            base.study([(one.keys, node)])
+            base.study([(field.keys, node)])
         except KeyError:
             yield document.fault(("vary", name), "the study has no such field", "its path there")
         except InputError as error:

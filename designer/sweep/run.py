@@ -101,8 +101,8 @@ def _run_until_death(
         if len(running) == 1 and deaths[waiting[0]] > _MOST_DEATHS:
             points = waiting.popleft()
             del deaths[points]
-            nothing = [None] * len(plan.keep)
-            store.write(points, [(nothing, "its process ended without an answer")] * len(points))
+            no_values = [None] * len(plan.keep)
+            store.write(points, [(no_values, "its process ended without an answer")] * len(points))
             advance(len(points))
 
 

@@ -41,20 +41,20 @@ class Store:
 
     def pending(self) -> list[range]:
         """Return the points of each chunk that is not done."""
-        done = np.asarray(self._array("done")[:])
+        is_done = np.asarray(self._array("done")[:])
         starts = range(0, self._plan.n_points, self._chunk)
-        chunks = (range(at, min(at + self._chunk, len(done))) for at in starts)
-        return [points for points in chunks if not done[points.start : points.stop].all()]
+        chunks = (range(at, min(at + self._chunk, len(is_done))) for at in starts)
+        return [points for points in chunks if not is_done[points.start : points.stop].all()]
 
-    def write(self, points: range, found: Sequence[tuple[Sequence[Any], str]]) -> None:
+    def write(self, points: range, results: Sequence[tuple[Sequence[Any], str]]) -> None:
         """Write the results of a chunk: what is kept of each point, and why there is nothing."""
-        place, reasons = slice(points.start, points.stop), [why for _, why in found]
+        place, reasons = slice(points.start, points.stop), [why for _, why in results]
         for k, name in enumerate(self._plan.keep):
             kind = self._plan.kinds[name]
-            values = [_as_kind(kept[k], kind) for kept, _ in found]
+            values = [_as_kind(values_kept[k], kind) for values_kept, _ in results]
             self._array(name)[place] = np.array(values, dtype=object if kind is str else float)
-            for at, (kept, _) in enumerate(found):
-                if kind is float and isinstance(kept[k], str):
+            for at, (values_kept, _) in enumerate(results):
+                if kind is float and isinstance(values_kept[k], str):
                     reasons[at] += f"; {name} is a text here, and was none of the study as it is"
         self._array("reason")[place] = np.array(
             [why.removeprefix("; ") for why in reasons], dtype=object
@@ -99,8 +99,10 @@ def opened(path: Path, plan: Plan) -> Iterator[Store]:
         except Timeout:
             raise OutputError(f"{path}: another run fills this store") from None
         with lock:
-            for left in path.rglob("*.partial"):  # of a run that was killed while it wrote them
-                left.unlink(missing_ok=True)
+            for unfinished in path.rglob(
+                "*.partial"
+            ):  # of a run that was killed while it wrote them
+                unfinished.unlink(missing_ok=True)
             yield Store(zarr.open_group(path, mode="r+"), plan)
 
 
