@@ -13,8 +13,7 @@ import numpy as np
 from designer.arrays import FloatArray, frozen_array, require_number, require_one_of
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
-from designer.effects.known import KnownEffects
-from designer.effects.registry import SHIPPED
+from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import Fault, InputError
 from designer.model.cable import Material
 from designer.model.limits import RopeLimits

@@ -17,7 +17,7 @@ from designer.study import DeclaredEffect, Study
 
 if TYPE_CHECKING:
     from designer.diagnosis.check import Check, Left, Model
-    from designer.diagnosis.foretell import Foretold
+    from designer.diagnosis.errors_of import Foretold
     from designer.diagnosis.result import Diagnosis, Finding, Use
     from designer.diagnosis.structure import Structure
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.free_poses import FreePredictor, first_poses
-from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Predictor
+from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import NEEDS, Effect, Setting, as_built
 from designer.errors import Fault, InputError
 from designer.model.cable import Cable

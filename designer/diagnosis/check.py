@@ -10,14 +10,20 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.as_json import check_dict
-from designer.diagnosis.blocks import block_of
 from designer.diagnosis.case import case_of
-from designer.diagnosis.errors_of import Interval, Outlier, bootstrap, outliers_of
+from designer.diagnosis.errors_of import (
+    Foretold,
+    Interval,
+    Outlier,
+    bootstrap,
+    foretell,
+    outliers_of,
+)
 from designer.diagnosis.fit import fit
-from designer.diagnosis.foretell import Foretold, foretell
 from designer.diagnosis.hold import structure_left
 from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem
+from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure
 from designer.documents.plain import json_text
 from designer.effects.effect import Setting

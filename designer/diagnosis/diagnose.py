@@ -8,11 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from designer.arrays import BoolArray
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import Case, case_of
-from designer.diagnosis.errors_of import Stage, outliers_of, stage
+from designer.diagnosis.errors_of import Stage, foretell, outliers_of, stage, with_sound_lengths
 from designer.diagnosis.fit import Fit, fit, with_places
-from designer.diagnosis.foretell import foretell, with_sound_lengths
 from designer.diagnosis.free_poses import FreePredictor, taken_up
 from designer.diagnosis.hold import (
     Gain,
@@ -22,18 +20,17 @@ from designer.diagnosis.hold import (
     structure_left,
 )
 from designer.diagnosis.noise import first_noise, rescaled
-from designer.diagnosis.pace import Pace
-from designer.diagnosis.physical import imbalance_of
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.propose import Proposal, propose
+from designer.diagnosis.readings import imbalance_of
 from designer.diagnosis.result import Diagnosis, Estimate, Finding
-from designer.diagnosis.robust import without_outliers
-from designer.diagnosis.structure import covariates_of
-from designer.diagnosis.trends import smooth_correction, whereabouts
+from designer.diagnosis.statistics import heldout_rows, without_outliers
+from designer.diagnosis.structure import covariates_of, smooth_correction, whereabouts
 from designer.effects.effect import Effect
 from designer.errors import EffectError
 from designer.model.measured_data import Measured
 from designer.model.measurements import Measurements
+from designer.progress import Pace
 from designer.study import Study
 
 _UNKNOWN = 10.0

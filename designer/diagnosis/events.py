@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.diagnosis.clusters import lasting
 from designer.diagnosis.problem import channel_names
-from designer.diagnosis.robust import is_outlier, spread
+from designer.diagnosis.statistics import SIGNIFICANCE, is_outlier, lasting, spread
 from designer.diagnosis.structure import (
-    SIGNIFICANCE,
     Event,
     Structure,
     chances_of,

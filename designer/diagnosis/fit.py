@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.diagnosis.clusters import score_covariances
 from designer.diagnosis.problem import Problem
+from designer.diagnosis.statistics import score_covariances
 from designer.effects.effect import Effect, Setting, Values
 
 HUBER = 3.0

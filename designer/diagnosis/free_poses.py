@@ -16,13 +16,11 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import HUBER, huber, jacobian, starting_vector
-from designer.diagnosis.physical import readings_of
-from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Problem
-from designer.diagnosis.search import SIGNIFICANCE
+from designer.diagnosis.problem import Predictor, Problem
+from designer.diagnosis.readings import readings_of
+from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Effect, Readings, Setting, frame_size_m
-from designer.effects.known import KnownEffects
-from designer.effects.registry import SHIPPED
+from designer.effects.registry import SHIPPED, KnownEffects
 from designer.model.machine import Machine
 from designer.model.measured_data import EVEN, Measured, Noise
 from designer.model.region import Region

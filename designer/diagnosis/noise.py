@@ -9,9 +9,8 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
 from designer.diagnosis.fit import fit
-from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Problem
-from designer.diagnosis.robust import spread
+from designer.diagnosis.problem import Predictor, Problem
+from designer.diagnosis.statistics import spread
 from designer.effects.effect import Effect
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from designer.arrays import BoolArray
-from designer.diagnosis.blocks import folds
 from designer.diagnosis.fit import Fit, fit, huber
-from designer.diagnosis.pace import Pace
 from designer.diagnosis.problem import Problem
+from designer.diagnosis.statistics import SIGNIFICANCE, folds
 from designer.effects.effect import Effect
+from designer.progress import Pace
 
-SIGNIFICANCE = 0.001
-"""Chance of a false finding in a whole round of candidates."""
 RIVAL_MARGIN = 9.0
 """Difference of penalised loss below which two effects count as equally good."""
 _PENALTY = 2.0

@@ -2,10 +2,54 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
 
-from designer.effects.effect import Effect
-from designer.effects.known import KnownEffects
+from designer.effects.effect import Effect, Setting
+from designer.model.machine import Machine
+
+
+@dataclass(frozen=True, slots=True)
+class KnownEffects:
+    """Our own effects and those of plugins.
+
+    Parameters
+    ----------
+    effects : tuple of Effect
+        In the order in which they act; ids are unique.
+    problems : tuple of str
+        What was left out and why, one line each.
+    """
+
+    effects: tuple[Effect, ...]
+    problems: tuple[str, ...] = ()
+
+    @property
+    def by_id(self) -> Mapping[str, Effect]:
+        """Every effect by its id, in the order in which they act."""
+        return {effect.id: effect for effect in self.effects}
+
+    def of(self, machine: Machine) -> list[Effect]:
+        """Return every effect that this machine may have, in the order in which they act.
+
+        Raises
+        ------
+        designer.errors.EffectError
+            If an effect of a plugin fails at this machine.
+        """
+        return [variant for effect in self.effects for variant in effect.on(machine)]
+
+    def in_order(self, settings: Iterable[Setting]) -> list[Setting]:
+        """Return settings in the order in which they act: a model is one, however it was found."""
+        place = {effect.id: k for k, effect in enumerate(self.effects)}
+        return sorted(settings, key=lambda s: (place[s.effect.id], s.effect.cable or 0))
+
+    def without(self, effect_id: str, problem: str) -> KnownEffects:
+        """Return all effects but one, with the reason why it is left out."""
+        remaining = tuple(effect for effect in self.effects if effect.id != effect_id)
+        return KnownEffects(remaining, (*self.problems, problem))
+
 
 _IN_ORDER = (
     "anchor_offset",

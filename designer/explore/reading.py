@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from designer.documents.document import Document, decode, document_of, read_bytes
-from designer.effects.known import KnownEffects
+from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, Fault, InputError
 from designer.explore.fields import Field, study_fields
 from designer.io.config.moved import moved_to

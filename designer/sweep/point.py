@@ -13,8 +13,8 @@ from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import Json, result_part, size_dict
 from designer.documents.document import Document
 from designer.documents.node import Key, Node
-from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
+from designer.effects.registry import KnownEffects
 from designer.errors import DesignerError, InputError, described
 from designer.grades.kept import kept_catalogue
 from designer.grades.registry import Catalogue

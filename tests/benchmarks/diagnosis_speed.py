@@ -30,7 +30,7 @@ from twins.dataset import make, size_for
 from twins.robots import FIELD4, YARD3
 
 from designer.diagnosis import design as diagnosis_design
-from designer.diagnosis import predict
+from designer.diagnosis import problem as prediction
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.design import with_design
 from designer.diagnosis.diagnose import diagnose
@@ -173,7 +173,7 @@ def main() -> None:
     ours = diagnose(problem)
     middle = time.perf_counter()
     with (
-        patch.object(predict, "readings_of", pose_by_pose),
+        patch.object(prediction, "readings_of", pose_by_pose),
         patch.object(scipy.optimize, "least_squares", own_differences),
     ):
         theirs = diagnose(problem)
@@ -192,7 +192,7 @@ def main() -> None:
     threads(problem)
 
 
-OURS = predict.readings_of
+OURS = prediction.readings_of
 LEAST_SQUARES = scipy.optimize.least_squares
 
 if __name__ == "__main__":

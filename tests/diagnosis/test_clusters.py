@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from designer.diagnosis.clusters import Lasting, lasting, score_covariances
+from designer.diagnosis.statistics import Lasting, lasting, score_covariances
 
 ROWS, CHANNELS = 120, 6
 

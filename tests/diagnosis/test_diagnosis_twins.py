@@ -13,11 +13,11 @@ from twins import physics
 from twins.dataset import DataSet, make, size_for
 from twins.robots import HALL6, YARD3, TwinRobot
 
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.design import with_design
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.result import Diagnosis
+from designer.diagnosis.statistics import heldout_rows
 from designer.errors import InputError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study

@@ -9,11 +9,10 @@ import pytest
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
-from designer.diagnosis.foretell import foretell, with_sound_lengths
-from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Problem
+from designer.diagnosis.errors_of import foretell, with_sound_lengths
+from designer.diagnosis.problem import Predictor, Problem
+from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured

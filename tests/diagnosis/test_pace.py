@@ -13,9 +13,9 @@ from twins.robots import YARD3
 from designer.cli import terminal
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.pace import Pace, in_words
 from designer.io.config import read_study
 from designer.measured.read import read_measured
+from designer.progress import Pace, in_words
 from designer.report.diagnosis.sureness import sureness
 
 

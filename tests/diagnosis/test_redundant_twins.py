@@ -8,7 +8,7 @@ from twins.robots import HALL8
 
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Predictor
 from designer.diagnosis.result import Diagnosis
 from designer.effects.effect import Setting
 from designer.io.config import read_study

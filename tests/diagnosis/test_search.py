@@ -7,11 +7,10 @@ import pytest
 from twins.dataset import make, size_for
 from twins.robots import YARD3
 
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import case_of
-from designer.diagnosis.predict import Predictor
-from designer.diagnosis.problem import Problem
+from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.search import Searcher
+from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured

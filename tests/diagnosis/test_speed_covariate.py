@@ -11,7 +11,7 @@ from twins.robots import YARD3
 from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.drift import _weights
+from designer.diagnosis.hold import _weights
 from designer.diagnosis.structure import Carrier, Structure, covariates_of
 from designer.effects.effect import Readings
 from designer.io.config import read_study

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from designer.diagnosis.trends import smooth_correction
+from designer.diagnosis.structure import smooth_correction
 
 
 @pytest.mark.filterwarnings("error")

@@ -9,7 +9,7 @@ from twins.robots import FIELD4
 
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Predictor
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 

@@ -10,11 +10,11 @@ from twins.dataset import DataSet, make
 from twins.robots import FAST3, HALL6, HALL8, YARD3, TwinRobot
 from twins.troubles import troubled
 
-from designer.diagnosis.blocks import heldout_rows
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.hold import Gain
 from designer.diagnosis.result import Diagnosis, Reason, Verdict
+from designer.diagnosis.statistics import heldout_rows
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 from designer.report.diagnosis.first_page import verdict

@@ -16,9 +16,8 @@ from designer.analysis.pose import analyse_pose
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import selection_dict
 from designer.effects.effect import Effect, Parameter, Size, Values
-from designer.effects.guard import guarded
-from designer.effects.known import KnownEffects
-from designer.effects.registry import SHIPPED
+from designer.effects.load import guarded
+from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import EffectError
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study

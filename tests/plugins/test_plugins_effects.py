@@ -17,9 +17,8 @@ from designer.cli.commands import main
 from designer.cli.schema import schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
-from designer.effects.known import KnownEffects
 from designer.effects.load import load_effects
-from designer.effects.registry import EFFECTS, SHIPPED
+from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
 from designer.io.config import read_study
 from designer.io.diagnosis_files import diagnosed_config

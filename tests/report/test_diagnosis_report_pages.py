@@ -16,7 +16,7 @@ from designer.analysis.analyse import Provenance
 from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.predict import Predictor
+from designer.diagnosis.problem import Predictor
 from designer.diagnosis.propose import Proposal
 from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Use, Withdrawn
 from designer.diagnosis.search import SIGNIFICANCE

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from designer.diagnosis.result import Estimate
-from designer.diagnosis.trends import strongest_channel, whereabouts
+from designer.diagnosis.structure import strongest_channel, whereabouts
 from designer.effects.effect import Effect, Parameter, Size
 from designer.report.diagnosis import words
 from designer.report.figures.diagnosis import MOST_POINTS, running_median, thinned, window

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from designer.arrays import frozen_array
 from designer.documents.document import Document
-from designer.effects.known import KnownEffects
+from designer.effects.registry import KnownEffects
 from designer.errors import InputError
 from designer.io.config.effects import read_effects
 from designer.io.config.load_cases import RegionSection, load_case

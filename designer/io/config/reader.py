@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from designer.documents.document import Document, read_document
 from designer.documents.faults import MOST_FAULTS, schema_faults
 from designer.documents.node import path_text
-from designer.effects.known import KnownEffects
-from designer.effects.registry import SHIPPED
+from designer.effects.registry import SHIPPED, KnownEffects
 from designer.errors import InputError
 from designer.io.config.build import build_study
 from designer.io.config.checks import all_faults

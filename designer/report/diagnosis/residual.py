@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.structure import SIGNIFICANCE, Carrier
+from designer.diagnosis.statistics import SIGNIFICANCE
+from designer.diagnosis.structure import Carrier
 from designer.report import format as fmt
 from designer.report.blocks import MOST_ROWS, Column, Picture, Row, Section, Table
 from designer.report.diagnosis import carriers, words

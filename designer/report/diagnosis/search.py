@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from designer.diagnosis.result import Diagnosis, Estimate
-from designer.diagnosis.search import SIGNIFICANCE, Step, Trial
+from designer.diagnosis.search import Step, Trial
+from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.report import format as fmt
 from designer.report.blocks import Column, Group, Heads, Row, Section, Table
 from designer.report.diagnosis import words

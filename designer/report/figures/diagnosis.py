@@ -11,7 +11,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.diagnosis.problem import channel_names
 from designer.diagnosis.result import Diagnosis
-from designer.diagnosis.trends import strongest_channel
+from designer.diagnosis.structure import strongest_channel
 from designer.report import format as fmt
 from designer.report.diagnosis import words
 from designer.report.diagnosis.quantity import Quantity, quantities

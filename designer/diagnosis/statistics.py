@@ -1,4 +1,6 @@
-r"""How much less readings tell than as many independent ones would.
+r"""Statistics of residuals: scales that outliers do not move, blocks of rows, correlated rows.
+
+Blocks are contiguous: what is held out is not next to what is fitted.
 
 Channels of one row share the error of its pose; rows that follow one another share what drifts. A
 fit that takes all readings for independent states deviations that are too small, and takes chance
@@ -17,8 +19,89 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from designer.arrays import FloatArray
-from designer.diagnosis.blocks import block_of
+from designer.arrays import BoolArray, FloatArray, IntArray
+
+SIGNIFICANCE = 0.001
+"""Chance of a false finding in a whole round of candidates, or of structure where there is none.
+
+One log in a thousand is explained wrongly."""
+MAD_TO_STD = 1.4826
+"""Standard deviation of normal noise over the median of its size."""
+
+
+def spread(values: FloatArray) -> float:
+    """Return the standard deviation of the bulk about its median; 0 without values."""
+    value = values[~np.isnan(values)]
+    if not value.size:
+        return 0.0
+    return MAD_TO_STD * float(np.median(np.abs(value - np.median(value))))
+
+
+def rms(residual: FloatArray) -> float:
+    """Root mean square of what was measured; NaN if nothing was."""
+    finite = residual[~np.isnan(residual)]
+    return float(np.sqrt(np.mean(finite**2))) if finite.size else float("nan")
+
+
+def without_outliers(residual: FloatArray) -> FloatArray:
+    """Blank readings that stand off by more than five times the spread of their channel.
+
+    A residual (n_rows, n_channels) in units of noise; a spread below the noise counts as noise.
+    """
+    apart = np.abs(residual - _median(residual))
+    # Normal noise gets there once in two million readings.
+    limit = 5.0 * np.maximum(MAD_TO_STD * _median(apart), 1.0)
+    return np.where(apart > limit, np.nan, residual)
+
+
+def is_outlier(residual: FloatArray) -> BoolArray:
+    """Tell which readings `without_outliers` blanks (n_rows, n_channels)."""
+    return np.isnan(without_outliers(residual)) & ~np.isnan(residual)
+
+
+def _median(residual: FloatArray) -> FloatArray:
+    empty = np.isnan(residual).all(axis=0)
+    return np.where(empty, 0.0, np.nanmedian(np.where(empty, 0.0, residual), axis=0))
+
+
+_HELD_OUT_EVERY = 4
+"""A quarter of the rows: three blocks at least, and the fit keeps most."""
+
+
+def block_of(n_rows: int, n_blocks: int | None = None) -> IntArray:
+    """Return the number of the block of each row (n_rows,), blocks of nearly equal length.
+
+    Twelve, or twice as many where each still has ten rows: what is held out is then spread more
+    widely, and how clear a gain is shows better.
+    """
+    # Few blocks are long against what neighbours share; many show how much a gain scatters.
+    blocks = n_blocks or (12 if n_rows < 240 else 24)
+    return (np.arange(n_rows) * min(blocks, n_rows)) // n_rows
+
+
+def heldout_rows(n_rows: int) -> BoolArray:
+    """Return which rows no fit may see: every fourth block."""
+    return np.asarray(block_of(n_rows) % _HELD_OUT_EVERY == _HELD_OUT_EVERY - 1)
+
+
+def folds(fit_rows: BoolArray) -> list[BoolArray]:
+    """Split the rows for fitting into contiguous parts for cross-validation.
+
+    Returns
+    -------
+    list of array (n_rows,)
+        The rows of each part; together they are ``fit_rows``.
+    """
+    indices = np.flatnonzero(fit_rows)
+    # With five parts each fit has four fifths of the rows, at five times the work.
+    part = block_of(len(indices), 5)
+    answer = []
+    for k in range(int(part.max()) + 1):
+        rows = np.zeros_like(fit_rows)
+        rows[indices[part == k]] = True
+        answer.append(rows)
+    return answer
+
 
 _LONGEST = 0.98
 """Largest decay: what lasts over more than fifty rows is a drift, and tested as such."""
