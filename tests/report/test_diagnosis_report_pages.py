@@ -19,7 +19,7 @@ from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.problem import Predictor
 from designer.diagnosis.propose import Proposal
 from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Use, Withdrawn
-from designer.diagnosis.search import SIGNIFICANCE
+from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
 from designer.io.config import read_study
