@@ -11,12 +11,17 @@ from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Wind
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Robot
-from designer.report.design.load_cases import carried_away
+from designer.report.templates import environment
 from designer.study import Workspace
 
 EXITS = np.array([[0, 0, 11.5], [30, 1, 12.5], [14, 26, 11.0], [2, 24, 12.0]])
 WORKSPACE = Workspace(Prism.box((8, 20), (4, 14), (1, 8)), samples=30)
 CABLE = Cable(0.005, 0.1, 1e6, 1e4)
+
+SHOWN = environment().from_string(
+    '{% from "report/statements.html.j2" import not_in_equilibrium with context %}'
+    "{{ not_in_equilibrium(findings) }}"
+)
 
 
 def left_N(place: np.ndarray, load_N: np.ndarray, exits: np.ndarray) -> float:
@@ -37,9 +42,9 @@ def test_share_and_direction_are_those_of_pulls_alone() -> None:
         assert left_N(found.place, load, robot.exit_points_m) > 1.0
         assert left_N(found.place, load - push, robot.exit_points_m) < 1e-6
         assert 0.1 < found.share <= 1.0
-        (said,) = carried_away(Findings(adrift=(found,)))
-        assert said.tone == "bad"
-        assert "'storm'" in said.text
+        text = SHOWN.render(findings=Findings(adrift=(found,)), paged=False)
+        assert '<p class="statement bad">' in text
+        assert "load case &#39;storm&#39;" in text
 
 
 def test_a_breeze_carries_nothing_away() -> None:

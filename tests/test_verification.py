@@ -14,7 +14,7 @@ from designer.io.config import read_study
 from designer.model.robot import Poses
 from designer.physics import catenary
 from designer.physics.quadrature import end_position_m
-from designer.report.design.verification import verification_statement
+from designer.report.templates import environment
 from designer.resources import example_file, example_names
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.inverse import solve_sagging
@@ -55,10 +55,14 @@ def test_a_wrong_answer_is_seen() -> None:
     thick = replace(diameter, ours=0.9 * diameter.theirs, may_be_more=True)
     assert thick.agrees
     assert not replace(thick, may_be_more=False).agrees
-    told_of = verification_statement((told, diameter))
-    assert told_of.tone == "bad"
-    assert "by quadrature" in told_of.text
-    assert "by SLSQP" in told_of.text
+    shown = environment().from_string(
+        '{% from "report/statements.html.j2" import verification with context %}'
+        "{{ verification(answers) }}"
+    )
+    text = shown.render(answers=(told, diameter), paged=False)
+    assert '<p class="statement bad">' in text
+    assert "by quadrature" in text
+    assert "by SLSQP" in text
 
 
 def test_pulleys_are_known_by_the_quadrature_alone() -> None:

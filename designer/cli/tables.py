@@ -81,7 +81,7 @@ def summary_rows(analysis: Analysis) -> Iterator[Row]:
         label = "cable" if analysis.groups is None else "one for all"
         yield from _summary_of_selection(analysis.selection, label, analysis.study.selection)
     if analysis.uncertainty is not None and analysis.uncertainty.is_asked:
-        from designer.report.design.uncertainty import in_a_sentence
+        from designer.report.odds import in_a_sentence
 
         yield "  probability", in_a_sentence(analysis.uncertainty).replace("\u00a0", " ")
     yield from _summary_of_requirements(analysis)

@@ -6,12 +6,13 @@ A text among the blocks is a paragraph. Of the others, ``shape`` names the macro
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import TYPE_CHECKING, ClassVar, Generic, Literal, TypeVar
 
 from designer import __version__
+from designer.report.phrases import shown_time
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Provenance
@@ -193,14 +194,17 @@ Block = str | Facts | Statement | Bullets | Listing | Subheading | Table | Pictu
 class Section:
     """A section: the id that links point to, its title, its blocks, classes of the style sheet.
 
-    It is shown by ``section.html.j2``, or by a template of its own in the folder of the document,
-    such as ``report/nomenclature.html.j2``.
+    It is shown by a template of its own in the folder of the document, such as
+    ``report/nomenclature.html.j2``, which gets ``context`` and may ``set title``; else by
+    ``section.html.j2``. ``body`` is what that made of it.
     """
 
     id: str
-    title: str
+    title: str = ""
     blocks: tuple[Block, ...] = ()
     kind: str = ""
+    context: Mapping[str, object] = field(default_factory=dict)
+    body: str = ""
 
     @classmethod
     def of(cls, section_id: str, title: str, *blocks: Block | None, kind: str = "") -> Section:
@@ -314,8 +318,3 @@ def plain_report(
         None,
         tuple(section for section in sections if section is not None),
     )
-
-
-def shown_time(moment: datetime) -> str:
-    """Return date and time as a reader wants them."""
-    return moment.strftime("%Y-%m-%d %H:%M %z").strip()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, overload
 
 from designer.report.blocks import Picture
@@ -12,11 +13,26 @@ if TYPE_CHECKING:
     from designer.report.figures.stage import Image
 
 
-@overload
-def chart(caption: str, alternative: str, svg: str) -> Picture: ...
-@overload
-def chart(caption: str, alternative: str, svg: None) -> None: ...
-def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A figure without its words.
+
+    Parameters
+    ----------
+    svg : str
+        Vector graphics to inline, trusted since drawn by this program; may be empty.
+    bitmap : str
+        A PNG as a data URI; may be empty.
+    scene : str
+        A whole HTML page with the same scene to turn; may be empty.
+    """
+
+    svg: str = ""
+    bitmap: str = ""
+    scene: str = ""
+
+
+def vector(svg: str | None) -> Drawing | None:
     """Return a chart, its half-transparent parts written so that they stay vector graphics.
 
     PlutoPrint composes an element with ``opacity`` and a clip as a bitmap; the same with
@@ -25,7 +41,27 @@ def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
     if svg is None:
         return None
     split = r"fill-opacity: \1; stroke-opacity: \1"
-    return Picture(caption, alternative, re.sub(r"(?<![-\w])opacity: ([\d.]+)", split, svg))
+    return Drawing(re.sub(r"(?<![-\w])opacity: ([\d.]+)", split, svg))
+
+
+def in_space(image: Image | None, page: str = "") -> Drawing | None:
+    """Return a picture in space; ``page`` is the same to turn. None stays None."""
+    if image is None:
+        return None
+    from designer.report.figures.overlay import png
+
+    encoded = base64.b64encode(png(image)).decode()
+    return Drawing(bitmap=f"data:image/png;base64,{encoded}", scene=page)
+
+
+@overload
+def chart(caption: str, alternative: str, svg: str) -> Picture: ...
+@overload
+def chart(caption: str, alternative: str, svg: None) -> None: ...
+def chart(caption: str, alternative: str, svg: str | None) -> Picture | None:
+    """Return a chart with its words. None stays None."""
+    drawing = vector(svg)
+    return None if drawing is None else Picture(caption, alternative, drawing.svg)
 
 
 @overload
@@ -40,10 +76,7 @@ def scene(
     caption: str, alternative: str, image: Image | None, *, page: str = "", kind: str = ""
 ) -> Picture | None:
     """Return a picture in space; ``page`` is the same to turn. None stays None."""
-    if image is None:
+    drawing = in_space(image, page)
+    if drawing is None:
         return None
-    from designer.report.figures.overlay import png
-
-    kept = base64.b64encode(png(image)).decode()
-    address = f"data:image/png;base64,{kept}"
-    return Picture(caption, alternative, bitmap=address, scene=page, kind=kind)
+    return Picture(caption, alternative, bitmap=drawing.bitmap, scene=page, kind=kind)

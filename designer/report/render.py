@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from designer.errors import Fault, InputError
 from designer.io.output import output_folder, write_whole
 from designer.io.results import write_results
 from designer.progress import SILENT, Reporter
-from designer.report.blocks import Report
+from designer.report.blocks import Report, Section
 from designer.report.design.report import design_report
 from designer.report.fonts import with_fonts
 from designer.report.outline import add_outline
@@ -18,6 +19,8 @@ from designer.report.paper import why_no_pdf
 from designer.report.templates import check_templates, environment, told_in_one_line
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
+
     from designer.analysis.analyse import Analysis
 
 REPORT_FILES = ("report.html", "report.pdf", "result.json", "candidates.csv", "workspace.nc")
@@ -37,8 +40,35 @@ def render_html(
     jinja2.TemplateError
         If a template of the user is faulty.
     """
-    template = environment(user_folder).get_template("page.html.j2")
-    return with_fonts(template.render(report=report, paged=paged))
+    templates = environment(user_folder)
+    sections = tuple(
+        rendered(section, report, templates, paged=paged) for section in report.sections
+    )
+    page = templates.get_template("page.html.j2")
+    return with_fonts(page.render(report=replace(report, sections=sections), paged=paged))
+
+
+def rendered(
+    section: Section,
+    report: Report[Any] | None = None,
+    templates: Environment | None = None,
+    *,
+    paged: bool = False,
+) -> Section:
+    """Return a section with the title and the body that its template makes of its context.
+
+    Without the report that it belongs to, it is taken as one of a design report.
+    """
+    from markupsafe import Markup
+
+    templates = templates or environment()
+    name = f"{'report' if report is None else report.name}/{section.id}.html.j2"
+    variables = {**section.context, "section": section, "report": report, "paged": paged}
+    shown = templates.select_template([name, "section.html.j2"]).make_module(variables)
+    title = getattr(shown, "title", section.title)
+    if not title:  # the template of a user need not repeat ours
+        title = vars(templates.get_template(f"default/{name}").make_module(variables))["title"]
+    return replace(section, title=title, body=Markup(shown))
 
 
 def render_pdf(html: str) -> bytes:

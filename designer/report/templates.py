@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from designer.errors import Fault, InputError, one_line
+from designer.report import format as fmt
+from designer.report import material_class, odds, phrases
+from designer.report.paper import why_no_pdf
 from designer.resources import data_folder
 
 if TYPE_CHECKING:
@@ -23,18 +28,37 @@ def environment(user_folder: Path | None = None) -> Environment:
     Templates of ``user_folder`` come before the shipped ones of the same name; there, the shipped
     ones are also known under ``default/``, so that ``page.html.j2`` can extend
     ``default/page.html.j2``. ``report/inputs.html.j2`` would show the section ``inputs``.
+    The functions of `designer.report.format` are filters, such as ``{{ mass_kg | kilograms }}``;
+    they also stand under ``fmt``, for those of several values.
     """
     from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
 
+    from designer.report.flow import FlowingText
+
     shipped = FileSystemLoader(data_folder("reports"))
     own = [FileSystemLoader(user_folder)] if user_folder is not None else []
-    return Environment(
+    templates = Environment(
+        extensions=[FlowingText],
         loader=ChoiceLoader([*own, shipped, PrefixLoader({"default": shipped})]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    templates.filters = {**_filters(), **templates.filters}  # none of Jinja's is replaced
+    templates.tests["finite"] = math.isfinite
+    templates.globals |= {"fmt": fmt, "why_no_pdf": why_no_pdf}
+    return templates
+
+
+def _filters() -> dict[str, Callable[..., object]]:
+    """Return the public functions of the rooms of words, by name."""
+    return {
+        name: function
+        for module in (fmt, phrases, odds, material_class)
+        for name, function in vars(module).items()
+        if isfunction(function) and not name.startswith("_")
+    }
 
 
 def check_templates(folder: Path) -> None:

@@ -17,10 +17,10 @@ from designer.io.config import read_study
 from designer.model.point_list import PointList
 from designer.model.robot import Poses
 from designer.model.space import Orientations
-from designer.report.design.scope import describe_orientations
 from designer.report.design.source import Source
-from designer.report.design.workspace import describe_region, section
+from designer.report.design.workspace import section
 from designer.report.figures.scenes import edges_m
+from designer.report.phrases import described_orientations, described_region
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.study import Study
@@ -101,7 +101,7 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
 
 def test_words(facade: Study) -> None:
     assert facade.workspace is not None
-    assert "upright rectangle from" in describe_region(facade.workspace.region)
-    assert describe_orientations(facade.workspace.orientations).startswith("each of (0.00,")
+    assert "upright rectangle from" in described_region(facade.workspace.region)
+    assert described_orientations(facade.workspace.orientations).startswith("each of (0.00,")
     between = Orientations.within([-0.1, 0.0, 0.0], [0.1, 0.0, 0.0])
-    assert describe_orientations(between).startswith("all between (−5.73,")
+    assert described_orientations(between).startswith("all between (−5.73,")

@@ -11,8 +11,9 @@ from report_parts import pictures
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.maps import Served, workspace_maps
-from designer.report.design import pose, workspace
+from designer.report.design import workspace
 from designer.report.design import workspace_figures as captions
+from designer.report.design.report import section
 from designer.report.design.selection import usable_caption
 from designer.report.design.source import Source
 
@@ -37,7 +38,7 @@ def test_figures_that_would_be_flat_are_left_out(yard: Analysis) -> None:
     shown = [picture.caption for picture in pictures(workspace.family(charts))]
     assert len(pictures(workspace.section(charts))) == 1
     assert len(shown) == 3 and "All samples by verdict." not in shown  # every sample is held
-    assert pictures(pose.section(charts)) == []  # sag adds less than two per cent
+    assert pictures(section(charts, "pose")) == []  # sag adds less than two per cent
 
 
 def test_where_sag_matters_the_caption_says_how_much() -> None:

@@ -9,14 +9,13 @@ from collections.abc import Callable
 import pytest
 from altered import altered
 from report_cases import DEFAULTS, FAST
-from report_parts import cells
+from report_parts import FirstPage, cells, first_page, paragraphs
 from test_report_groups import YARD
 from test_report_qualities import PRISM, SELECTION, SIX
 
 from designer.analysis.analyse import Analysis
 from designer.grades.grade import Limits
 from designer.report.design.candidates import front_sentence
-from designer.report.design.first_page import FirstPage, first_page
 from designer.report.design.report import design_report
 from designer.report.design.source import source_of
 from designer.report.figures.charts_selection import pareto_chart
@@ -123,11 +122,9 @@ def test_ropes_of_groups_and_their_doubts_are_on_the_first_page(grouped: Analysi
     assert "less than the best single product" in page.groups.text
     assert page.card is not None
     assert page.card.heading == "Ropes for groups of cables"
-    assert [fact.value for fact in page.card.facts.items[:2]] == [
-        product.label for product in products
-    ]
+    assert [fact.value for fact in page.card.facts[:2]] == [product.label for product in products]
     assert all(f"{product.label} for " in page.verdict.text for product in products)
-    assert "cables 1 and 2, " in page.card.facts.items[0].note
+    assert "cables 1 and 2, " in page.card.facts[0].note
     doubtful = {product.size.id for product in products if product.size.doubt}
     titles = " ".join(statement.title for statement in page.confidence)
     assert all(f"Doubt about {name}" in titles for name in doubtful)
@@ -145,7 +142,7 @@ def test_fields_left_out_stand_in_the_appendix(fibre: Analysis) -> None:
     section = report.section("provenance")
     rows = cells(section, "Fields that the configuration file leaves out")
     named = {cell for row in rows for cell in row[::2] if cell}
-    (sentence,) = (block for block in section.blocks if str(block).startswith("Not given"))
+    (sentence,) = (text for text in paragraphs(section) if text.startswith("Not given"))
     named |= set(re.findall(r"[a-z_]+(?:\.[a-z_]+)*", str(sentence).split(": ")[1])) - {"and"}
     entries = (e for e in fibre.study.source.entries if e.given == "default")
     expected = [e.field for e in entries if not e.field.startswith("document.")]

@@ -14,7 +14,6 @@ from designer.analysis.analyse import Analysis
 from designer.report.blocks import Report
 from designer.report.design import selection as choice
 from designer.report.design.candidates import thin_table
-from designer.report.design.first_page import FirstPage
 from designer.report.design.report import design_report, report_from
 from designer.report.design.source import Source
 from designer.report.render import render_html, render_pdf
@@ -23,22 +22,21 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def report(analyses: dict[str, Analysis]) -> Report[FirstPage]:
+def report(analyses: dict[str, Analysis]) -> Report[None]:
     return design_report(analyses["positive"])
 
 
-def test_every_place_is_filled(report: Report[FirstPage]) -> None:
+def test_every_place_is_filled(report: Report[None]) -> None:
     numbers = {"checks": 1, "carries": 1, "workspace": 1, "selection": 2, "stiffness": 1}
-    numbers |= {"pose": 2, "family": 5}
+    numbers |= {"answer": 1, "pose": 2, "family": 5}
     for section in report.sections:
         assert len(pictures(section)) == numbers.get(section.id, 0), section.id
-    for picture in (report.first_page.picture, *pictures(report.sections)):
-        assert picture is not None
+    for picture in pictures(report):
         assert picture.caption.endswith(".")
         assert picture.svg.startswith("<svg") or picture.bitmap.startswith("data:image/png;base64,")
 
 
-def test_the_governing_pose_is_drawn_and_what_carries_it(report: Report[FirstPage]) -> None:
+def test_the_governing_pose_is_drawn_and_what_carries_it(report: Report[None]) -> None:
     (there,) = pictures(report.section("checks"))
     assert "which governs, is marked" in there.caption
     assert there.bitmap
@@ -46,7 +44,7 @@ def test_the_governing_pose_is_drawn_and_what_carries_it(report: Report[FirstPag
     assert "Payload" in bars.svg
 
 
-def test_the_scene_to_turn_is_in_the_page_once(report: Report[FirstPage]) -> None:
+def test_the_scene_to_turn_is_in_the_page_once(report: Report[None]) -> None:
     html = render_html(report)
     assert html.count("<iframe") == 1
     assert html.count('sandbox="allow-scripts"') == 1
@@ -54,10 +52,9 @@ def test_the_scene_to_turn_is_in_the_page_once(report: Report[FirstPage]) -> Non
 
 def test_pose_alone_has_no_workspace_pictures(pose_only: Analysis) -> None:
     drawn = design_report(pose_only)
-    assert [section.id for section in drawn.sections if pictures(section)] == ["pose"]
-    assert drawn.first_page.picture is not None
+    assert [section.id for section in drawn.sections if pictures(section)] == ["answer", "pose"]
     bitmaps = {picture.bitmap for picture in pictures(drawn.section("pose")) if picture.bitmap}
-    assert bitmaps == {drawn.first_page.picture.bitmap}
+    assert bitmaps == {picture.bitmap for picture in pictures(drawn.section("answer"))}
 
 
 def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -> None:
@@ -69,7 +66,7 @@ def test_charts_stay_vector_graphics_in_the_pdf(analyses: dict[str, Analysis]) -
     assert [len(page.images) for page in reader.pages] == [0] * len(reader.pages)
 
 
-def test_ids_in_the_page_are_unique(report: Report[FirstPage]) -> None:
+def test_ids_in_the_page_are_unique(report: Report[None]) -> None:
     ids = re.findall(r'\bid="([^"]+)"', render_html(report, paged=True))
     assert len(ids) == len(set(ids))
 

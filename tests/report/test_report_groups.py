@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import pytest
 from altered import altered
-from report_parts import cells, facts, statements, table, tables
+from report_parts import cells, facts, first_page, statements, table, tables
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.analysis.selection_json import groups_dict
 from designer.cli.tables import summary_rows
-from designer.report.design import groups as groups_of_cables
-from designer.report.design.first_page import first_page
+from designer.report.design.report import section as section_of
 from designer.report.design.source import Source
 from designer.report.figures.groups_plan import groups_plan
 from designer.selection.assignment import NOT_ASSIGNED
@@ -65,7 +64,7 @@ def test_result_has_the_groups_beside_the_single_choice(found: Analysis) -> None
 
 
 def test_section_says_the_same(found: Analysis) -> None:
-    section = groups_of_cables.section(Source(found))
+    section = section_of(Source(found), "groups")
     assert statements(section)["Products were found for the groups"].tone == "good"
     rows = cells(section, "What each group gets")
     assert [row[1] for row in rows] == ["1, 2", "3"]
@@ -91,14 +90,14 @@ def test_nothing_found_is_said(none: Analysis) -> None:
     assert part["groups"] == []
     assert part["group_choice"]["proof"] == "infeasible"
     assert part["group_choice"]["total_mass_kg"] is None
-    section = groups_of_cables.section(Source(none))
+    section = section_of(Source(none), "groups")
     assert statements(section)["No products were found for the groups"].tone == "bad"
     assert not any(one.caption.startswith("What each group") for one in tables(section))
 
 
 def test_study_without_groups_has_none(analyses: dict[str, Analysis]) -> None:
     analysis = analyses["positive"]
-    assert groups_of_cables.section(Source(analysis)) is None
+    assert section_of(Source(analysis), "groups") is None
     assert groups_dict(analysis.groups) == {"groups": [], "group_choice": None}
     assert result_dict(analysis)["selection"]["group_choice"] is None
 

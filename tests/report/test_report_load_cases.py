@@ -9,15 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from altered import altered
-from report_parts import cells, said, statements, table
+from report_parts import cells, first_page, said, statements, table
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
 from designer.cli.tables import summary_rows
 from designer.documents.plain import json_text
 from designer.model.requirement import State
-from designer.report.design import checks, load_cases
-from designer.report.design.first_page import first_page
+from designer.report.design.report import section as section_of
 from designer.report.design.source import Source, source_of
 
 pytestmark = pytest.mark.slow
@@ -97,7 +96,7 @@ def test_forces_of_the_governing_pose_add_up(found: Analysis) -> None:
 
 
 def test_the_tables(source: Source) -> None:
-    section = load_cases.section(source)
+    section = section_of(source, "load-cases")
     rows = cells(section, "Unirope-7x19-galvanised")
     assert [row[0] for row in rows] == ["static", "<b>hoisting</b>", "storm", "lost"]
     assert [row[-1] for row in rows] == ["holds", "holds, governs", "holds", "holds"]
@@ -107,7 +106,7 @@ def test_the_tables(source: Source) -> None:
 
 
 def test_the_checks(source: Source) -> None:
-    section = checks.section(source)
+    section = section_of(source, "checks")
     rows = {(row[0], row[-2].split(",")[0]): row[-1] for row in cells(section, "All that")}
     for case in ("static", "<b>hoisting</b>", "storm", "lost"):
         assert rows["Equilibrium", case] == rows["Breaking load", case] == "holds"
@@ -125,7 +124,7 @@ def test_what_fails_is_on_page_one(found: Analysis, source: Source) -> None:
         for each in found.requirements
     ]
     page = first_page(replace(source, analysis=altered(found, requirements=tuple(bent))))
-    assert statements(page)["Sheave does not hold"].tone == "bad"
+    assert {one.title: one for one in page.reasons}["Sheave does not hold"].tone == "bad"
 
 
 def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
@@ -137,15 +136,15 @@ def test_the_terminal_has_a_line_a_case(found: Analysis) -> None:
 def test_page_one_says_what_is_in_the_loads(source: Source, bare: Analysis) -> None:
     assert (
         "No acceleration or change of temperature is in any"
-        in statements(first_page(source))["Loads"].text
+        in statements(section_of(source, "answer"))["Loads"].text
     )
     alone = source_of(bare, draws=False)
-    text = statements(first_page(alone))["Loads"].text
+    text = statements(section_of(alone, "answer"))["Loads"].text
     assert text == (
         "One static load case, at rest: no dynamic factor, acceleration, wind, ice, loss of a "
         "cable or change of temperature is in it."
     )
-    assert load_cases.section(alone) is None
+    assert section_of(alone, "load-cases") is None
     assert [case["name"] for case in result_dict(bare)["load_cases"]] == ["static"]
 
 
@@ -176,7 +175,7 @@ def test_without_a_selection_the_diameter_of_each_case_is_told(
     assert "'storm' governs" in page.verdict.text
     assert page.card is not None
     assert page.card.size == f"{1e3 * storm:.2f}\u00a0mm"
-    section = load_cases.section(source)
+    section = section_of(source, "load-cases")
     rows = cells(section, "The thinnest diameter")
     assert [row[0] for row in rows] == ["static", "storm", "cold"]
     assert "Winches that regulate" in said(section)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from report_parts import table
+from report_parts import FirstPage, first_page, table
 
 from designer.analysis.analyse import Analysis
 from designer.model.verdict import Verdict
-from designer.report.design.first_page import FirstPage, first_page
 from designer.report.design.selection import section
 from designer.report.design.source import source_of
 

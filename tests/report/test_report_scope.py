@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from report_parts import statements
+from altered import altered
+from report_parts import first_page, statements
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.result_json import result_dict
@@ -17,10 +18,9 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
-from designer.report.design.first_page import first_page
-from designer.report.design.pose import section
-from designer.report.design.scope import orientation_statement, strength_statement
+from designer.report.design.report import section
 from designer.report.design.source import Source, source_of
+from designer.report.phrases import orientation_words
 from designer.resources import example_file
 from designer.study import Selection, Study
 
@@ -54,12 +54,13 @@ def turned(orientations: Orientations) -> Study:
     ],
 )
 def test_orientations_that_were_checked_are_said(orientations: Orientations, said: str) -> None:
-    (statement,) = orientation_statement(turned(orientations))
-    assert statement.text.replace("\u00a0", " ") == said
+    words, how = orientation_words(turned(orientations)) or ("", "")
+    text = f"{words[0].upper()}{words[1:]}{': ' if how else ''}{how}."
+    assert text.replace("\u00a0", " ") == said
 
 
 def test_a_point_mass_has_no_orientation() -> None:
-    assert not [*orientation_statement(read_study(example_file("fast")))]
+    assert orientation_words(read_study(example_file("fast"))) is None
 
 
 def test_losses_of_strength_are_said_also_where_none_is_assumed(
@@ -68,10 +69,10 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
     analysis = analyses["positive"]
     assert analysis.selection is not None and analysis.selection.chosen is not None
     chosen = analysis.selection.chosen
-    ropes = [(chosen.grade, chosen.size)]
 
     def said(selection: Selection) -> tuple[str, str]:
-        (statement,) = strength_statement(selection, ropes)
+        changed = altered(analysis, study=replace(analysis.study, selection=selection))
+        statement = statements(section(Source(changed), "answer"))["Losses of strength"]
         return statement.text.replace("\u00a0", " "), statement.tone
 
     nothing, tone = said(Selection())
@@ -87,7 +88,7 @@ def test_losses_of_strength_are_said_also_where_none_is_assumed(
     page = first_page(Source(analysis))
     assert "Losses of strength" in [statement.title for statement in page.confidence]
     assert page.card is not None
-    assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts.items]
+    assert "breaking load, no loss, over 2" in [fact.note for fact in page.card.facts]
 
 
 @pytest.mark.parametrize(
@@ -121,9 +122,9 @@ def test_a_pose_outside_the_region_is_flagged_everywhere(analyses: dict[str, Ana
     assert flagged.title == "The configured pose is not in the workspace"
     assert "It lies outside the region. There, " in flagged.text
     assert flagged.tone in ("doubt", "bad")
-    assert statements(section(source))[flagged.title] == flagged
+    assert statements(section(source, "pose"))[flagged.title] == flagged
     assert ("", "[bold red]lies outside the region[/]") in [*summary_rows(moved)]
-    assert flagged.title not in statements(section(Source(inside)))
+    assert flagged.title not in statements(section(Source(inside), "pose"))
 
 
 def test_forces_of_one_table_row_have_one_unit(analyses: dict[str, Analysis]) -> None:

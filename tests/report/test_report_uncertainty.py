@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from report_parts import Statement, cells, paragraphs, pictures, statements, tables
 
 from designer.analysis.uncertainty.poses import Checked
 from designer.analysis.uncertainty.shares import Share
 from designer.analysis.uncertainty.uncertainty import SizeOdds, UncertaintyAnalysis
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
-from designer.report.blocks import Picture, Section, Statement, Table
-from designer.report.design.uncertainty import probability, section, statement
+from designer.report.blocks import Section
+from designer.report.design.drawings import Drawings
+from designer.report.design.report import section
+from designer.report.odds import probability
 
 SPREADS: Any = {"payload": Normal(0.05), "modulus": Uniform(-0.15, 0.15)}
 SHARES = (
@@ -43,10 +46,19 @@ def found_of(used: np.ndarray, *, is_asked: bool = True, **other: Any) -> Uncert
     return UncertaintyAnalysis(is_asked=is_asked, chosen=own, sizes=beside, seed=0, poses=3, **rest)
 
 
-def shown(found: UncertaintyAnalysis | None, *, draws: bool = True) -> Section | None:
-    analysis = SimpleNamespace(uncertainty=found, study=SimpleNamespace(uncertainty=None))
+def shown(found: UncertaintyAnalysis | None, *, draws: bool = True, **more: Any) -> Section | None:
+    study = SimpleNamespace(uncertainty=more.get("asked"))
+    assignment = SimpleNamespace(rope=more.get("chosen"))
+    analysis = SimpleNamespace(
+        uncertainty=found, study=study, findings=None, assignment=assignment, carries=None
+    )
     source: Any = SimpleNamespace(analysis=analysis, draws=draws)
-    return section(source)
+    source.drawings = Drawings(source)
+    return section(source, "uncertainty")
+
+
+def said_first(found: UncertaintyAnalysis) -> Statement:
+    return statements(shown(found, draws=False))["With the uncertainty stated"]
 
 
 @pytest.mark.parametrize(
@@ -54,16 +66,10 @@ def shown(found: UncertaintyAnalysis | None, *, draws: bool = True) -> Section |
     [(None, "no rope was chosen"), ("5 mm", "the study has every input as certain")],
 )
 def test_what_was_asked_for_and_not_drawn_is_said(chosen: str | None, why: str) -> None:
-    def shown_of(asked: Uncertainty | None) -> Section | None:
-        study = SimpleNamespace(uncertainty=asked)
-        analysis = SimpleNamespace(uncertainty=None, study=study, chosen=chosen)
-        source: Any = SimpleNamespace(analysis=analysis, draws=True)
-        return section(source)
-
-    asked = shown_of(Uncertainty(payload=Uniform(0.0, 0.0)))
+    asked = shown(None, chosen=chosen, asked=Uncertainty(payload=Uniform(0.0, 0.0)))
     assert asked is not None
-    assert asked.blocks == (f"Nothing was drawn: {why}.",)
-    assert shown_of(None) is None
+    assert paragraphs(asked) == [f"Nothing was drawn: {why}."]
+    assert shown(None) is None
 
 
 @pytest.fixture(scope="module")
@@ -72,78 +78,73 @@ def used() -> np.ndarray:
 
 
 def test_the_first_page_has_one_line(used: np.ndarray) -> None:
-    text = statement(found_of(used)).text.replace("\u00a0", " ")
+    text = said_first(found_of(used)).text.replace("\u00a0", " ")
     assert text.startswith("Strong enough with 99.")
     assert "(95 % confidence: 99." in text
     assert "payload carries 61 % of the spread; " in text
     assert text.endswith("; this is strength alone, without the other requirements.")
-    assert statement(found_of(used)).tone == "good"
-    assert statement(found_of(1.05 * used)).tone == "doubt"
-    assert statement(found_of(1.2 * used)).tone == "bad"
+    assert said_first(found_of(used)).tone == "good"
+    assert said_first(found_of(1.05 * used)).tone == "doubt"
+    assert said_first(found_of(1.2 * used)).tone == "bad"
 
 
 def test_an_estimate_of_more_than_all_is_shown_as_all(used: np.ndarray) -> None:
     over = (replace(SHARES[0], first_order=1.014), replace(SHARES[1], first_order=-0.003))
     found = found_of(used, shares=over)
-    assert statement(found).text.replace("\u00a0", " ").count("carries 100 % of the spread;") == 1
+    assert said_first(found).text.replace("\u00a0", " ").count("carries 100 % of the spread;") == 1
     whole = shown(found, draws=False)
     assert whole is not None
-    cells = [
-        row.cells[1] for one in whole.blocks if isinstance(one, Table)
-        if one.caption.startswith("Share of each") for group in one.groups for row in group.rows
-    ]  # fmt: skip
-    assert cells == ["100\u00a0%", "0.0\u00a0%"]
+    assert [row[1] for row in cells(whole, "Share of each")] == ["100\u00a0%", "0.0\u00a0%"]
 
 
 def test_what_is_not_held_is_said(used: np.ndarray) -> None:
     some = used.copy()
     some[:41] = np.inf
     found = found_of(some, shares=(), why_no_shares="in 1 % of the draws a pose is not held")
-    assert "1.00\u00a0% of the draws a pose is not held" in statement(found).text
+    assert "1.00\u00a0% of the draws a pose is not held" in said_first(found).text
     blocks = shown(found)
     assert blocks is not None
-    assert "No shares: in 1 % of the draws a pose is not held." in blocks.blocks
-    assert len([one for one in blocks.blocks if isinstance(one, Picture)]) == 1
+    assert "No shares: in 1 % of the draws a pose is not held." in paragraphs(blocks)
+    assert len(pictures(blocks)) == 1
 
 
 def test_the_section_has_inputs_sizes_shares_and_how(used: np.ndarray) -> None:
     whole = shown(found_of(used))
     assert whole is not None
-    inputs, sizes, shares = (one for one in whole.blocks if isinstance(one, Table))
+    inputs, sizes, shares = tables(whole)
     rows = [row.cells for row in inputs.groups[0].rows]
     assert rows[0][:3] == ("Payload", "normal, standard deviation 5\u00a0%", "the study")
     assert rows[1][:3] == ("Modulus of the rope", "±\u00a015\u00a0%, uniform", "the rope's grade")
     assert [row.cells[0] for row in sizes.groups[0].rows] == ["4 mm", "5 mm", "6 mm"]
     assert [row.tone for row in sizes.groups[0].rows] == ["", "good", ""]
     assert shares.groups[0].rows[0].cells[1:3] == ("61\u00a0%", "58.0 to 64.0\u00a0%")
-    pictures = [one for one in whole.blocks if isinstance(one, Picture)]
-    assert all(one.svg.startswith("<svg") for one in pictures)
-    assert "5 mm, chosen" in pictures[0].svg
-    assert "alone (first order)" in pictures[1].svg
-    assert "In the last of 2\u00a0rounds nothing was worse." in str(whole.blocks[-1])
+    drawn = pictures(whole)
+    assert all(one.svg.startswith("<svg") for one in drawn)
+    assert "5 mm, chosen" in drawn[0].svg
+    assert "alone (first order)" in drawn[1].svg
+    assert "In the last of 2\u00a0rounds nothing was worse." in paragraphs(whole)[-1]
     bare = shown(found_of(used), draws=False)
     assert bare is not None
-    assert not [one for one in bare.blocks if isinstance(one, Picture)]
+    assert pictures(bare) == []
 
 
 def test_what_the_search_missed_is_said(used: np.ndarray) -> None:
     whole = shown(found_of(used, checked=Checked(6, 3, 0.0012)), draws=False)
     assert whole is not None
-    assert "a pose was worse by 0.12 percentage points" in str(whole.blocks[-1])
+    assert "a pose was worse by 0.12 percentage points" in paragraphs(whole)[-1]
 
 
 def test_a_borrowed_modulus_alone_takes_a_paragraph(used: np.ndarray) -> None:
     alone = {"spreads": {"modulus": Uniform(-0.15, 0.15)}, "shares": SHARES[:1], "points": 0}
     whole = shown(found_of(0.9 + 0 * used, is_asked=False, checked=Checked(), **alone))
     assert whole is not None
-    first, how = whole.blocks
-    assert isinstance(first, Statement)
+    first, (how,) = statements(whole)["Borrowed modulus"], paragraphs(whole)
     assert (
         "90.0\u00a0% throughout: the rope is strong enough with 100\u00a0% probability"
         in first.text
     )
     assert first.tone == ""
-    assert "not searched again" in str(how)
+    assert "not searched again" in how
 
 
 def test_nothing_where_all_is_certain() -> None:

@@ -6,12 +6,12 @@ import math
 from pathlib import Path
 
 import pytest
+from report_parts import Grid
+from report_parts import tables as tables_of
 
 import designer
-from designer.report.blocks import Table
-from designer.report.design.report import design_report
+from designer.report.design.report import design_report, section
 from designer.report.design.source import source_of
-from designer.report.design.workshop import section
 
 STUDY = """
 robot:
@@ -30,10 +30,8 @@ def analysis_of(tmp_path: Path, text: str) -> designer.Analysis:
     return designer.analyse(designer.read_study(path))
 
 
-def tables(analysis: designer.Analysis) -> list[Table]:
-    found = section(source_of(analysis, draws=False))
-    assert found is not None
-    return [block for block in found.blocks if isinstance(block, Table)]
+def tables(analysis: designer.Analysis) -> list[Grid]:
+    return tables_of(section(source_of(analysis, draws=False), "workshop"))
 
 
 def test_the_lengths_are_those_of_the_chosen_rope(tmp_path) -> None:

@@ -20,7 +20,7 @@ from designer.explore.desktop.theme import Theme
 from designer.explore.desktop.widgets import grey_when_old, restyle
 from designer.model.requirement import Answer, Requirement, State
 from designer.report import format as fmt
-from designer.report.design.checks import STATES, value_words
+from designer.report.phrases import STATES, with_unit
 
 if TYPE_CHECKING:
     from designer.explore.ropes import Ropes
@@ -57,9 +57,9 @@ COLUMNS = (
     Column("requirement", lambda r: r.title, lambda r: r.title, "What the study asks for.", False),
     Column("load case", lambda r: r.load_case, lambda r: r.load_case,
            "The load case; 'all' for what no load case changes.", False),
-    Column("demand", lambda r: value_words(r.demand, r.unit), lambda r: _key(r.demand),
+    Column("demand", lambda r: with_unit(r.demand, r.unit), lambda r: _key(r.demand),
            "What is required, where it comes nearest to failing."),
-    Column("capacity", lambda r: value_words(r.capacity, r.unit), lambda r: _key(r.capacity),
+    Column("capacity", lambda r: with_unit(r.capacity, r.unit), lambda r: _key(r.capacity),
            "What there is."),
     Column("utilisation", _used, lambda r: _key(r.utilisation),
            "Up to 100 % where it holds.", share=lambda r: float(r.utilisation)),

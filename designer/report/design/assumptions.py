@@ -70,7 +70,7 @@ def _motion(study: Study) -> str:
 
 def nomenclature(_: Source) -> Section:
     """Return the names of quantities, which stand in a template of their own."""
-    return Section("nomenclature", "Names of quantities")
+    return Section("nomenclature", "Nomenclature")
 
 
 def _effects(analysis: Analysis) -> str:

@@ -1,375 +1,382 @@
-"""The first page: the answer, what it rests on, and what to do where it is no."""
+"""The first page: the numbers of the answer, what it rests on, and what to do where it is no."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from designer.analysis.analyse import Analysis
-from designer.analysis.findings import Findings
-from designer.arrays import FloatArray
-from designer.model.load_case import STATIC
-from designer.model.requirement import Answer
+from designer.analysis.findings import Findings, Unserved
+from designer.effects.effect import Effect
+from designer.effects.registry import SHIPPED
+from designer.grades.grade import TRUST_MEANING, Grade, Size
+from designer.model.requirement import Requirement, State
+from designer.model.verdict import Verdict
 from designer.report import format as fmt
-from designer.report.blocks import Block, Fact, Facts, Picture, Statement
-from designer.report.design.checks import UNMET, unmet_by_title
-from designer.report.design.confidence import confidence
-from designer.report.design.groups import groups_hold, groups_statement
-from designer.report.design.negative import actions, reasons
-from designer.report.design.sag_cost import sag_cost
-from designer.report.design.selection import product_name
-from designer.report.design.source import Source
-from designer.report.design.workspace_figures import cover_picture
+from designer.report.design.checks import unmet_by_title
+from designer.report.design.proof import chosen_proof, proof_statement
 from designer.report.material_class import class_of
-from designer.selection.assignment import Assignment
+from designer.report.phrases import lacking_loads, orientation_words
 from designer.selection.candidate import Candidate
-from designer.selection.family_need import CaseNeed
+from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS
-from designer.selection.result import SelectionResult
-from designer.study import CableGroup
+from designer.statics.task import LONG
+from designer.study import Study, rope_effects
 
-_MOST_SIZES = 2
+if TYPE_CHECKING:
+    from designer.report.design.source import Source
+
+Context = Mapping[str, object]
+
 _TIGHT = 0.97
+"""A utilisation beyond which there is hardly any reserve."""
+_MOST_NAMES = 4
+"""As many grades as a piece of advice names."""
+_STRIP = 0.5  # of the inradius: what reaches deeper is no strip along the sides
+_LAYER = 0.1  # of the height: what reaches lower is no layer at the top
 
 
 @dataclass(frozen=True, slots=True)
-class Card:
-    """The answer at a glance: what it is about, the size set large, and what else is looked for.
+class Unmet:
+    """A requirement that does not hold in the load cases ``cases``, for sentences about it."""
 
-    ``metric`` is the diameter in millimetres where the size is not; it may be empty. ``product``
-    is name and maker, or what the size refers to.
-    """
+    cases: tuple[Requirement, ...]
 
-    heading: str
-    size: str
-    product: str
-    facts: Facts
-    metric: str = ""
+    @property
+    def requirement(self) -> Requirement:
+        """That of the load case where it is furthest from holding."""
+        return max(self.cases, key=lambda case: float(np.nan_to_num(case.utilisation)))
+
+    @property
+    def title(self) -> str:
+        """What is required."""
+        return self.cases[0].title
+
+    @property
+    def state_words(self) -> str:
+        """Whether it fails, or is open."""
+        is_open = self.cases[0].state is State.OPEN
+        return "is not known to hold" if is_open else "does not hold"
+
+    @property
+    def tone(self) -> str:
+        """The colour of a statement about it."""
+        return "doubt" if self.cases[0].state is State.OPEN else "bad"
+
+    @property
+    def load_cases(self) -> list[str]:
+        """The load cases, quoted; none where there is none but the static load."""
+        from designer.model.load_case import STATIC
+
+        names = dict.fromkeys(f"'{case.load_case}'" for case in self.cases)
+        return [] if names.keys() <= {"'all'", f"'{STATIC.name}'"} else [*names]
+
+    @property
+    def other_load_cases(self) -> list[str]:
+        """All but that of `requirement`, quoted."""
+        names = dict.fromkeys(f"'{case.load_case}'" for case in self.cases)
+        return [name for name in names if name != f"'{self.requirement.load_case}'"]
 
 
 @dataclass(frozen=True, slots=True)
-class FirstPage:
-    """The first page.
+class PoseOutside:
+    """The configured pose where it is not one of the workspace.
 
     Parameters
     ----------
-    verdict : Statement
-        The answer in one or two sentences.
-    card : Card or None
-        The chosen rope, or the diameter that is needed; None where there is neither.
-    reasons : tuple of Statement
-        Why the answer is no, and where; empty if it is yes.
-    actions : tuple of str
-        What could be done about it.
-    sag : tuple of Block
-        The effect of rope weight; empty where there is nothing to compare.
-    groups : Statement or None
-        What ropes for groups of cables save; None if the study has no groups.
-    confidence : tuple of Statement
-        How sure the answer is.
-    picture : Picture or None
-        The robot.
+    reason : str
+        Where it lies.
+    cable : str
+        The cable that it was solved with; empty where it was not.
+    utilisation : float
+        Its utilisation there; infinite where no equilibrium was found.
     """
 
-    verdict: Statement
-    card: Card | None
-    reasons: tuple[Statement, ...]
-    actions: tuple[str, ...]
-    sag: tuple[Block, ...]
-    groups: Statement | None
-    confidence: tuple[Statement, ...]
-    picture: Picture | None
+    reason: str
+    cable: str = ""
+    utilisation: float = math.nan
+
+    @property
+    def tone(self) -> str:
+        """The colour of the statement."""
+        return "bad" if self.cable and self.utilisation > 1.0 else "doubt"
 
 
-def first_page(source: Source) -> FirstPage:
-    """Return the first page."""
+def outside_pose(analysis: Analysis) -> PoseOutside | None:
+    """Return where the configured pose lies outside the workspace, and what holds there."""
+    outside, statics, qualities = analysis.study.pose_outside, analysis.outside, analysis.qualities
+    if not outside:
+        return None
+    if statics is None or qualities is None:
+        return PoseOutside(outside)
+    cable = qualities.cable.cable
+    largest = math.inf
+    if statics.is_solved:
+        largest = float((statics.cable_tension_N / cable.allowable_tension_N).max())
+    return PoseOutside(outside, qualities.cable.name, largest)
+
+
+def first_page(source: Source) -> Context:
+    """Return what the templates of the first page get."""
     analysis, findings = source.analysis, source.analysis.findings
-    return FirstPage(
-        verdict=_verdict(analysis, findings),
-        card=_card(analysis),
-        reasons=tuple(reasons(analysis, findings)),
-        actions=tuple(actions(analysis, findings)),
-        sag=sag_cost(source),
-        groups=groups_statement(analysis.groups) if analysis.groups else None,
-        confidence=tuple(confidence(analysis, findings)),
-        picture=_picture(source),
-    )
+    return {
+        "answer": analysis.answer.value,
+        "unmet": [Unmet(tuple(cases)) for cases in unmet_by_title(analysis.unmet)],
+        "chosen": analysis.assignment.rope,
+        "need": analysis.most_needed,
+        "groups": analysis.groups,
+        "tight": _TIGHT,
+        **_card(analysis),
+        **_advice(analysis, findings),
+        **_sureness(analysis, findings),
+        "weight": _weight(source),
+        "massless": None if analysis.ropes is None else findings.massless_choice,
+        "beside_fibre": _beside_fibre(analysis),
+    }
 
 
-def _picture(source: Source) -> Picture | None:
-    if source.draws_scenes and source.maps is not None:
-        return cover_picture(source.rope_maps or source.maps, source.analysis.ropes)
-    return replace(source.robot, kind="robot") if source.robot else None
-
-
-def _verdict(analysis: Analysis, findings: Findings) -> Statement:
-    text = _summary(analysis)
-    workspace = analysis.study.workspace
-    if workspace is not None and workspace.hangs_below == "exclude" and findings.hanging:
-        text += f" {fmt.percent(findings.hanging)} of the volume is left out, as configured."
-    if analysis.answer is Answer.YES:
-        return Statement("Yes", text, "good")
-    if analysis.assignment.is_found:
-        text += f" But {_unmet_words(analysis)}."
-    is_no = analysis.answer is Answer.NO
-    return Statement("No", text, "bad") if is_no else Statement("Open", text, "doubt")
-
-
-def _unmet_words(analysis: Analysis) -> str:
-    """Return what does not hold, each requirement once with its load cases."""
-    parts = []
-    for same in unmet_by_title(analysis.unmet):
-        first = same[0]
-        named = dict.fromkeys(f"'{each.load_case}'" for each in same)
-        is_alone = named.keys() <= {"'all'", f"'{STATIC.name}'"}
-        cases = "" if is_alone else f" in {fmt.listing(named)}"
-        parts.append(f"{first.title[0].lower()}{first.title[1:]} {UNMET[first.state]}{cases}")
-    return fmt.listing(parts)
-
-
-def _summary(analysis: Analysis) -> str:
-    """Return what was chosen and what it meets, or that nothing was."""
-    assignment = analysis.assignment
-    if assignment.has_groups:
-        return groups_hold(assignment)
-    if not assignment.is_found and not analysis.is_positive:
-        return _negative(analysis)
-    text = _positive(analysis, assignment.rope)
-    return f"{text}{_of_metal(analysis.selection, assignment.rope)}"
-
-
-def _of_metal(selection: SelectionResult | None, chosen: Candidate | None) -> str:
-    """Name the best rope of steel beside a chosen one of fibre."""
-    if selection is None or chosen is None or class_of(chosen.grade) != "fibre":
-        return ""
+def _beside_fibre(analysis: Analysis) -> Context | None:
+    """Return the best rope of steel beside a chosen one of fibre; None where there is no need."""
+    selection, chosen = analysis.selection, analysis.assignment.rope
+    if selection is None or chosen is None:
+        return None
     solved = [o for o in selection.outcomes if class_of(o.grade) in ("steel", "stainless steel")]
-    if not solved:
-        return ""
-    text = f" It is a rope of {chosen.grade.material} fibre."
-    holding = [o.best for o in solved if o.best is not None]
-    if not holding:
-        return f"{text} No rope of steel that the study allows holds."
-    first = selection.objectives[0]
-    best = min(holding, key=lambda candidate: candidate.figures.burden(first))
-    kind = "stainless steel" if class_of(best.grade) == "stainless steel" else "steel"
-    most = "largest" if MEANINGS[first].more_is_better else "least"
-    return (
-        f"{text} The rope of {kind} that holds with the {most} {MEANINGS[first].word} is "
-        f"{best.size.id} of {best.grade.id}: {fmt.kilograms(best.total_mass_kg)} in all instead of "
-        f"{fmt.kilograms(chosen.total_mass_kg)}."
-    )
+    if class_of(chosen.grade) != "fibre" or not solved:
+        return None
+    objective = selection.objectives[0]
+    holding = [outcome.best for outcome in solved if outcome.best is not None]
+    best = min(holding, key=lambda candidate: candidate.figures.burden(objective), default=None)
+    meaning = MEANINGS[objective]
+    return {
+        "best": best,
+        "kind": "" if best is None else class_of(best.grade),
+        "extreme": "largest" if meaning.more_is_better else "least",
+        "word": meaning.word,
+    }
 
 
-def _positive(analysis: Analysis, chosen: Candidate | None) -> str:
-    if chosen is not None:
-        found = chosen.verification
-        if not found.holds:
-            return _holds(chosen)
-        tight = " There is hardly any reserve beyond it." if found.utilisation > _TIGHT else ""
-        return (
-            f"{_holds(chosen)} Its largest tension is {fmt.newtons(found.max_tension_N)}, "
-            f"{fmt.utilisation(found.utilisation)} of what the safety factor allows.{tight}"
-        )
-    workspace, pose, need = analysis.workspace, analysis.pose, analysis.most_needed
-    if need is not None:
-        what = (
-            f"every pose of the workspace in every load case; '{need.governing.case.name}' governs"
-        )
-        diameter_m, tension_N = need.diameter_m, need.governing.verification.max_tension_N
-    elif workspace is not None and workspace.sagging is not None:
-        worst, what = workspace.sagging, "every pose of the workspace"
-        diameter_m, tension_N = worst.diameter_m, worst.max_tension_N
-    else:
-        assert pose is not None
-        sizing, what = pose.sizing, "the configured pose"
-        diameter_m, tension_N = float(sizing.diameter_m), float(sizing.statics.largest_tension_N)
-    return (
-        f"A cable of {fmt.millimetres(diameter_m)} of the configured family holds {what}. "
-        f"Its largest tension is {fmt.newtons(tension_N)}."
-    )
-
-
-def _holds(chosen: Candidate) -> str:
-    name = f"{chosen.grade.product} ({chosen.grade.id})"
-    return f"The {chosen.size.id} size of {name} holds every pose of the workspace."
-
-
-def _negative(analysis: Analysis) -> str:
-    """Return what is not held where no rope was chosen, and no more than is known of it."""
-    first = analysis.unmet[0]
-    if analysis.answer is Answer.OPEN:
-        return f"It was not found out: {first.formula}. What is known: {first.remark}."
-    if first.id == "pose" and analysis.workspace is None:
-        return "The configured pose cannot be held by any cable of the configured family."
-    return _no_rope(analysis) if analysis.study.selection is not None else _no_family(analysis)
-
-
-def _no_rope(analysis: Analysis) -> str:
-    workspace = analysis.workspace
-    if workspace is not None and not workspace.is_feasible:
-        return (
-            "The workspace is not served as it is: neither a cable of the configured "
-            "family nor a rope of the allowed grades was found to hold every pose."
-        )
-    if analysis.groups is not None:
-        return "No ropes that the study allows were found that hold every pose of the workspace."
-    need = ""
-    if not analysis.study.load_cases and workspace is not None and workspace.sagging is not None:
-        diameter = fmt.millimetres(workspace.sagging.diameter_m)
-        need = f" A cable of the configured family would need {diameter}."
-    return f"None of the ropes that the study allows holds every pose of the workspace.{need}"
-
-
-def _no_family(analysis: Analysis) -> str:
-    workspace, need = analysis.workspace, analysis.most_needed
-    if need is not None and not need.is_held:
-        name = need.governing.case.name
-        return f"No cable of the configured family holds every pose in the load case '{name}'."
-    if workspace is not None and not workspace.is_feasible:
-        return "The workspace is not served: no cable of the configured family holds every pose."
-    unmet = _unmet_words(analysis)
-    if workspace is None or workspace.sagging is None:
-        return f"{fmt.capital(unmet)}."
-    diameter = fmt.millimetres(workspace.sagging.diameter_m)
-    return f"A cable of {diameter} of the configured family is strong enough. But {unmet}."
-
-
-def _card(analysis: Analysis) -> Card | None:
-    assignment = analysis.assignment
+def _card(analysis: Analysis) -> Context:
+    assignment, chosen = analysis.assignment, analysis.assignment.rope
     if assignment.has_groups:
-        return _groups_card(analysis, assignment)
-    if assignment.rope is not None:
-        return _rope_card(analysis, assignment.rope)
+        longest_m = assignment.verification.longest_m
+        each = [longest_m[[cable - 1 for cable in group.cables]] for group in assignment.groups]
+        return {"longest_m": each, "diameter": None}
+    if chosen is not None:
+        return {"strength": _strength(analysis, chosen), "diameter": None}
+    return {"diameter": None if analysis.most_needed is not None else _diameter(analysis)}
+
+
+def _strength(analysis: Analysis, chosen: Candidate) -> Context:
+    """Return how the allowable tension of the load case that governs comes about."""
+    assert analysis.study.selection is not None
+    size, case = chosen.size, chosen.governing.case
+    allowable_N = chosen.governing.loaded.cable.allowable_tension_N
+    required = case.safety_factor or analysis.study.selection.safety_factor
+    efficiency = chosen.efficiency
+    if case.termination_efficiency is not None:
+        efficiency = allowable_N * required / size.minimum_breaking_load_N
+    built, table = chosen.cable.linear_density_kg_per_m, size.linear_density_kg_per_m
+    strength_N = efficiency * size.minimum_breaking_load_N
+    return {
+        "allowable_N": allowable_N,
+        "required": required,
+        "efficiency": efficiency,
+        "safety_factor": strength_N / chosen.verification.max_tension_N,
+        "is_bare": math.isclose(built, table, rel_tol=1e-9),
+    }
+
+
+def _diameter(analysis: Analysis) -> Context | None:
+    """Return the diameter that workspace or pose needs; None where none holds."""
     workspace, pose = analysis.workspace, analysis.pose
-    if analysis.most_needed is not None:
-        return _needs_card(analysis.most_needed)
     if workspace is not None:
         worst = workspace.sagging
         if worst is None:
             return None
-        found = ("workspace", worst.diameter_m, worst.max_tension_N, fmt.position(worst.place))
-    elif pose is not None and pose.sizing.statics.is_solved:
-        statics = pose.sizing.statics
-        where = fmt.position(statics.poses.position_m)
-        found = ("pose", float(pose.sizing.diameter_m), float(statics.largest_tension_N), where)
-    else:
+        return {
+            "of": "workspace",
+            "value_m": worst.diameter_m,
+            "tension_N": worst.max_tension_N,
+            "place": worst.place,
+            "is_thinnest": is_thinnest(analysis, "workspace"),
+        }
+    if pose is None or not pose.sizing.statics.is_solved:
         return None
-    what, diameter_m, tension_N, where = found
-    facts = Fact("Largest tension", fmt.newtons(tension_N)), Fact("At the position", where)
-    heading, size = diameter_heading(analysis, what), fmt.millimetres(diameter_m)
-    heading += " at rest" if analysis.study.load_cases else ""
-    return Card(heading, size, "of the configured cable family", Facts(facts))
+    return {
+        "of": "pose",
+        "value_m": float(pose.sizing.diameter_m),
+        "tension_N": float(pose.sizing.statics.largest_tension_N),
+        "place": pose.sizing.statics.poses.position_m,
+        "is_thinnest": is_thinnest(analysis, "pose"),
+    }
 
 
-def _needs_card(need: CaseNeed) -> Card | None:
-    """Return what the load cases need of the family; None where one of them is not held."""
-    if not need.is_held:
-        return None
-    met = need.governing.verification
-    facts = (
-        Fact("Load case", need.governing.case.name, fmt.printed(need.governing.loaded.words)),
-        Fact("Largest tension", fmt.newtons(met.max_tension_N)),
-        Fact("At the position", fmt.position(met.worst_place)),
-    )
-    heading, size = "Thinnest diameter found for the load cases", fmt.millimetres(need.diameter_m)
-    return Card(heading, size, "of the configured cable family", Facts(facts))
-
-
-def diameter_heading(analysis: Analysis, what: str) -> str:
-    """Return ``Diameter that the pose needs`` only where no thinner cable is proved to hold it."""
+def is_thinnest(analysis: Analysis, what: str) -> bool:
+    """Tell whether no thinner cable is proved to hold the pose or the workspace."""
     sizing = analysis.pose.sizing if analysis.pose is not None else None
     if what == "workspace" and analysis.worst_sizing is not None:
         sizing = analysis.worst_sizing
-    if sizing is not None and sizing.is_thinnest:
-        return f"Diameter that the {what} needs"
-    return f"Thinnest diameter found for the {what}"
+    return sizing is not None and bool(sizing.is_thinnest)
 
 
-def _rope_card(analysis: Analysis, chosen: Candidate) -> Card:
-    assert analysis.study.selection is not None
-    size, found = chosen.size, chosen.verification
-    most = chosen.governing
-    factor = most.case.safety_factor or analysis.study.selection.safety_factor
-    required, allowable_N = fmt.trimmed(factor), most.loaded.cable.allowable_tension_N
-    kept = chosen.efficiency
-    if most.case.termination_efficiency is not None:
-        kept = allowable_N * factor / size.minimum_breaking_load_N
-    actual = kept * size.minimum_breaking_load_N / found.max_tension_N
-    breaking, allowable, largest = fmt.newtons_alike(
-        size.minimum_breaking_load_N, allowable_N, found.max_tension_N
+def _advice(analysis: Analysis, findings: Findings) -> Context:
+    pose, unserved, workspace = analysis.pose, findings.unserved, analysis.workspace
+    advice = ""
+    if pose is not None and not pose.sizing.statics.is_solved:
+        advice = Verdict(int(pose.sizing.statics.verdict)).advice
+    return {
+        "other_grades": [] if findings.adrift else _other_grades(analysis),
+        "pose_advice": advice,
+        "is_layer": unserved is not None and _is_layer(analysis, unserved),
+        "is_strip": unserved is not None and unserved.depth_m < _STRIP * unserved.inradius_m,
+        "not_served": [] if workspace is None else _verdicts_not_served(analysis),
+    }
+
+
+def _verdicts_not_served(analysis: Analysis) -> list[Verdict]:
+    assert analysis.study.workspace is not None
+    assert analysis.workspace is not None
+    served = [Verdict.SOLVED]
+    if analysis.study.workspace.hangs_below == "exclude":
+        served.append(Verdict.NO_FINITE_CABLE)
+    statuses = analysis.workspace.census.statuses
+    return [v for v in Verdict if v not in served and statuses[v.label] > 0]
+
+
+def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:
+    assert analysis.study.workspace is not None
+    low, high = analysis.study.workspace.region.bounds_m[:, 2]
+    return bool(unserved.lowest_z_m > low + _LAYER * (high - low))
+
+
+def _other_grades(analysis: Analysis) -> list[str]:
+    """Return the grades that the study does not allow, but that would hold, the lightest first."""
+    if analysis.selection is None or analysis.assignment.is_found:
+        return []
+    fitting = [o.best for o in analysis.selection.alternatives if o.best is not None]
+    fitting.sort(key=lambda candidate: candidate.total_mass_kg)
+    names = [f"{c.grade.id} ({c.size.id})" for c in fitting[:_MOST_NAMES]]
+    more = len(fitting) - _MOST_NAMES
+    return [*names, fmt.plural(more, "other")] if more > 0 else names
+
+
+def _sureness(analysis: Analysis, findings: Findings) -> Context:
+    study, case = analysis.study, chosen_proof(analysis)
+    ropes = _ropes(analysis)
+    ids = dict.fromkeys(effect.id for effect in study.effects)
+    idle = {effect.id for effect in study.known_effects.effects if _is_of_data(effect)}
+    modulus = findings.modulus_utilisation
+    return {
+        "pose_outside": outside_pose(analysis),
+        "lacking_loads": lacking_loads(study),
+        "acting_effects": [name for name in ids if name not in idle],
+        "idle_effects": [name for name in ids if name in idle],
+        "rope_effects": rope_effects(study),
+        "margin": _margin(analysis, findings),
+        "proved": None if case is None else proof_statement(case),
+        "orientation": orientation_words(study),
+        "long": LONG,
+        "bending": _bending(study, ropes),
+        "ropes": ropes,
+        "grades": [*{grade.id: grade for grade, _ in ropes}.values()],
+        "trust_meaning": TRUST_MEANING,
+        "modulus": None if modulus is None else sorted(modulus),
+    }
+
+
+def _ropes(analysis: Analysis) -> list[tuple[Grade, Size]]:
+    """Return grade and size of each rope in use, once."""
+    ropes = analysis.assignment.ropes
+    return [*{(rope.grade.id, rope.size.id): (rope.grade, rope.size) for rope in ropes}.values()]
+
+
+def _bending(study: Study, ropes: Iterable[tuple[Grade, Size]]) -> list[str]:
+    """Return what bending over the sheave leaves of each rope."""
+    if study.selection is None or study.selection.sheave_diameter_m is None:
+        return []
+    kept, sheave_m = (
+        Allowance.of(study.selection).bending_efficiency,
+        study.selection.sheave_diameter_m,
     )
-    share = f" times {fmt.trimmed(kept, 3)}" if kept != 1.0 else ", no loss,"
-    longest, shortest = _lengths(found.longest_m), _lengths(found.shortest_m)
-    facts = (
-        Fact("Grade", chosen.grade.id),
-        Fact("Minimum breaking load", breaking),
-        Fact("Allowable tension", allowable, f"breaking load{share} over {required}"),
-        Fact("Largest tension", largest),
-        Fact("At the position", fmt.position(found.worst_place)),
-        Fact("Safety factor there", fmt.fixed(actual, 2), f"required {required}"),
-        Fact("Utilisation", fmt.utilisation(found.utilisation)),
-        *_reserve(analysis),
-        *([Fact("Load case", most.case.name)] if analysis.study.load_cases else []),
-        _mass(chosen),
-        Fact("Longest, each cable", longest, "unstrained, no spare"),
-        Fact("Shortest", shortest, "unstrained"),
-        Fact("Mass of all cables", fmt.kilograms(chosen.total_mass_kg)),
-    )
-    metric = "" if size.id.endswith("mm") else fmt.millimetres(size.diameter_m)
-    return Card("Chosen rope", size.id, product_name(chosen.grade), Facts(facts), metric)
+    return [
+        f"{fmt.percent(kept(grade, size.diameter_m))} for {size.id} "
+        f"(D/d {fmt.trimmed(sheave_m / size.diameter_m, 3)})"
+        for grade, size in ropes
+    ]
 
 
-def _reserve(analysis: Analysis) -> Iterator[Fact]:
-    """Yield how much more payload there may be."""
-    found = analysis.carries
-    if found is not None and found.payload is not None:
-        more = fmt.percent(found.payload.value - 1.0)
-        end = "until 100\u00a0% are used" if found.payload.is_held else "until a pose is not held"
-        yield Fact("Reserve in payload", more, end)
+def _is_of_data(effect: Effect) -> bool:
+    """Tell whether an effect belongs to measured data, and no design is computed with it.
+
+    A plugin need not say of one on the machine whether it reaches the design.
+    """
+    return not effect.reaches_design and (effect.on_machine is None or effect in SHIPPED.effects)
 
 
-def _mass(chosen: Candidate) -> Fact:
-    """Return the mass per length on this machine, and that of the table where it differs."""
-    built, table = chosen.cable.linear_density_kg_per_m, chosen.size.linear_density_kg_per_m
-    is_same = math.isclose(built, table, rel_tol=1e-9)
-    note = "" if is_same else f"with the declared effects; {fmt.kilograms_per_metre(table)} bare"
-    return Fact("Mass", fmt.kilograms_per_metre(built), note)
+def _margin(analysis: Analysis, findings: Findings) -> Context | None:
+    """Return the self-weight ratio, at which pose, and of what; None where it is not known."""
+    ratio = None if analysis.assignment.has_groups else findings.chosen_limit_ratio
+    workspace, pose = analysis.workspace, analysis.pose
+    if ratio is not None:
+        return {"place": "worst", "of": "the chosen grade", "ratio": ratio}
+    family: dict[str, object] = {"of": "the configured family"}
+    if workspace is not None and workspace.sagging is not None:
+        return family | {"place": "worst", "ratio": workspace.limit_ratio}
+    if workspace is None and pose is not None and pose.sizing.statics.is_solved:
+        return family | {"place": "configured", "ratio": pose.limit_ratio}
+    return None
 
 
-def _lengths(length_m: FloatArray) -> str:
-    """Return lengths as the fabrication data give them."""
-    each = [fmt.fixed(float(x), 2) for x in length_m]
-    return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
+def _weight(source: Source) -> Context | None:
+    """Compare with and without the weight of the cables: of the chosen ropes at their worst pose.
+
+    Without a rope of the configured family at the worst pose, or the configured one; None where
+    nothing compares.
+    """
+    rope = source.analysis.ropes
+    if rope is None:
+        return _at_the_worst_poses(source.analysis) or _at_the_configured_pose(source.analysis)
+    statics, straight_N = rope.worst, rope.straight.tension_N
+    if not statics.is_solved or not (straight_N >= 0.0).all():
+        return {"is_held_straight": False}
+    straight = float((straight_N / rope.cable.allowable_tension_N).max())
+    return {
+        "is_held_straight": True,
+        "rope": rope.name,
+        "tensions_N": (float(straight_N.max()), float(statics.largest_tension_N)),
+        "utilisations": (straight, float(rope.used(statics))),
+    }
 
 
-def _groups_card(analysis: Analysis, assignment: Assignment) -> Card:
-    assert analysis.study.selection is not None
-    required = fmt.trimmed(analysis.study.selection.safety_factor)
-    sizes = [*dict.fromkeys(rope.size.id for rope in assignment.ropes)]
-    distinct = fmt.plural(len(assignment.products), "product")
-    used = assignment.verification.utilisation
-    groups = zip(assignment.groups, assignment.ropes, used, strict=True)
-    facts = (
-        *(
-            Fact(group.name, rope.label, _of_group(group, assignment, float(share)))
-            for group, rope, share in groups
-        ),
-        Fact("Safety factor required", required, "on the breaking load"),
-        Fact("Mass of all cables", fmt.kilograms(assignment.total_mass_kg)),
-    )
-    return Card(
-        "Ropes for groups of cables",
-        fmt.listing(sizes) if len(sizes) <= _MOST_SIZES else distinct,
-        f"{distinct} for {fmt.plural(len(assignment.groups), 'group')}",
-        Facts(facts),
-    )
+def _at_the_worst_poses(analysis: Analysis) -> Context | None:
+    workspace = analysis.workspace
+    if workspace is None or workspace.sagging is None or workspace.massless is None:
+        return None
+    sagging, massless = workspace.sagging, workspace.massless
+    return {
+        "is_held_straight": True,
+        "rope": "",
+        "place": "each at its own worst pose" + (", at rest" if analysis.study.load_cases else ""),
+        "diameters_m": (massless.diameter_m, sagging.diameter_m),
+        "tensions_N": (massless.max_tension_N, sagging.max_tension_N),
+    }
 
 
-def _of_group(group: CableGroup, assignment: Assignment, used: float) -> str:
-    """Return which cables a group has, how much of what is allowed it uses, and its lengths."""
-    noun = "cable" if len(group.cables) == 1 else "cables"
-    longest = assignment.verification.longest_m[[cable - 1 for cable in group.cables]]
-    cables = fmt.listing(str(cable) for cable in group.cables)
-    at_most = _lengths(longest)
-    return f"{noun} {cables}, {fmt.utilisation(used)} used, at most {at_most} long"
+def _at_the_configured_pose(analysis: Analysis) -> Context | None:
+    pose = analysis.pose
+    if pose is None or not pose.sizing.statics.is_solved:
+        return None
+    sizing, massless_N = pose.sizing, float(pose.massless.largest_tension_N)
+    if not math.isfinite(massless_N):
+        return None
+    return {
+        "is_held_straight": True,
+        "rope": "",
+        "place": "at the configured pose",
+        "diameters_m": (float(sizing.massless_diameter_m), float(sizing.diameter_m)),
+        "tensions_N": (massless_N, float(sizing.statics.largest_tension_N)),
+    }

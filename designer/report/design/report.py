@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from designer.analysis.analyse import Analysis
 from designer.progress import SILENT, Reporter
 from designer.report.blocks import Report, Section
@@ -10,64 +12,73 @@ from designer.report.design import (
     assumptions,
     carries,
     checks,
-    clearance,
+    contexts,
     groups,
-    inputs,
-    left_out,
     load_cases,
     pose,
-    proof,
-    provenance,
     selection,
-    stiffness,
-    uncertainty,
-    verification,
-    workshop,
     workspace,
 )
-from designer.report.design.first_page import FirstPage, first_page
+from designer.report.design.contexts import Context, shared
+from designer.report.design.first_page import first_page
 from designer.report.design.source import Source, source_of
+from designer.report.design.workshop import fabrication
 
-SECTIONS = (
-    inputs.section,
-    checks.section,
-    carries.section,
-    uncertainty.section,
-    load_cases.section,
+SECTIONS: tuple[
+    tuple[str, Callable[[Source], Context | None]] | Callable[[Source], Section | None], ...
+] = (
+    ("answer", first_page),
+    ("inputs", contexts.inputs),
+    ("checks", checks.requirements),
+    ("carries", carries.sensitivities),
+    ("uncertainty", contexts.uncertainty),
+    ("load-cases", load_cases.load_cases),
     workspace.section,
     selection.section,
-    groups.section,
-    stiffness.section,
-    clearance.section,
-    workshop.section,
-    proof.section,
-    pose.section,
+    ("groups", groups.groups),
+    ("stiffness", contexts.stiffness),
+    ("clearance", contexts.clearance),
+    ("workshop", fabrication),
+    ("proof", contexts.proof),
+    ("pose", pose.pose),
     workspace.family,
-    verification.section,
-    left_out.section,
+    ("verification", contexts.verification),
+    ("left-out", contexts.left_out),
     assumptions.section,
     assumptions.nomenclature,
-    provenance.section,
+    ("provenance", contexts.provenance),
 )
-"""Each takes a `Source` and returns a section; None where the study gives nothing for it."""
+"""Each section's id, as its template is called, and what gives the template its context.
+
+None instead of a context where the study gives nothing for the section.
+"""
+
+
+def section(source: Source, section_id: str) -> Section | None:
+    """Return a section by its id; None where the study gives nothing for it."""
+    context = dict(entry for entry in SECTIONS if isinstance(entry, tuple))[section_id](source)
+    if context is None:
+        return None
+    kind = ""
+    if section_id == "answer":
+        kind = "first-page" if source.analysis.unmet else "first-page alone"
+    return Section(section_id, kind=kind, context={**shared(source), **context})
 
 
 def design_report(
     analysis: Analysis, *, draws: bool = True, reporter: Reporter = SILENT
-) -> Report[FirstPage]:
+) -> Report[None]:
     """Return the report on an analysis; with ``draws`` false, without figures."""
     return report_from(source_of(analysis, draws=draws), reporter)
 
 
-def report_from(source: Source, reporter: Reporter = SILENT) -> Report[FirstPage]:
+def report_from(source: Source, reporter: Reporter = SILENT) -> Report[None]:
     """Return the report from what its sections are made from."""
-    with reporter.task("drawing", len(SECTIONS) + 1) as advance:
-        analysis, page = source.analysis, first_page(source)
-        kind = f"first-page{'' if page.reasons else ' alone'}"
-        sections: list[Section | None] = [Section("answer", "The answer", kind=kind)]
+    analysis, sections = source.analysis, []
+    with reporter.task("drawing", len(SECTIONS)) as advance:
         for make in SECTIONS:
             advance(1)
-            sections.append(make(source))
+            sections.append(section(source, make[0]) if isinstance(make, tuple) else make(source))
     about = "Cable design report", analysis.study, analysis.provenance
     control = control_of(analysis.study, analysis.catalogue)
-    return Report.of("report", *about, page, sections, source.missing, control)
+    return Report.of("report", *about, None, sections, source.missing, control)

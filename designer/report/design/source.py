@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from designer.analysis.analyse import Analysis
 from designer.analysis.rope_maps import rope_maps
-from designer.report.blocks import Picture
-from designer.report.pictures import scene
+from designer.report.design.drawings import Drawings
 
 if TYPE_CHECKING:
     from designer.analysis.maps import WorkspaceMaps
@@ -39,6 +38,11 @@ class Source:
         return self.draws and not self.missing
 
     @cached_property
+    def drawings(self) -> Drawings:
+        """The figures, each drawn when it is first asked for."""
+        return Drawings(self)
+
+    @cached_property
     def maps(self) -> WorkspaceMaps | None:
         """What the figures of the workspace show; None without them."""
         if not self.draws or self.analysis.workspace is None:
@@ -53,23 +57,6 @@ class Source:
         if self.maps is None or self.analysis.ropes is None:
             return None
         return rope_maps(self.maps, self.analysis.ropes)
-
-    @cached_property
-    def robot(self) -> Picture | None:
-        """The robot in the configured pose, in space; None without such pictures."""
-        pose = self.analysis.pose
-        if not self.draws_scenes or pose is None:
-            return None
-        from designer.report.figures.scenes import robot_scene
-
-        caption = "The robot in the configured pose"
-        if pose.sizing.statics.is_solved:
-            caption += ", its cables in their true shape, each with its tension at the exit point"
-        statics = pose.sizing.statics
-        body, up = statics.robot.platform, statics.robot.level[2]
-        loads = [("weight", -statics.robot.weight_N * up), ("load", body.wrench_N[:3])]
-        drawn = robot_scene(statics, loads=loads)
-        return scene(f"{caption}.", "The robot with its cables, in space", drawn)
 
 
 def source_of(analysis: Analysis, *, draws: bool = True) -> Source:

@@ -29,9 +29,9 @@ from designer.report.blocks import (
     Table,
 )
 from designer.report.design.comparison import compared
-from designer.report.design.scope import orientation_fact
 from designer.report.design.source import Source
 from designer.report.design.workspace_figures import rope_figures, workspace_figures
+from designer.report.phrases import described_region, orientation_words
 from designer.report.pictures import chart
 from designer.study import HangsBelow, Study, Workspace
 from designer.workspace.result import Census, Extreme, WorkspaceMap
@@ -135,15 +135,6 @@ def _verdicts(census: Census) -> Picture | None:
     return chart("All samples by verdict.", alternative, verdict_chart(census))
 
 
-def describe_region(region: Region) -> str:
-    """Return a region in words."""
-    words = region.words(fmt.position, fmt.plural)
-    if region.is_discrete:
-        return words
-    low, high = region.bounds_m[:, 2]
-    return f"{words}, z from {fmt.metres(low)} to {fmt.metres(high)}"
-
-
 def _statement(found: WorkspaceMap) -> Statement:
     if found.sagging is not None:
         text = (
@@ -166,7 +157,9 @@ def _statement(found: WorkspaceMap) -> Statement:
 
 def _facts(study: Study, workspace: Workspace, found: WorkspaceMap) -> Facts:
     region = workspace.region
-    facts = [Fact("Region", describe_region(region)), *orientation_fact(study)]
+    facts = [Fact("Region", described_region(region))]
+    if (orientation := orientation_words(study)) is not None:
+        facts.append(Fact("Orientation", *orientation))
     if not region.is_discrete:
         written = {"m": fmt.metres, "m²": fmt.square_metres, "m³": fmt.cubic_metres}
         facts.extend(Fact(name, written[unit](value)) for name, value, unit in region.sizes)

@@ -1,0 +1,165 @@
+"""What the templates of plain sections get: numbers and domain objects; None for no section.
+
+Beside it every template of a design report gets `shared`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import zip_longest
+
+import numpy as np
+
+from designer.arrays import FloatArray
+from designer.model.verdict import Verdict
+from designer.report import format as fmt
+from designer.report.blocks import MOST_ROWS
+from designer.report.design.proof import chosen_proof, proof_statement
+from designer.report.design.source import Source
+from designer.study import Entry
+
+Context = Mapping[str, object]
+
+
+def shared(source: Source) -> Context:
+    """Return what every template gets: the results, and the figures, each drawn when it is read."""
+    return {
+        "analysis": source.analysis,
+        "study": source.analysis.study,
+        "assignment": source.analysis.assignment,
+        "findings": source.analysis.findings,
+        "drawings": source.drawings,
+        "most_rows": MOST_ROWS,
+        "Verdict": Verdict,
+    }
+
+
+def stiffness(source: Source) -> Context | None:
+    """Displacements under a force; None without a workspace, or where no cable holds."""
+    qualities = source.analysis.qualities
+    if qualities is None or qualities.stiffness is None:
+        return None
+    return {"survey": qualities.stiffness, "cable": qualities.cable.name}
+
+
+def clearance(source: Source) -> Context | None:
+    """How near things come; None if the study asks for no clearance, or no cable holds."""
+    qualities = source.analysis.qualities
+    if qualities is None or qualities.interference is None:
+        return None
+    survey = qualities.interference
+    pairs = (
+        ("Two cables", survey.among_cables),
+        ("A cable and the platform", survey.to_platform),
+    )
+    return {
+        "survey": survey,
+        "cable": qualities.cable.name,
+        "pairs": [pair for pair in pairs if pair[1] is not None],
+    }
+
+
+def proof(source: Source) -> Context | None:
+    """What was proved of the chosen rope, and how; None where nothing was to be."""
+    case = chosen_proof(source.analysis)
+    if case is None or case.proof.status == "off":
+        return None
+    return {"proved": proof_statement(case), "boxes": case.proof.boxes}
+
+
+def verification(source: Source) -> Context | None:
+    """Ours beside what other methods find; None where nothing was solved."""
+    answers = source.analysis.verification
+    if not answers:
+        return None
+    return {"answers": answers}
+
+
+def uncertainty(source: Source) -> Context | None:
+    """Probabilities and shares; None where nobody asked and no modulus is borrowed."""
+    from designer.analysis.uncertainty.shares import SCRAMBLES
+
+    survey = source.analysis.uncertainty
+    if survey is None:
+        asks = source.analysis.study.uncertainty is not None
+        return {"uncertainty": None} if asks else None
+    sizes = [
+        {"odds": odds, "median": middle, "highest": high}
+        for odds in survey.sizes
+        for middle, high in [_percentiles(odds.utilisation, 50.0, 95.0)]
+    ]
+    return {"uncertainty": survey, "sizes": sizes, "scrambles": SCRAMBLES}
+
+
+def _percentiles(values: FloatArray, *percents: float) -> list[float]:
+    return [float(np.percentile(values, percent, method="higher")) for percent in percents]
+
+
+def left_out(source: Source) -> Context | None:
+    """The grades that were not considered; None without a selection."""
+    analysis, selection = source.analysis, source.analysis.study.selection
+    if selection is None:
+        return None
+    grades, allowed = analysis.catalogue.grades, selection.grades
+    by_name_only: dict[str, list[str]] = {}
+    for grade in grades:
+        if grade.why_only_by_name and grade.id not in (allowed or ()):
+            by_name_only.setdefault(grade.why_only_by_name, []).append(grade.id)
+    not_allowed = (
+        []
+        if allowed is None
+        else sorted(g.id for g in grades if g.id not in allowed and not g.why_only_by_name)
+    )
+    return {
+        "not_allowed": not_allowed,
+        "by_name_only": by_name_only,
+        "rejected": analysis.left_out,
+    }
+
+
+def inputs(source: Source) -> Context:
+    """The fields that the file gives."""
+    entries = source.analysis.study.source.entries
+    given = [(entry.field, _as_given(entry)) for entry in entries if entry.given != "default"]
+    return {"given": _halves(given), "has_defaults": bool(_defaults(source))}
+
+
+def provenance(source: Source) -> Context:
+    """Program, libraries, config, time, settings, sources of grades, defaults."""
+    from designer.kernel.answer import TOLERANCE
+
+    analysis = source.analysis
+    files = ["every candidate in candidates.csv"] if analysis.selection is not None else []
+    if analysis.sweep_file is not None:
+        files.append(f"every sample in {analysis.sweep_file.name}")
+    left = _left_at_default(source)
+    return {
+        "tolerance": TOLERANCE,
+        "files": files,
+        "defaults": _halves(_defaults(source)),
+        "not_given": [entry.field for entry in left if entry.value_SI == "none"],
+    }
+
+
+def _left_at_default(source: Source) -> list[Entry]:
+    """Return the fields left out, but those that a drawing office writes on a document."""
+    entries = source.analysis.study.source.entries
+    return [e for e in entries if e.given == "default" and not e.field.startswith("document.")]
+
+
+def _defaults(source: Source) -> list[tuple[str, str]]:
+    """Return the fields left out that have a value all the same."""
+    return [(e.field, e.value_SI) for e in _left_at_default(source) if e.value_SI != "none"]
+
+
+def _as_given(entry: Entry) -> str:
+    """Return a value as the file gives it, where that has its unit, else in SI units."""
+    has_unit = entry.given[:1] not in "[{" and any(c.isalpha() for c in entry.given)
+    return entry.given if has_unit else fmt.shorter(entry.value_SI)
+
+
+def _halves(cells: list[tuple[str, str]]) -> list[tuple[str, str, str, str]]:
+    """Return fields and values, the first half on the left."""
+    half = (len(cells) + 1) // 2
+    pairs = zip_longest(cells[:half], cells[half:], fillvalue=("", ""))
+    return [(*left, *right) for left, right in pairs]

@@ -1,0 +1,252 @@
+"""Words for values that several sections, the window or the terminal show; filters of templates."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from datetime import datetime
+
+import numpy as np
+from markupsafe import Markup
+
+from designer.arrays import FloatArray
+from designer.grades.grade import Grade
+from designer.model.load_case import LoadCase, Wind
+from designer.model.region import Region
+from designer.model.requirement import Requirement, State
+from designer.model.space import Orientations
+from designer.report import format as fmt
+from designer.selection.assignment import Assignment
+from designer.study import Study
+
+_MOST_LISTED = 6
+"""As many orientations as a line has room for."""
+
+
+def compliance(value_m_per_N: float) -> str:
+    """Return a displacement per force such as ``62.1 mm/kN``."""
+    if not math.isfinite(value_m_per_N):
+        return "not stable"
+    return f"{fmt.number(1e6 * value_m_per_N, 3)}\u00a0mm/kN"
+
+
+def described_region(region: Region) -> str:
+    """Return a region in words."""
+    words = region.words(fmt.position, fmt.plural)
+    if region.is_discrete:
+        return words
+    low, high = region.bounds_m[:, 2]
+    return f"{words}, z from {fmt.metres(low)} to {fmt.metres(high)}"
+
+
+def in_first_orientation(study: Study) -> str:
+    """Return in which orientation a map over positions is drawn; empty where there is one only."""
+    if study.workspace is None or study.workspace.orientations.is_level:
+        return ""
+    if study.workspace.orientations.range_rad is not None:
+        return ", in the middle of the range of orientations"
+    return ", in the first of the orientations" if study.workspace.orientations.count > 1 else ""
+
+
+def in_millimetres(value_m: float) -> str:
+    """Return a length in millimetres with five digits, without the unit."""
+    value = 1e3 * value_m
+    return fmt.trimmed(value, 5) if value == 0.0 or value > 1e-3 else fmt.power_of_ten(value)
+
+
+def millimetre_step(step_m: float) -> str:
+    """Return a step such as ``10 mm``."""
+    return f"{fmt.trimmed(1e3 * step_m)}\u00a0mm"
+
+
+def numbers(values: Iterable[float], digits: int = 4) -> str:
+    """Return numbers as a row such as ``(0, 0, 1.5)``."""
+    return f"({', '.join(fmt.trimmed(float(value), digits) for value in values)})"
+
+
+def percentage_points(change: float) -> str:
+    """Return a change of a share such as ``+0.123``."""
+    if math.isnan(change):
+        return fmt.MISSING
+    text = fmt.fixed(100.0 * change, 3)
+    return text if text.startswith("−") else f"+{text}"
+
+
+def shown_time(moment: datetime) -> str:
+    """Return date and time as a reader wants them."""
+    return moment.strftime("%Y-%m-%d %H:%M %z").strip()
+
+
+_PARTS: dict[str, Callable[[LoadCase], bool]] = {
+    "dynamic factor": lambda case: case.dynamic_factor > 1.0,
+    "acceleration": lambda case: case.acceleration_m_per_s2 > 0.0,
+    "wind": lambda case: case.wind is not None,
+    "ice": lambda case: case.ice is not None,
+    "loss of a cable": lambda case: case.cable_lost is not None,
+    "change of temperature": lambda case: bool(case.temperature_change_K),
+}
+"""What a load case can have, for what none of a study has."""
+
+
+def lacking_loads(study: Study) -> list[str]:
+    """Return the kinds of load that are in none of the load cases."""
+    return [name for name, has in _PARTS.items() if not any(map(has, study.load_cases))]
+
+
+def _from(wind: Wind) -> str:
+    if wind.direction is not None:
+        return "in one direction"
+    return "from its worst direction" if wind.count is None else f"in {wind.count} directions"
+
+
+def changes_of_case(case: LoadCase) -> str:
+    """Return what a load case changes of the study."""
+    parts = []
+    if case.mass_kg is not None:
+        parts.append(f"platform of {fmt.kilograms(case.mass_kg)}")
+    if case.wrench_N is not None:
+        force = ", ".join(fmt.trimmed(float(x)) for x in case.wrench_N)
+        parts.append(f"wrench ({force})\u00a0N, N·m")
+    if case.dynamic_factor > 1.0:
+        parts.append(f"dynamic factor {fmt.trimmed(case.dynamic_factor)}")
+    if case.acceleration_m_per_s2 > 0.0:
+        parts.append(f"acceleration {fmt.trimmed(case.acceleration_m_per_s2)}\u00a0m/s²")
+    if case.wind is not None:
+        speed = f"{fmt.trimmed(case.wind.speed_m_per_s)}\u00a0m/s"
+        pressure = f"{fmt.trimmed(case.wind.pressure_Pa)}\u00a0Pa"
+        parts.append(f"wind of {speed} {_from(case.wind)}, pressure {pressure}")
+    if case.ice is not None:
+        parts.append(f"ice {fmt.millimetres(case.ice.thickness_m)} thick around the cables")
+    if case.temperature_change_K:
+        parts.append(f"cables {warmer(case)}, winches braked")
+    if case.cable_lost is not None:
+        which = "each cable in turn" if case.cable_lost == "each" else f"cable {case.cable_lost}"
+        parts.append(f"{which} lost")
+    if case.safety_factor is not None:
+        parts.append(f"safety factor {fmt.trimmed(case.safety_factor)}")
+    if case.termination_efficiency is not None:
+        parts.append(f"end fittings keep {fmt.percent(case.termination_efficiency)}")
+    if case.region is not None:
+        low, high = case.region.bounds_m
+        parts.append(f"platform between {fmt.position(low)} and {fmt.position(high)}")
+    return fmt.capital("; ".join(parts)) or "Nothing: the static load"
+
+
+def warmer(case: LoadCase) -> str:
+    """Return a change of temperature such as ``30 K warmer``."""
+    change = case.temperature_change_K or 0.0
+    return f"{fmt.trimmed(abs(change))}\u00a0K {'warmer' if change > 0.0 else 'colder'}"
+
+
+def angle(angle_rad: float) -> str:
+    """Return an angle such as ``41.3°``."""
+    return f"{fmt.fixed(math.degrees(angle_rad), 1)}°"
+
+
+def short_position(place: FloatArray) -> str:
+    """Return a position such as ``(12.5, 3, −1)``, as a cell of a table has room for."""
+    return f"({', '.join(f'{value:.4g}' for value in place[:3])})".replace("-", "\N{MINUS SIGN}")
+
+
+STATES = {State.HOLDS: "holds", State.OPEN: "not known", State.FAILS: "does not hold"}
+"""As a table has it."""
+
+
+def state_word(state: State) -> str:
+    """Return whether a requirement holds, as a table has it."""
+    return STATES[state]
+
+
+def with_unit(value: float, unit: str) -> str:
+    """Return a demand or a capacity with its unit."""
+    if math.isnan(value):
+        return fmt.MISSING
+    if unit == "N":
+        return fmt.newtons(value)
+    if unit == "m":
+        return fmt.millimetres(value) if abs(value) < 1.0 else fmt.metres(value)
+    return f"{fmt.trimmed(value)}\u00a0{unit}".rstrip()
+
+
+def place_of_requirement(requirement: Requirement) -> str:
+    """Return load case, direction, cable and place where a requirement is nearest to failing."""
+    parts = [requirement.load_case]
+    if requirement.direction:
+        parts.append(fmt.printed(requirement.direction))
+    if requirement.cable is not None:
+        parts.append(f"cable {requirement.cable}")
+    if requirement.place is not None:
+        parts.append(f"at {fmt.position(requirement.place[:3])}")
+    return ", ".join(parts)
+
+
+def described_orientations(orientations: Orientations) -> str:
+    """Return in words how the platform is turned at every position."""
+    if orientations.is_level:
+        return "level only"
+    turns = np.degrees(orientations.turns_rad)
+    if orientations.range_rad is None:
+        listed = "; ".join(fmt.degrees(turn) for turn in turns[:_MOST_LISTED])
+        more = f"; {len(turns) - _MOST_LISTED} more" if len(turns) > _MOST_LISTED else ""
+        return f"turned by {listed}{more}" if len(turns) == 1 else f"each of {listed}{more}"
+    low, high = np.degrees(orientations.range_rad)
+    return f"all between {fmt.degrees(low)} and {fmt.degrees(high)}"
+
+
+def orientation_words(study: Study) -> tuple[str, str] | None:
+    """Return which orientations were checked, and how; None of a point mass, which has none."""
+    if study.workspace is None or study.robot.is_point_mass:
+        return None
+    orientations = study.workspace.orientations
+    how = f"{orientations.count} of them at each sample, the worst searched between"
+    if orientations.is_level:
+        how = "the platform was not turned"
+    elif orientations.range_rad is None:
+        how = "rotation vectors, the worst of them counts" if orientations.count > 1 else ""
+    return described_orientations(orientations), how
+
+
+def product_name(grade: Grade) -> str:
+    """Return product and maker in one line."""
+    return f"{grade.product}, maker {grade.manufacturer}"
+
+
+def lengths(length_m: FloatArray) -> str:
+    """Return lengths as the fabrication data give them; one where all are equal."""
+    each = [fmt.fixed(float(length), 2) for length in length_m]
+    return f"{fmt.listing(each if len({*each}) > 1 else each[:1])}\u00a0m"
+
+
+def assigned_ropes(assignment: Assignment) -> str:
+    """Return which rope each group of cables gets."""
+    if len(assignment.products) == 1:
+        return f"Ropes of {assignment.ropes[0].label} for all groups"
+    pairs = zip(assignment.groups, assignment.ropes, strict=True)
+    return fmt.listing(f"{rope.label} for {group.name}" for group, rope in pairs)
+
+
+def lower_first(text: str) -> str:
+    """Return a title as it stands within a sentence."""
+    return text[:1].lower() + text[1:]
+
+
+def rounded_up(share: float) -> float:
+    """Return a share rounded up as it is shown, so that what is proved is not overstated."""
+    return math.ceil(1000.0 * share) / 1000.0
+
+
+def rounded_down(share: float) -> float:
+    """Return a share rounded down as it is shown."""
+    return math.floor(1000.0 * share) / 1000.0
+
+
+def each_statement(html: str) -> list[str]:
+    """Return the statements of a part of a page, one by one."""
+    return [Markup(part) for part in re.findall(r'<p class="statement.*?</p>', html, re.DOTALL)]
+
+
+def length_of_statements(html: str) -> int:
+    """Return how many characters the statements have, without their titles."""
+    texts = (re.sub(r"<strong>.*?</strong>", "", part) for part in each_statement(html))
+    return sum(len(Markup(text).striptags()) for text in texts)
