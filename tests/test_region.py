@@ -131,3 +131,9 @@ def test_samples_are_the_sequence_of_scipy(dimensions: int, seed: int) -> None:
     ours = sobol(dimensions, seed, 256)
     for _ in range(4):
         np.testing.assert_array_equal(next(ours), theirs.random(256))
+
+
+def test_outlines_from_above_and_from_the_side() -> None:
+    triangle = Prism(frozen_array([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]), (1.0, 2.0))
+    assert triangle.outline_m([0, 1]) is triangle.polygon_m
+    assert triangle.outline_m([0, 2]).tolist() == [[0, 1], [4, 1], [4, 2], [0, 2]]
