@@ -57,7 +57,7 @@ def optimise(
     from designer.io.results import write_results
     from designer.optimum.optimise import optimum_of
     from designer.optimum.page import write_optimum
-    from designer.optimum.read import read_optimisation
+    from designer.optimum.plan import read_optimisation
     from designer.report.render import REPORT_FILES, write_report_pages
 
     laid_out = read_optimisation(plan, with_plugins=not no_plugins)

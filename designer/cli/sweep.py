@@ -54,7 +54,7 @@ def sweep(
 
     from designer.report.sweep import write_sweep
     from designer.sweep import run as running
-    from designer.sweep.read import read_sweep
+    from designer.sweep.plan import read_sweep
     from designer.sweep.store import opened, read_store
 
     laid_out, base = read_sweep(plan, with_plugins=not no_plugins)

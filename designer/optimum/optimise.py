@@ -16,8 +16,7 @@ from designer.documents.document import document_of
 from designer.errors import DesignerError, InputError
 from designer.grades.registry import Catalogue
 from designer.optimum.measures import promising
-from designer.optimum.plan import Plan, Values
-from designer.optimum.read import read_optimisation
+from designer.optimum.plan import Plan, Values, read_optimisation
 from designer.optimum.result import Optimum, Profile
 from designer.optimum.search import LINE, Searched, Stop, search
 from designer.optimum.trial import Examiner, Trial

@@ -12,8 +12,8 @@ from designer.documents.plain import json_text
 from designer.io.config.moved import moved_to
 from designer.io.output import write_whole
 from designer.optimum.measures import Measure
-from designer.optimum.plan import Variable
 from designer.optimum.result import Optimum
+from designer.optimum.variables import Variable
 from designer.progress import SILENT, Reporter
 from designer.report import format as fmt
 from designer.report.blocks import (

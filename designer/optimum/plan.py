@@ -1,128 +1,39 @@
-"""What an optimisation varies, within which bounds, for what: known whole before it begins."""
+"""What an optimisation varies, for what, within which limits: read from ``OPTIMISE.yaml``."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError
 
 from designer.arrays import FloatArray
-from designer.documents.document import Document
-from designer.documents.node import Key, Node, path_text
-from designer.optimum.measures import Measure
-from designer.sweep.point import Base, Change
+from designer.documents import edits
+from designer.documents.document import Document, FileKind, decode, document_of, read_bytes
+from designer.documents.document import read_document as read_file
+from designer.documents.faults import schema_faults
+from designer.documents.fields import FreeMapping, QuantityField, Text, WholeNumber
+from designer.documents.node import Key
+from designer.documents.section import Section
+from designer.errors import Fault, InputError
+from designer.model.prism import Prism
+from designer.model.rectangle import Rectangle
+from designer.optimum.measures import MEASURES, Measure, for_study, measure_at
+from designer.optimum.variables import Variable, variables_of
+from designer.selection.candidate import common_currency, is_allowed
+from designer.spelling import did_you_mean
+from designer.study import Study
+from designer.sweep.point import Base, Change, value_at, why_no_value
+from designer.units import TIME, QuantityError, describe, in_SI, read_quantity
 
 _ROUNDING = 1e-9
-_STEPS = 1000
-"""A bound's range has so many steps, or up to ten times as many: no mast is set to a micrometre."""
+"""Relative: what rounding may break a limit by."""
 Values = tuple[float, ...]
 """One for each variable, in its unit."""
-
-
-@dataclass(frozen=True, slots=True)
-class Tie:
-    """A field that goes with a variable: it is ``origin + slope · value``, in ``unit``."""
-
-    keys: tuple[Key, ...]
-    origin: float
-    slope: float
-    unit: str
-
-    def node(self, value: float) -> Node:
-        """Return what the study has in this field at a value of the variable."""
-        text = f"{self.origin + self.slope * value + 0.0:.10g} {self.unit}".rstrip()
-        return Node(1, text, is_plain=not self.unit)
-
-
-@dataclass(frozen=True, slots=True)
-class Variable:
-    """One thing to choose.
-
-    Parameters
-    ----------
-    name : str
-        As the file calls it.
-    ties : tuple of Tie
-        The fields of the study that it sets.
-    low, high : float
-        Its bounds.
-    unit : str
-        Of both, as the file has it; empty for SI.
-    given : float or None
-        Its value in the study as it is; None where its fields have no common one.
-    is_offset : bool
-        Whether it is a change of what the study has.
-    """
-
-    name: str
-    ties: tuple[Tie, ...]
-    low: float
-    high: float
-    unit: str
-    given: float | None
-    is_offset: bool
-
-    def at(self, share: float) -> float:
-        """Return the value at a share of the range, in round steps."""
-        step = 10.0 ** math.floor(math.log10((self.high - self.low) / _STEPS))
-        value = round((self.low + share * (self.high - self.low)) / step) * step
-        return min(max(float(f"{value:.10g}"), self.low), self.high)
-
-    def share(self, value: float) -> float:
-        """Return where in the range a value lies, from 0 to 1."""
-        return (value - self.low) / (self.high - self.low)
-
-    def bound_at(self, value: float) -> str:
-        """Return which bound a value stands at: ``lower``, ``upper``, or empty for none."""
-        share = self.share(value)
-        return "lower" if abs(share) < 1e-3 else "upper" if abs(share - 1.0) < 1e-3 else ""
-
-    def is_within(self, value: float) -> bool:
-        """Tell whether a value lies within the bounds, give or take rounding."""
-        return -_ROUNDING <= self.share(value) <= 1.0 + _ROUNDING
-
-    def asks_for(self, value: float) -> str:
-        """Return what a value asks for beside the study: ``less``, ``more``, ``other`` or nothing.
-
-        Empty where the variable is of the robot, or its value that of the study.
-        """
-        senses = {tie: demand_sense(tie.keys) for tie in self.ties}
-        demands = {tie: sense for tie, sense in senses.items() if sense is not None}
-        if not demands or value == self.given:
-            return ""
-        change = math.nan if self.given is None else value - self.given
-        changes = {tie.slope * sense * change for tie, sense in demands.items()}
-        if all(x > 0.0 for x in changes):
-            return "more"
-        return "less" if all(x < 0.0 for x in changes) else "other"
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """The paths of its fields."""
-        return tuple(path_text(tie.keys) for tie in self.ties)
-
-
-_SENSES = {
-    "safety_factor": 1, "inset": -1, "clearance": 1, "floor": 1,
-    "sag": -1, "stiffness": 1, "drum_capacity": -1, "mass": 1, "dynamic_factor": 1,
-    "acceleration": 1, "speed": 1, "thickness": 1, "tension_min": 1,
-}  # fmt: skip
-"""Whether more of a demand asks for more, by the last name of its field."""
-_ASKED = ("workspace", "selection", "load_cases", "pose", "uncertainty", "surroundings")
-_OF_ROBOT = (("selection", "sheave_diameter"), ("selection", "termination_efficiency"))
-_ASKED_OF_ROBOT = (("tension_min",), ("platform", "mass"), ("platform", "wrench"))
-
-
-def demand_sense(keys: tuple[Key, ...]) -> int | None:
-    """Return 1 where more in a field of a study asks for more, -1 where less does, 0 where neither.
-
-    None where a field is what the robot is, and not what is asked of it.
-    """
-    is_asked = keys[0] in _ASKED and keys[:2] not in _OF_ROBOT
-    is_asked |= keys[0] == "robot" and any(keys[1 : 1 + len(k)] == k for k in _ASKED_OF_ROBOT)
-    is_asked |= keys == ("cable", "safety_factor")
-    return _SENSES.get(str(keys[-1]), 0) if is_asked else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,3 +127,186 @@ class Plan:
         """Return the values of the study as it is; None where a variable has none."""
         values = tuple(v.given for v in self.variables if v.given is not None)
         return values if len(values) == len(self.variables) else None
+
+
+OPTIMISATION = FileKind("an optimisation, with study, variables and objective", "study: crane.yaml")
+_OBJECTIVE = f"{', '.join(MEASURES)}, or {{minimise: a path into result.json}}"
+_LIMIT = "a quantity, or {at_most: 5 kN}, or {at_least: 0.2 m}"
+_FIRST_EVALUATIONS, _EVALUATIONS_EACH = 150, 150
+Time = Annotated[float, QuantityField(TIME, above=0.0, at_most=1e6)]
+
+
+class BudgetSection(Section):
+    """When the search ends."""
+
+    evaluations: Annotated[int, WholeNumber(10, 1_000_000)] | None = None
+    time: Time | None = None
+
+
+class OptimiseSection(Section):
+    """The whole file."""
+
+    study: Text = Field(description="the path of a study, such as crane.yaml")
+    variables: FreeMapping = Field(description="a mapping from fields of the study to bounds")
+    objective: Any = Field(description=_OBJECTIVE)
+    constraints: FreeMapping = Field(default_factory=dict)
+    budget: BudgetSection = BudgetSection()
+    starts: Annotated[int, WholeNumber(1, 20)] = 2
+    seed: Annotated[int, WholeNumber(0, 2**31)] = 0
+    samples: Annotated[int, WholeNumber(20, 100_000)] = 300
+    region: Literal["stays", "follows"] = "stays"
+
+
+def read_optimisation(path: Path, with_plugins: bool) -> Plan:
+    """Return the plan of an optimisation.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong with it, or with its study.
+    """
+    document = read_file(path, OPTIMISATION)
+    faults = list(document.faults)
+    try:
+        section = OptimiseSection.model_validate(document.root.data())
+    except ValidationError as error:
+        raise InputError([*faults, *schema_faults(error, document, OptimiseSection)]) from None
+    if not section.variables:
+        expected = "at least one field of the study"
+        faults.append(document.fault(("variables",), "the mapping is empty", expected))
+    study_path = path.parent / section.study
+    raw = read_bytes(study_path, str(study_path))
+    text = decode(raw, str(study_path))
+    original = document_of(raw, str(study_path))
+    study = Base(original, (), with_plugins).study()
+    variables = variables_of(document, original, faults)
+    moves_anchors = any("anchors" in tie.keys for variable in variables for tie in variable.ties)
+    fixed = _with_fixed_regions(text, original, study) if moves_anchors else text
+    if section.region == "follows":
+        fixed = text
+    objective = _objective(document, section.objective, faults)
+    limits = _limits(document, section.constraints, faults)
+    measures = [measure for measure in (objective, *(limit.measure for limit in limits)) if measure]
+    keep = tuple(measure.path for measure in measures)
+    if study.workspace is not None:  # all that the study asks for constrains the search
+        keep += ("answer",)
+    base = Base(document_of(fixed.encode(), str(study_path)), keep, with_plugins)
+    faults += _faults_of_measures(document, study, measures, base)
+    if faults or objective is None:
+        raise InputError(faults)
+    evaluations = _FIRST_EVALUATIONS + _EVALUATIONS_EACH * len(variables)
+    return Plan(
+        name=path.stem,
+        document=original,
+        text=fixed,
+        base=base,
+        region_stays=fixed != text,
+        variables=variables,
+        objective=for_study(objective, study),
+        limits=tuple(replace(limit, measure=for_study(limit.measure, study)) for limit in limits),
+        budget=Budget(section.budget.evaluations or evaluations, section.budget.time),
+        starts=section.starts,
+        seed=section.seed,
+        samples=section.samples,
+    )
+
+
+def _with_fixed_regions(text: str, document: Document, study: Study) -> str:
+    """Return a study whose regions stay where they are when its anchors move."""
+    cases = document.root.child("load_cases")
+    count = len(cases.content) if cases is not None and isinstance(cases.content, tuple) else 0
+    places: list[tuple[Key, ...]] = [("workspace", "region")]
+    places += [("load_cases", k, "region") for k in range(count)]
+    anchors = study.robot.exit_points_m
+    for place in places:
+        for shape in ("prism", "rectangle"):
+            written = edits.value_text(text, (*place, shape))
+            if written is not None and written.strip("'\"") == "anchors":
+                flat = (0.0, 1.0)
+                if shape == "prism":
+                    corners = Prism.over(anchors, 0.0, flat).polygon_m
+                else:
+                    corners = Rectangle.over(anchors, 0.0, flat).ends_m
+                rounded = np.round(corners, 9) + 0.0
+                points = ", ".join(f"[{x:.10g}, {y:.10g}]" for x, y in rounded)
+                text = edits.with_value(text, (*place, shape), f"[{points}]")
+    return text
+
+
+def _objective(document: Document, value: Any, faults: list[Fault]) -> Measure | None:
+    if isinstance(value, str) and value in MEASURES:
+        return MEASURES[value]
+    if isinstance(value, dict) and len(value) == 1:
+        ((goal, path),) = value.items()
+        if goal in ("minimise", "maximise") and isinstance(path, str):
+            return measure_at(path, 1 if goal == "minimise" else -1)
+    name = value if isinstance(value, str) else ""
+    expected = _OBJECTIVE + did_you_mean(name, MEASURES)
+    faults.append(document.fault(("objective",), f"{describe(value)} is not known", expected))
+    return None
+
+
+def _limits(
+    document: Document, constraints: Mapping[str, Any], faults: list[Fault]
+) -> tuple[Limit, ...]:
+    limits = []
+    for name, constraint in constraints.items():
+        place: tuple[Key, ...] = ("constraints", name)
+        measure = MEASURES.get(name) or measure_at(name)
+        usual = "at_most" if measure.sign > 0 else "at_least"
+        is_told = isinstance(constraint, dict) and len(constraint) == 1
+        ((sense, value),) = constraint.items() if is_told else ((usual, constraint),)
+        if sense not in ("at_most", "at_least") or isinstance(value, dict | list):
+            faults.append(document.fault(place, f"{describe(value)} is no limit", _LIMIT))
+            continue
+        try:
+            is_named = name in MEASURES
+            limit = read_quantity(value, measure.dimension) if is_named else in_SI(value)
+        except QuantityError as error:
+            faults.append(document.fault(place, error.problem, error.expected))
+            continue
+        upper, least = (limit, -math.inf) if sense == "at_most" else (math.inf, limit)
+        limits.append(Limit(measure, upper, least))
+    return tuple(limits)
+
+
+def _faults_of_measures(
+    document: Document, study: Study, measures: list[Measure], base: Base
+) -> list[Fault]:
+    """Return a fault for each measure that results of this study do not have."""
+    faults, result = [], None
+    for measure in measures:
+        is_objective = measure is measures[0]
+        place: tuple[Key, ...] = ("objective",) if is_objective else ("constraints", measure.name)
+        if measure.name in MEASURES:
+            part = "workspace" if measure.name == "diameter" else "selection"
+            has_volume = study.workspace is None or study.workspace.region.volume_m3 is not None
+            missing = getattr(study, part) is None
+            if measure.name == "max_tension" and study.workspace is not None:
+                missing = False
+            if missing or (measure.name == "usable_volume" and not has_volume):
+                problem = f"the study has no {part}" if missing else "the region has no volume"
+                expected = f"{part}: in the study, or another objective"
+                faults.append(document.fault(place, problem, expected))
+            elif measure.name == "rope_cost" and not _has_prices(study, base):
+                expected = "grades with price_per_m, or rope_mass"
+                faults.append(document.fault(place, "no grade of the study has prices", expected))
+            continue
+        try:
+            result = base.result(base.study()) if result is None else result
+            value = value_at(result, measure.path)
+            if isinstance(value, str | dict | list):
+                problem = f"{measure.path} is {'a text' if isinstance(value, str) else 'a list'}"
+                faults.append(document.fault(place, problem, "a number of result.json"))
+        except KeyError as error:
+            problem, expected = why_no_value(error)
+            if is_objective:
+                expected += f"; or {', '.join(MEASURES)}"
+            faults.append(document.fault(place, problem, expected))
+    return faults
+
+
+def _has_prices(study: Study, base: Base) -> bool:
+    named = study.selection.grades if study.selection is not None else None
+    grades = [grade for grade in base.catalogue().grades if is_allowed(grade, named)]
+    return common_currency(grades) is not None

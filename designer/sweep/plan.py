@@ -1,15 +1,28 @@
-"""What a sweep varies, and with which values: known whole before the first study is solved."""
+"""What a sweep varies, with which values: read from ``SWEEP.yaml``, known before it begins."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import AfterValidator, Field, ValidationError
 
+from designer import __version__
 from designer.arrays import FloatArray
-from designer.documents.document import Document
-from designer.documents.node import Key, Node, path_text
+from designer.documents.document import Document, FileKind, read_document
+from designer.documents.faults import schema_faults
+from designer.documents.fields import FreeMapping, Text, WholeNumber, different, list_of
+from designer.documents.node import Key, Node, path_keys, path_text
+from designer.documents.section import Section
+from designer.errors import Fault, InputError
+from designer.sweep.point import Base, value_at, why_no_value
+from designer.units import describe
 
 MOST_POINTS = 10_000_000
 
@@ -155,3 +168,204 @@ def columns_of(
         )
         for field, share in zip(varied, shares.T, strict=True)
     )
+
+
+SWEEP = FileKind("a sweep, with study, vary and keep", "study: crane.yaml")
+_LISTED = "a list of values, or {from: 100 kg, to: 300 kg, count: 21}"
+_KEPT = "a list of paths into result.json, such as [selection.chosen.utilisation]"
+Count = Annotated[int, WholeNumber(1, MOST_POINTS)]
+Paths = Annotated[tuple[Text, ...], list_of(1, 100, _KEPT), AfterValidator(different)]
+Goals = Annotated[tuple[Text, ...], list_of(0, 100, _KEPT)]
+
+
+class SweepSection(Section):
+    """The whole file."""
+
+    study: Text = Field(description="the path of a study, such as crane.yaml")
+    vary: FreeMapping = Field(description="a mapping from fields of the study to their values")
+    keep: Paths = Field(description=_KEPT)
+    sampling: Literal["grid", "random", "latin_hypercube"] = "grid"
+    points: Count | None = None
+    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
+    minimise: Goals = ()
+    maximise: Goals = ()
+
+
+def read_sweep(path: Path, with_plugins: bool) -> tuple[Plan, Base]:
+    """Return the plan of a sweep, and the study that it starts from.
+
+    That study is solved once, to know what results there are to keep.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong with the sweep, or with its study.
+    """
+    document = read_document(path, SWEEP)
+    faults = list(document.faults)
+    try:
+        section = SweepSection.model_validate(document.root.data())
+    except ValidationError as error:
+        raise InputError([*faults, *schema_faults(error, document, SweepSection)]) from None
+    faults += _faults_of_sampling(document, section)
+    varied = {name: _varied(document, name, section.sampling, faults) for name in section.vary}
+    _refuse(faults)
+    fields = {name: field for name, field in varied.items() if field is not None}
+    faults += _faults_of_points(document, section, fields)
+    _refuse(faults)
+    study_path = path.parent / section.study
+    base = Base(read_document(study_path), section.keep, with_plugins)
+    faults += _faults_of_fields(document, base, fields)
+    _refuse(faults)
+    kinds = _kinds(document, base, section.keep)
+    goals = _goals(document, section, kinds)
+    columns = columns_of(
+        tuple(fields.values()), section.sampling, section.points or 0, section.seed
+    )
+    grades = [source.sha256 for source in base.catalogue().sources]
+    origin = [document.root.as_written(), base.document.sha256, *grades, __version__]
+    digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
+    return Plan(base.document, columns, section.keep, kinds, goals, digest), base
+
+
+def _refuse(faults: Sequence[Fault]) -> None:
+    if faults:
+        raise InputError(faults)
+
+
+def _faults_of_sampling(document: Document, section: SweepSection) -> Iterator[Fault]:
+    if not section.vary:
+        yield document.fault(("vary",), "the mapping is empty", "at least one field of the study")
+    if section.sampling == "grid" and section.points is not None:
+        expected = "a count for each field, or sampling: random or latin_hypercube"
+        yield document.fault(("points",), "a grid has no number of points of its own", expected)
+    if section.sampling != "grid" and section.points is None:
+        yield document.fault(("points",), "is missing", f"how many, for {section.sampling}")
+
+
+def _faults_of_points(
+    document: Document, section: SweepSection, varied: Mapping[str, Range | Choice]
+) -> Iterator[Fault]:
+    """Yield a fault where two columns of the store would have one name, or there are too many."""
+    names = {*section.keep, "done", "reason"}
+    for name, field in varied.items():
+        if path_text(field.keys) in names:
+            yield document.fault(("vary", name), "is named twice, or is the name of a result", "")
+        names.add(path_text(field.keys))
+    for name, field in varied.items():
+        for inner_name, inner in varied.items():
+            if field is not inner and inner.keys[: len(field.keys)] == field.keys != inner.keys:
+                # One of the two would stand in the store as if the study had it.
+                problem = f"holds {path_text(inner.keys)}, which is varied too"
+                yield document.fault(("vary", name), problem, f"one of {name} and {inner_name}")
+    counts = [
+        field.count or 1 if isinstance(field, Range) else len(field.nodes)
+        for field in varied.values()
+    ]
+    if section.sampling == "grid" and math.prod(counts) > MOST_POINTS:
+        expected = f"{MOST_POINTS:,} at most, or latin_hypercube"
+        yield document.fault(("vary",), f"the grid has {math.prod(counts):.3g} points", expected)
+
+
+def _varied(
+    document: Document, name: str, sampling: str, faults: list[Fault]
+) -> Range | Choice | None:
+    """Return what one entry of ``vary`` asks for; None, with a fault more, where it is wrong."""
+    place: tuple[Key, ...] = ("vary", name)
+    node = document.root.at(place)
+    assert node is not None
+    if isinstance(node.content, tuple) and node.content:
+        return _choice(path_keys(name), node.content)
+    if not isinstance(node.content, dict):
+        problem = (
+            "the list is empty" if node.content == () else f"{describe(node.data())} is no list"
+        )
+        faults.append(document.fault(place, problem, _LISTED))
+        return None
+    ends = (node.child(key) for key in ("from", "to", "count"))
+    low, high, count = (None if end is None else end.quantity() for end in ends)
+    unknown = [key for key in node.content if key not in ("from", "to", "count")]
+    if unknown:
+        problem = f"unknown field '{unknown[0]}'"
+    elif low is None or high is None:
+        problem = "has no two numbers 'from' and 'to'"
+    elif low[1] != high[1]:
+        problem = f"its ends are in '{low[1]}' and '{high[1]}'"
+    elif sampling == "grid" and (count is None or count[1] or not 1 <= count[0] <= MOST_POINTS):
+        problem = "has no whole number 'count'"
+    elif sampling == "grid" and count is not None and count[0] == 1 and low[0] != high[0]:
+        problem = "has a count of 1, which does not reach from one end to the other"
+    elif sampling != "grid" and count is not None:
+        problem = f"has a count, which {sampling} does not ask for"
+    else:
+        n = None if count is None else int(count[0])
+        return Range(path_keys(name), low[0], high[0], low[1], n)
+    faults.append(document.fault(place, problem, f"{_LISTED}; both ends in one unit"))
+    return None
+
+
+def _choice(keys: tuple[Key, ...], nodes: tuple[Node, ...]) -> Choice:
+    """Return values that are numbers if all are, in one unit."""
+    parts = [node.quantity() for node in nodes]
+    units = {None if part is None else part[1] for part in parts}
+    if None in units or len(units) > 1:
+        return Choice(keys, nodes)
+    numbers = np.array([part[0] for part in parts if part is not None])
+    return Choice(keys, nodes, units.pop() or "", numbers)
+
+
+def _faults_of_fields(
+    document: Document, base: Base, varied: Mapping[str, Range | Choice]
+) -> Iterator[Fault]:
+    """Yield a fault for each field that the study cannot have.
+
+    A value that it cannot have is no fault of the sweep: those points are kept with their reason.
+    """
+    base.study()
+    for name, field in varied.items():
+        node = field.node(field.low) if isinstance(field, Range) else field.nodes[0]
+        try:
+            base.study([(field.keys, node)])
+        except KeyError:
+            yield document.fault(("vary", name), "the study has no such field", "its path there")
+        except InputError as error:
+            for fault in error.faults:
+                if fault.problem.startswith("unknown field"):
+                    yield document.fault(("vary", name), fault.problem, fault.expected)
+
+
+def _kinds(document: Document, base: Base, keep: Sequence[str]) -> dict[str, type]:
+    """Return which kept values are numbers and which texts, from the study as it is."""
+    result = base.result(base.study())
+    kinds: dict[str, type] = {}
+    faults = []
+    for index, name in enumerate(keep):
+        problem = expected = ""
+        try:
+            value: Any = value_at(result, name)
+        except KeyError as error:
+            value = None
+            problem, expected = why_no_value(error)
+        if isinstance(value, dict | list):
+            problem = f"{name} holds several values"
+            inner = list(value) if isinstance(value, dict) else range(len(value))
+            expected = ", ".join(f"{name}.{key}" for key in list(inner)[:8])
+        if problem:
+            faults.append(document.fault(("keep", index), problem, expected))
+        kinds[name] = str if isinstance(value, str) else float
+    _refuse(faults)
+    return kinds
+
+
+def _goals(document: Document, section: SweepSection, kinds: dict[str, type]) -> dict[str, int]:
+    """Return of each number that is kept whether less of it is better; all, if none is named."""
+    numbers = [name for name, kind in kinds.items() if kind is float]
+    named = [(name, 1, "minimise") for name in section.minimise]
+    named += [(name, -1, "maximise") for name in section.maximise]
+    faults = [
+        document.fault((field,), f"{describe(name)} is no number that is kept", ", ".join(numbers))
+        for name, _, field in named
+        if name not in numbers
+    ]
+    _refuse(faults)
+    return {name: sign for name, sign, _ in named} or dict.fromkeys(numbers, 1)

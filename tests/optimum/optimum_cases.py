@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from designer.optimum.optimise import optimum_of
-from designer.optimum.plan import Plan
-from designer.optimum.read import read_optimisation
+from designer.optimum.plan import Plan, read_optimisation
 from designer.optimum.result import Optimum
 
 STUDY = """# a small crane

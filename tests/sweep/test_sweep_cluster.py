@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from sweep_cases import SWEEP, written
 
-from designer.sweep.read import read_sweep
+from designer.sweep.plan import read_sweep
 from designer.sweep.run import run
 from designer.sweep.store import opened
 

@@ -8,7 +8,7 @@ import pytest
 from sweep_cases import SWEEP, written
 
 from designer.errors import InputError
-from designer.sweep.read import read_sweep
+from designer.sweep.plan import read_sweep
 
 IN_ONE_UNIT = (
     "(expected a list of values, or {from: 100 kg, to: 300 kg, count: 21}; both ends in one unit)"

@@ -26,9 +26,8 @@ from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
 from designer.sweep import run as running
 from designer.sweep import store as stores
-from designer.sweep.plan import Plan
+from designer.sweep.plan import Plan, read_sweep
 from designer.sweep.point import Base, why_negative
-from designer.sweep.read import read_sweep
 from designer.sweep.run import run
 from designer.sweep.store import Store, opened, read_store
 
