@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from designer.diagnosis.result import Choice, Diagnosis, Use
+from designer.diagnosis.result import Diagnosis, RopeChoice, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
@@ -67,7 +67,7 @@ def with_design(diagnosis: Diagnosis, grades: Sequence[Grade]) -> Diagnosis:
 class _Selected:
     """A choice, the product behind it, and the machine that it was chosen for."""
 
-    choice: Choice
+    choice: RopeChoice
     product: Candidate | None
     built: AsBuilt
 
@@ -87,7 +87,7 @@ def _selected(study: Study, grades: Sequence[Grade]) -> _Selected:
         built=built,
         load_cases=study.load_cases,
     )
-    choice = Choice(
+    choice = RopeChoice(
         grade=chosen.grade.id if chosen else None,
         size_id=chosen.size.id if chosen else None,
         diameter_m=chosen.size.diameter_m if chosen else math.nan,

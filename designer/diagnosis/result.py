@@ -102,7 +102,7 @@ class Withdrawn:
     gain_std: float = field(default=float("nan"), metadata={"json": "heldout_gain_std"})
 
 
-class Verdict(Enum):
+class DiagnosisVerdict(Enum):
     """The answer, by what was found, by the shape of what is left, and by its size."""
 
     FOUND = "found"
@@ -114,7 +114,7 @@ class Verdict(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class RopeChoice:
     """The cable that the design asks for.
 
     Parameters
@@ -200,7 +200,7 @@ class Diagnosis:
     foretold_before, foretold_after : Foretold or None
         Pose and tensions from lengths alone, by the first and the last stage; None where no
         held-out row has all lengths.
-    design_before, design_after : Choice or None
+    design_before, design_after : RopeChoice or None
         Where the study has a workspace and a selection.
     left_in : Whereabouts or None
         The reading and the rows in which structure is left; None where none is.
@@ -235,8 +235,8 @@ class Diagnosis:
     imbalance: FloatArray | None = None
     foretold_before: Foretold | None = None
     foretold_after: Foretold | None = None
-    design_before: Choice | None = None
-    design_after: Choice | None = None
+    design_before: RopeChoice | None = None
+    design_after: RopeChoice | None = None
     left_in: Whereabouts | None = None
     kept: Use | None = None
     mounted_before: Use | None = None
@@ -285,16 +285,16 @@ class Diagnosis:
         return any(x > MOST_SCATTER for name, x in self.scatter.items() if declared[name])
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> DiagnosisVerdict:
         """The answer."""
         if self.findings:
             is_complete = not (self.is_unexplained or self.is_scattered or self.doubts)
-            return Verdict.FOUND if is_complete else Verdict.IN_PART
+            return DiagnosisVerdict.FOUND if is_complete else DiagnosisVerdict.IN_PART
         if self.is_unexplained:
-            return Verdict.UNEXPLAINED
+            return DiagnosisVerdict.UNEXPLAINED
         if self.doubts:
-            return Verdict.IMPLAUSIBLE
-        return Verdict.SCATTER if self.is_scattered else Verdict.NOTHING
+            return DiagnosisVerdict.IMPLAUSIBLE
+        return DiagnosisVerdict.SCATTER if self.is_scattered else DiagnosisVerdict.NOTHING
 
     def to_dict(self) -> dict[str, Any]:
         """Return what ``diagnosis.json`` holds; a missing number is None."""

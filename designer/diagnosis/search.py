@@ -19,7 +19,7 @@ _PENALTY = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trial:
+class EffectTrial:
     """One candidate added to the present model.
 
     Parameters
@@ -67,7 +67,7 @@ class Step:
 
     Parameters
     ----------
-    trials : tuple of Trial
+    trials : tuple of EffectTrial
         All candidates, best first.
     added : Effect or None
         The one that earned its place.
@@ -75,7 +75,7 @@ class Step:
         Whether there was time to try all.
     """
 
-    trials: tuple[Trial, ...]
+    trials: tuple[EffectTrial, ...]
     added: Effect | None
     is_complete: bool = True
 
@@ -99,7 +99,7 @@ class Search:
     found: tuple[Effect, ...]
 
 
-def _simplest(trials: Sequence[Trial]) -> Trial | None:
+def _simplest(trials: Sequence[EffectTrial]) -> EffectTrial | None:
     """Of the best that earn their place, and those nearly as good, the one with fewest numbers."""
     good = [t for t in trials if t.may_be_added]
     scores = [t.score(_best_variance(good)) for t in good]
@@ -118,7 +118,7 @@ def _chance(gain: float, effect: Effect, looks: int) -> float:
     return min(float(chi2.sf(max(gain, 0.0), len(effect.parameters))) * looks, 1.0)
 
 
-def _best_variance(trials: Sequence[Trial]) -> float:
+def _best_variance(trials: Sequence[EffectTrial]) -> float:
     return min((t.fit.variance for t in trials), default=1.0)
 
 
@@ -191,18 +191,18 @@ class Searcher:
         settings = start.settings if start else ()
         return fit(self._problem, effects, self._rows, settings, thorough=thorough, anew=anew)
 
-    def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[Trial]:
+    def trials(self, effects: Sequence[Effect], present: Fit, part: str) -> list[EffectTrial]:
         """Try every other candidate in addition, best first."""
         outsiders = self._others(effects)
-        trials: list[Trial] = []
+        trials: list[EffectTrial] = []
         for effect in self._progress.each(part, outsiders):
             model = self.fit([*effects, effect], present, anew=True)
             gain = (present.loss - model.loss) / (model.variance * model.inflation[effect.key])
             chance = _chance(gain, effect, len(outsiders))
-            trials.append(Trial(effect, model, gain, chance, heldout_gain=float("nan")))
+            trials.append(EffectTrial(effect, model, gain, chance, heldout_gain=float("nan")))
         variance = _best_variance(trials)
         trials.sort(key=lambda trial: -trial.score(variance))
-        answer: list[Trial] = []
+        answer: list[EffectTrial] = []
         for trial in trials:  # cross-validated from the best down, until one earns its place
             # Three are, whatever comes of it: a report shows them.
             settled = len(answer) >= 3 and any(t.may_be_added for t in answer)

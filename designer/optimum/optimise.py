@@ -16,7 +16,7 @@ from designer.documents.document import document_of
 from designer.errors import DesignerError, InputError
 from designer.grades.registry import Catalogue
 from designer.optimum.measures import promising
-from designer.optimum.plan import Plan, Values, read_optimisation
+from designer.optimum.plan import OptimisationPlan, Values, read_optimisation
 from designer.optimum.result import Optimum, Profile
 from designer.optimum.search import LINE, Searched, Stop, search
 from designer.optimum.trial import Examiner, Trial
@@ -55,7 +55,9 @@ def optimise(
     return optimum_of(read_optimisation(Path(path), with_plugins), reporter)
 
 
-def optimum_of(plan: Plan, reporter: Reporter = SILENT, stop: Stop = lambda: False) -> Optimum:
+def optimum_of(
+    plan: OptimisationPlan, reporter: Reporter = SILENT, stop: Stop = lambda: False
+) -> Optimum:
     """Search for the best design of a plan, and verify it.
 
     ``stop`` is asked before each design; once it says so, the best so far is the answer.
@@ -98,7 +100,7 @@ def _verified(
     )
 
 
-def _ranked(plan: Plan, searched: Searched) -> list[Trial]:
+def _ranked(plan: OptimisationPlan, searched: Searched) -> list[Trial]:
     """Return the designs within the bounds, each once, the best first."""
     sign = plan.objective.sign
     designs = {t.values: t for t in searched.trials if t.values and plan.is_within(t.values)}
@@ -107,7 +109,7 @@ def _ranked(plan: Plan, searched: Searched) -> list[Trial]:
     )
 
 
-def _in_full(plan: Plan, catalogue: Catalogue, trial: Trial) -> float | None:
+def _in_full(plan: OptimisationPlan, catalogue: Catalogue, trial: Trial) -> float | None:
     """Return the objective of a design that holds over all samples and between them; else None."""
     study = _study_of(plan, trial)
     result = result_part(Analysis.begin(study, catalogue), ("positive", *plan.base.keep))
@@ -116,7 +118,7 @@ def _in_full(plan: Plan, catalogue: Catalogue, trial: Trial) -> float | None:
 
 
 def _analysed(
-    plan: Plan,
+    plan: OptimisationPlan,
     catalogue: Catalogue,
     searched: Searched,
     original: Analysis,
@@ -134,7 +136,7 @@ def _analysed(
     )
 
 
-def _study_of(plan: Plan, trial: Trial) -> Study:
+def _study_of(plan: OptimisationPlan, trial: Trial) -> Study:
     document = document_of(optimised_text(plan, trial.values).encode(), plan.document.name)
     try:
         return replace(plan.base, document=document).study()
@@ -143,7 +145,7 @@ def _study_of(plan: Plan, trial: Trial) -> Study:
         raise DesignerError(f"{plan.name}: variables: {why}") from None
 
 
-def optimised_text(plan: Plan, values: Values) -> str:
+def optimised_text(plan: OptimisationPlan, values: Values) -> str:
     """Return the text of the study with a design's values, comments kept."""
     text = plan.text
     for keys, node in plan.changes(values):

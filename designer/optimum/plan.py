@@ -67,7 +67,7 @@ class Limit:
 
 
 @dataclass(frozen=True, slots=True)
-class Budget:
+class SearchBudget:
     """When to stop: designs that are tried, and seconds; None for no limit of time."""
 
     evaluations: int
@@ -75,7 +75,7 @@ class Budget:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Plan:
+class OptimisationPlan:
     """An optimisation.
 
     Parameters
@@ -104,7 +104,7 @@ class Plan:
     variables: tuple[Variable, ...]
     objective: Measure
     limits: tuple[Limit, ...]
-    budget: Budget
+    budget: SearchBudget
     starts: int
     seed: int
     samples: int
@@ -157,7 +157,7 @@ class OptimiseSection(Section):
     region: Literal["stays", "follows"] = "stays"
 
 
-def read_optimisation(path: Path, with_plugins: bool) -> Plan:
+def read_optimisation(path: Path, with_plugins: bool) -> OptimisationPlan:
     """Return the plan of an optimisation.
 
     Raises
@@ -195,7 +195,7 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
     if faults or objective is None:
         raise InputError(faults)
     evaluations = _FIRST_EVALUATIONS + _EVALUATIONS_EACH * len(variables)
-    return Plan(
+    return OptimisationPlan(
         name=path.stem,
         document=original,
         text=fixed,
@@ -204,7 +204,7 @@ def read_optimisation(path: Path, with_plugins: bool) -> Plan:
         variables=variables,
         objective=for_study(objective, study),
         limits=tuple(replace(limit, measure=for_study(limit.measure, study)) for limit in limits),
-        budget=Budget(section.budget.evaluations or evaluations, section.budget.time),
+        budget=SearchBudget(section.budget.evaluations or evaluations, section.budget.time),
         starts=section.starts,
         seed=section.seed,
         samples=section.samples,

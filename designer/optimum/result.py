@@ -13,7 +13,7 @@ from designer.analysis.comparison import Comparison, ComparisonLine
 from designer.analysis.result_json import Json
 from designer.documents.csv_text import csv_text
 from designer.documents.plain import finite, json_text
-from designer.optimum.plan import Limit, Plan, Values
+from designer.optimum.plan import Limit, OptimisationPlan, Values
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial
 
@@ -47,7 +47,7 @@ class Optimum:
 
     Parameters
     ----------
-    plan : Plan
+    plan : OptimisationPlan
         What was asked.
     searched : Searched
         All designs that were tried.
@@ -71,7 +71,7 @@ class Optimum:
         One for each variable.
     """
 
-    plan: Plan
+    plan: OptimisationPlan
     searched: Searched
     best: Trial
     given: Analysis
@@ -250,7 +250,7 @@ class Optimum:
         return csv_text(rows)
 
 
-def is_near(plan: Plan, a: Values, b: Values, share: float) -> bool:
+def is_near(plan: OptimisationPlan, a: Values, b: Values, share: float) -> bool:
     """Tell whether two designs are no further apart than a share of each variable's range."""
     rows = zip(plan.variables, a, b, strict=True)
     return all(abs(variable.share(x) - variable.share(y)) <= share for variable, x, y in rows)

@@ -10,7 +10,7 @@ from designer.grades.grade import Grade
 from designer.model.requirement import State
 from designer.model.verdict import Verdict
 from designer.optimum.measures import Measure, NotHeldError, Quick, shortfall
-from designer.optimum.plan import Limit, Plan, Values
+from designer.optimum.plan import Limit, OptimisationPlan, Values
 from designer.study import Study, require_enough_cables
 from designer.sweep.point import why_negative, why_not
 
@@ -54,7 +54,7 @@ class Trial:
 class Examiner:
     """Tries designs of a plan; ``grades`` are those worth a try."""
 
-    plan: Plan
+    plan: OptimisationPlan
     grades: tuple[Grade, ...]
 
     def trial(self, values: Values | None) -> Trial:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from designer.arrays import FloatArray
-from designer.optimum.plan import Plan, Values
+from designer.optimum.plan import OptimisationPlan, Values
 from designer.optimum.trial import Trial
 from designer.progress import Advance
 
@@ -33,7 +33,7 @@ class Verifier:
 
     Parameters
     ----------
-    plan : Plan
+    plan : OptimisationPlan
         What is asked.
     in_full : callable
         Returns the objective of a design that holds in full [SI], else None.
@@ -49,7 +49,7 @@ class Verifier:
         The best that holds in full.
     """
 
-    plan: Plan
+    plan: OptimisationPlan
     in_full: Callable[[Trial], float | None]
     advance: Advance
     most: int = MOST_VERIFIED

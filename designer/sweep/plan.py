@@ -51,7 +51,7 @@ class Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ValueList:
     """Values of a field that are told one by one; ``numbers`` are they if all are numbers."""
 
     keys: tuple[Key, ...]
@@ -67,10 +67,10 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class SweptField:
     """The values of one field at all points, and those as the store holds them."""
 
-    varied: Range | Choice
+    varied: Range | ValueList
     values: np.ndarray
 
     @property
@@ -92,14 +92,14 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SweepPlan:
     """A sweep: the study it starts from, its points, what is kept of each.
 
     Parameters
     ----------
     document : Document
         The study, as it is written.
-    columns : tuple of Column
+    columns : tuple of SweptField
         The fields that are varied.
     keep : tuple of str
         Paths into ``result.json``.
@@ -112,7 +112,7 @@ class Plan:
     """
 
     document: Document
-    columns: tuple[Column, ...]
+    columns: tuple[SweptField, ...]
     keep: tuple[str, ...]
     kinds: Mapping[str, type]
     goals: Mapping[str, int]
@@ -129,13 +129,13 @@ class Plan:
 
 
 def columns_of(
-    varied: tuple[Range | Choice, ...], sampling: str, points: int, seed: int
-) -> tuple[Column, ...]:
+    varied: tuple[Range | ValueList, ...], sampling: str, points: int, seed: int
+) -> tuple[SweptField, ...]:
     """Return the values at all points.
 
     Parameters
     ----------
-    varied : tuple of Range or Choice
+    varied : tuple of Range or ValueList
         In the order of the file; on a grid the last varies fastest.
     sampling : str
         ``grid``, ``random`` or ``latin_hypercube``.
@@ -152,7 +152,9 @@ def columns_of(
             for field in varied
         ]
         grids = np.meshgrid(*axes, indexing="ij")
-        return tuple(Column(field, grid.ravel()) for field, grid in zip(varied, grids, strict=True))
+        return tuple(
+            SweptField(field, grid.ravel()) for field, grid in zip(varied, grids, strict=True)
+        )
     from scipy.stats import qmc
 
     if sampling == "random":
@@ -160,7 +162,7 @@ def columns_of(
     else:
         shares = qmc.LatinHypercube(len(varied), rng=seed).random(points)
     return tuple(
-        Column(
+        SweptField(
             field,
             field.at(share)
             if isinstance(field, Range)
@@ -191,7 +193,7 @@ class SweepSection(Section):
     maximise: Goals = ()
 
 
-def read_sweep(path: Path, with_plugins: bool) -> tuple[Plan, Base]:
+def read_sweep(path: Path, with_plugins: bool) -> tuple[SweepPlan, Base]:
     """Return the plan of a sweep, and the study that it starts from.
 
     That study is solved once, to know what results there are to keep.
@@ -225,7 +227,7 @@ def read_sweep(path: Path, with_plugins: bool) -> tuple[Plan, Base]:
     grades = [source.sha256 for source in base.catalogue().sources]
     origin = [document.root.as_written(), base.document.sha256, *grades, __version__]
     digest = hashlib.sha256(json.dumps(origin).encode()).hexdigest()
-    return Plan(base.document, columns, section.keep, kinds, goals, digest), base
+    return SweepPlan(base.document, columns, section.keep, kinds, goals, digest), base
 
 
 def _refuse(faults: Sequence[Fault]) -> None:
@@ -244,7 +246,7 @@ def _faults_of_sampling(document: Document, section: SweepSection) -> Iterator[F
 
 
 def _faults_of_points(
-    document: Document, section: SweepSection, varied: Mapping[str, Range | Choice]
+    document: Document, section: SweepSection, varied: Mapping[str, Range | ValueList]
 ) -> Iterator[Fault]:
     """Yield a fault where two columns of the store would have one name, or there are too many."""
     names = {*section.keep, "done", "reason"}
@@ -269,7 +271,7 @@ def _faults_of_points(
 
 def _varied(
     document: Document, name: str, sampling: str, faults: list[Fault]
-) -> Range | Choice | None:
+) -> Range | ValueList | None:
     """Return what one entry of ``vary`` asks for; None, with a fault more, where it is wrong."""
     place: tuple[Key, ...] = ("vary", name)
     node = document.root.at(place)
@@ -304,18 +306,18 @@ def _varied(
     return None
 
 
-def _choice(keys: tuple[Key, ...], nodes: tuple[Node, ...]) -> Choice:
+def _choice(keys: tuple[Key, ...], nodes: tuple[Node, ...]) -> ValueList:
     """Return values that are numbers if all are, in one unit."""
     parts = [node.quantity() for node in nodes]
     units = {None if part is None else part[1] for part in parts}
     if None in units or len(units) > 1:
-        return Choice(keys, nodes)
+        return ValueList(keys, nodes)
     numbers = np.array([part[0] for part in parts if part is not None])
-    return Choice(keys, nodes, units.pop() or "", numbers)
+    return ValueList(keys, nodes, units.pop() or "", numbers)
 
 
 def _faults_of_fields(
-    document: Document, base: Base, varied: Mapping[str, Range | Choice]
+    document: Document, base: Base, varied: Mapping[str, Range | ValueList]
 ) -> Iterator[Fault]:
     """Yield a fault for each field that the study cannot have.
 

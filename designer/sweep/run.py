@@ -14,7 +14,7 @@ from typing import Any
 from designer.errors import DesignerError, OutputError, described
 from designer.io.process import children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
-from designer.sweep.plan import Plan
+from designer.sweep.plan import SweepPlan
 from designer.sweep.point import Base, solve_points
 from designer.sweep.store import Store
 
@@ -36,7 +36,7 @@ def processes(workers: int) -> MakeExecutor:
 
 
 def run(
-    plan: Plan,
+    plan: SweepPlan,
     base: Base,
     store: Store,
     make_executor: MakeExecutor,
@@ -64,7 +64,7 @@ def run(
 
 
 def _run_until_death(
-    plan: Plan,
+    plan: SweepPlan,
     base: Base,
     store: Store,
     make_executor: MakeExecutor,

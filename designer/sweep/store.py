@@ -18,7 +18,7 @@ import numpy as np
 from designer import __version__
 from designer.errors import Fault, InputError, OutputError
 from designer.io.output import explained
-from designer.sweep.plan import Plan
+from designer.sweep.plan import SweepPlan
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,7 +32,7 @@ _LARGEST_CHUNK = 50
 class Store:
     """A sweep's store, open for this run alone; made by `opened`."""
 
-    def __init__(self, group: zarr.Group, plan: Plan) -> None:
+    def __init__(self, group: zarr.Group, plan: SweepPlan) -> None:
         self._group, self._plan = group, plan
         self._chunk = int(self._array("done").chunks[0])
 
@@ -69,7 +69,7 @@ def _as_kind(value: Any, kind: type) -> Any:
 
 
 @contextmanager
-def opened(path: Path, plan: Plan) -> Iterator[Store]:
+def opened(path: Path, plan: SweepPlan) -> Iterator[Store]:
     """Open the store of a plan, laid out anew where there is none; nobody else may fill it.
 
     Raises
@@ -110,7 +110,7 @@ def _fault(path: Path, problem: str) -> Fault:
     return Fault(str(path), None, "", problem, "that of this sweep, or another -o")
 
 
-def _lay_out(path: Path, plan: Plan) -> None:
+def _lay_out(path: Path, plan: SweepPlan) -> None:
     """Make the store with all arrays at full size, under another name until it is whole."""
     import zarr
 

@@ -9,7 +9,7 @@ from twins.troubles import troubled
 
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
-from designer.diagnosis.result import Diagnosis, Reason, Verdict
+from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Reason
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 
@@ -40,7 +40,7 @@ def test_what_is_not_in_the_list_is_unexplained(effect, carriers, tmp_path) -> N
     assert found.findings == ()
     assert found.structure_after.carriers[0].name in carriers
     assert len(found.stages) == 1
-    assert found.verdict is Verdict.UNEXPLAINED
+    assert found.verdict is DiagnosisVerdict.UNEXPLAINED
 
 
 def test_what_is_withdrawn_says_why(tmp_path) -> None:

@@ -13,7 +13,7 @@ from twins.troubles import troubled
 from designer.diagnosis.case import Case, case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.hold import Gain
-from designer.diagnosis.result import Diagnosis, Reason, Verdict
+from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Reason
 from designer.diagnosis.statistics import heldout_rows
 from designer.io.config import read_study
 from designer.measured.read import read_measured
@@ -45,7 +45,7 @@ def test_a_gain_is_clear_of_zero_by_twice_its_deviation() -> None:
 def test_noise_that_lasts_is_no_effect(robot, seed, tmp_path) -> None:
     found = diagnosed("serial noise", seed, tmp_path, robot)
     assert found.findings == ()
-    assert found.verdict is Verdict.NOTHING
+    assert found.verdict is DiagnosisVerdict.NOTHING
     assert found.structure_after.lasting.rows > 5.0
 
 
@@ -59,7 +59,7 @@ def test_a_load_cell_at_the_end_of_its_range_has_no_wrong_gain(tmp_path) -> None
 def test_poses_measured_badly_are_scatter(tmp_path) -> None:
     found = diagnosed("pose noise", 0, tmp_path)
     assert found.findings == ()
-    assert found.verdict is Verdict.SCATTER
+    assert found.verdict is DiagnosisVerdict.SCATTER
     assert verdict(found).title == "Scatter larger than the sensors explain"
 
 
@@ -100,7 +100,7 @@ def test_an_unknown_far_off_is_not_plausible(tmp_path) -> None:
     found = diagnose(replace(case, measured=measured, given=anchors, candidates=others))
     assert found.doubts
     assert "anchor_offset of cable 2" in found.doubts[0]
-    assert found.verdict in (Verdict.IMPLAUSIBLE, Verdict.UNEXPLAINED)
+    assert found.verdict in (DiagnosisVerdict.IMPLAUSIBLE, DiagnosisVerdict.UNEXPLAINED)
     assert "cannot be" in verdict(found).text
 
 
@@ -112,5 +112,5 @@ def test_an_effect_with_values_that_are_not_plausible_is_never_found(tmp_path) -
     (gone,) = [one for one in found.withdrawn if one.effect == "drum_scale"]
     assert gone.reason is Reason.IMPLAUSIBLE
     assert gone.detail.startswith("scale = 0.9")
-    assert found.verdict is not Verdict.FOUND
-    assert found.verdict is not Verdict.NOTHING
+    assert found.verdict is not DiagnosisVerdict.FOUND
+    assert found.verdict is not DiagnosisVerdict.NOTHING

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from designer.optimum.optimise import optimum_of
-from designer.optimum.plan import Plan, read_optimisation
+from designer.optimum.plan import OptimisationPlan, read_optimisation
 from designer.optimum.result import Optimum
 
 STUDY = """# a small crane
@@ -49,7 +49,7 @@ def written(folder: Path, plan: str = OF_POSE, study: str = STUDY) -> Path:
     return path
 
 
-def plan_of(folder: Path, plan: str = OF_POSE, study: str = STUDY) -> Plan:
+def plan_of(folder: Path, plan: str = OF_POSE, study: str = STUDY) -> OptimisationPlan:
     """Write both files, and read them."""
     return read_optimisation(written(folder, plan, study), with_plugins=False)
 

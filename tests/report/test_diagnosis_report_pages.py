@@ -18,7 +18,7 @@ from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose
 from designer.diagnosis.problem import Predictor
 from designer.diagnosis.propose import Proposal
-from designer.diagnosis.result import Choice, Diagnosis, Estimate, Finding, Use, Withdrawn
+from designer.diagnosis.result import Diagnosis, Estimate, Finding, RopeChoice, Use, Withdrawn
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED
@@ -188,8 +188,8 @@ def test_rivals_warnings_and_proposals_are_shown(diagnoses: dict[str, Diagnosis]
 def test_design_says_what_changes_and_what_does_not_reach_it(
     diagnoses: dict[str, Diagnosis],
 ) -> None:
-    before = Choice("grade", "5 mm", 0.005, 3500.0, 0.0050, 3520.0, 0.923)
-    after = Choice("grade", "6 mm", 0.006, 3640.0, 0.0055, 3872.0, 0.881)
+    before = RopeChoice("grade", "5 mm", 0.005, 3500.0, 0.0050, 3520.0, 0.923)
+    after = RopeChoice("grade", "6 mm", 0.006, 3640.0, 0.0055, 3872.0, 0.881)
     changed = dataclasses.replace(
         diagnoses["pulley"], design_before=before, design_after=after, kept=Use(3640.0, 1.04)
     )

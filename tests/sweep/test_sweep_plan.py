@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from designer.documents.node import Node, path_keys, path_text
-from designer.sweep.plan import Choice, Range, columns_of
+from designer.sweep.plan import Range, ValueList, columns_of
 
 MASS = Range(("robot", "platform", "mass"), 100.0, 300.0, "kg", 5)
-GRADE = Choice(("cable", "grade"), (Node(1, "a", True), Node(1, "b", True)))
+GRADE = ValueList(("cable", "grade"), (Node(1, "a", True), Node(1, "b", True)))
 
 
 def test_the_last_field_of_a_grid_varies_fastest() -> None:

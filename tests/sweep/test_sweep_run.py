@@ -26,7 +26,7 @@ from designer.documents.document import read_document
 from designer.errors import InputError, OutputError
 from designer.sweep import run as running
 from designer.sweep import store as stores
-from designer.sweep.plan import Plan, read_sweep
+from designer.sweep.plan import SweepPlan, read_sweep
 from designer.sweep.point import Base, why_negative
 from designer.sweep.run import run
 from designer.sweep.store import Store, opened, read_store
@@ -385,5 +385,5 @@ def test_no_worker_outlives_a_sweep(tmp_path: Path, number: str) -> None:
 
 
 def test_plans_do_not_share_points(tmp_path: Path) -> None:
-    plan: Plan = read_sweep(written(tmp_path), with_plugins=False)[0]
+    plan: SweepPlan = read_sweep(written(tmp_path), with_plugins=False)[0]
     assert len({str(plan.changes(point)) for point in range(plan.n_points)}) == plan.n_points

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from markupsafe import Markup
 
-from designer.diagnosis.result import Choice, Diagnosis
+from designer.diagnosis.result import Diagnosis, RopeChoice
 from designer.report import format as fmt
 from designer.report.blocks import Column, Heads, Listing, Row, Section, Table
 
@@ -107,7 +107,7 @@ def _numbers(diagnosis: Diagnosis) -> str:
     return " ".join(parts)
 
 
-def _utilisation(diagnosis: Diagnosis, before: Choice, after: Choice) -> Iterator[str]:
+def _utilisation(diagnosis: Diagnosis, before: RopeChoice, after: RopeChoice) -> Iterator[str]:
     """Yield how far the cable is used, and how far the one chosen before would be."""
     if after.grade:
         is_same = before.grade == after.grade and before.size_id == after.size_id
@@ -138,7 +138,7 @@ def _mounted(diagnosis: Diagnosis) -> str:
     return text if after.utilisation <= 1.0 else f"{text} That rope is overloaded."
 
 
-def _named(choice: Choice) -> str:
+def _named(choice: RopeChoice) -> str:
     return f"{choice.grade}, {choice.size_id}" if choice.grade else "no product holds"
 
 
@@ -191,7 +191,7 @@ def _table(diagnosis: Diagnosis) -> Table | None:
     return Table.of(caption, columns, *rows)
 
 
-def _row(title: str, choice: Choice) -> Row:
+def _row(title: str, choice: RopeChoice) -> Row:
     chosen, optimum = fmt.newtons_alike(choice.max_tension_N, choice.optimum_tension_N)
     diameter, optimum_diameter = map(fmt.millimetres, (choice.diameter_m, choice.optimum_m))
     used = fmt.utilisation(choice.utilisation)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from designer.diagnosis.errors_of import Error
-from designer.diagnosis.result import Diagnosis, Finding, Verdict
+from designer.diagnosis.result import Diagnosis, DiagnosisVerdict, Finding
 from designer.report import format as fmt
 from designer.report.blocks import Column, Picture, Statement, Table
 from designer.report.diagnosis import words
@@ -71,15 +71,15 @@ def verdict(diagnosis: Diagnosis) -> Statement:
     against, answer = _against(diagnosis), diagnosis.verdict
     if found:
         text = f"{fmt.capital(fmt.listing(found))}. {_drop(diagnosis)}{_foretold(diagnosis)}"
-        if answer is Verdict.IN_PART:
+        if answer is DiagnosisVerdict.IN_PART:
             return Statement("Found in part", f"{text} {against}", "doubt")
         doubtful = any(f.rivals or f.warnings for f in diagnosis.findings)
         return Statement("Found", text, "doubt" if doubtful else "good")
-    if answer is Verdict.UNEXPLAINED:
+    if answer is DiagnosisVerdict.UNEXPLAINED:
         return Statement("Unexplained", f"{against} No known effect accounts for it.", "bad")
-    if answer is Verdict.IMPLAUSIBLE:
+    if answer is DiagnosisVerdict.IMPLAUSIBLE:
         return Statement("Not plausible", f"{against} {_drop(diagnosis)}", "bad")
-    if answer is Verdict.SCATTER:
+    if answer is DiagnosisVerdict.SCATTER:
         more = "It goes with nothing that was recorded: poses may be measured worse than declared."
         title = "Scatter larger than the sensors explain"
         return Statement(title, f"{against} {more} {_drop(diagnosis)}", "bad")

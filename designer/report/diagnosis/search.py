@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from designer.diagnosis.result import Diagnosis, Estimate
-from designer.diagnosis.search import Step, Trial
+from designer.diagnosis.search import EffectTrial, Step
 from designer.diagnosis.statistics import SIGNIFICANCE
 from designer.report import format as fmt
 from designer.report.blocks import Column, Group, Heads, Row, Section, Table
@@ -48,7 +48,7 @@ def _later(diagnosis: Diagnosis, added: str) -> str:
     return ", which others made superfluous later"
 
 
-def _row(trial: Trial, is_added: bool) -> Row:
+def _row(trial: EffectTrial, is_added: bool) -> Row:
     cells = (
         trial.effect.key.replace(" ", words.NO_BREAK),
         fmt.number(trial.gain, 3) if abs(trial.gain) >= 0.1 else "0",
@@ -59,7 +59,7 @@ def _row(trial: Trial, is_added: bool) -> Row:
     return Row(cells, "good" if is_added else "" if trial.earns_its_place else "muted")
 
 
-def _values(trial: Trial) -> str:
+def _values(trial: EffectTrial) -> str:
     stds = iter(trial.fit.std)  # of all parameters of all settings, in their order
     for setting in trial.fit.settings:
         estimates = {

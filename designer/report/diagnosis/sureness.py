@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from designer.diagnosis.free_poses import TAKEN_UP
 from designer.diagnosis.result import MOST_SCATTER, Diagnosis, Finding, Reason, Withdrawn
-from designer.diagnosis.search import Trial
+from designer.diagnosis.search import EffectTrial
 from designer.report import format as fmt
 from designer.report.blocks import Statement
 from designer.report.diagnosis import words
@@ -79,7 +79,7 @@ def withdrawal(gone: Withdrawn) -> str:
     )
 
 
-def _trial_of(diagnosis: Diagnosis, finding: Finding) -> Trial | None:
+def _trial_of(diagnosis: Diagnosis, finding: Finding) -> EffectTrial | None:
     """Return the trial in which an effect was found; None where it came by exchange."""
     key = finding.effect.key
     for step in diagnosis.steps:
