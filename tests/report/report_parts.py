@@ -163,6 +163,8 @@ def page(part: object, name: str = "report") -> str:
         return part.body or rendered(part, stub).body
     if isinstance(part, Report):
         return "\n".join(rendered(section, part).body for section in part.sections)
+    if hasattr(part, "shape"):
+        return rendered(Section("blocks", "Blocks", (part,)), SimpleNamespace(name=name)).body
     if isinstance(part, tuple | list):
         return "\n".join(page(item, name) for item in part)
     return str(part)
