@@ -93,7 +93,7 @@ def test_all_pictures_are_drawn(flat: Analysis, facade: Study, tmp_path: Path) -
     listed = analysed(replace(facade, workspace=replace(facade.workspace, region=points)), tmp_path)
     for analysis in (flat, listed):
         source = Source(analysis, draws=True)
-        assert source.robot is not None
+        assert source.drawings.robot is not None
         shown = pictures(section(source))
         assert any("z [m]" in picture.svg for picture in shown)
         assert not any("above" in picture.caption for picture in shown)
