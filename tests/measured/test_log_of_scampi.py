@@ -8,7 +8,7 @@ import pytest
 from guide import diagnosed, study_in_guide, table
 from shared_data import needs_shared, shared
 
-from designer.diagnosis.result import Verdict
+from designer.diagnosis.result import DiagnosisVerdict
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +35,7 @@ def test_scampi_names_the_clock_and_halves_the_error(tmp_path: Path) -> None:
     assert after.heldout.value < 0.5 * before.heldout.value
     assert after.heldout.high < before.heldout.low
     # Half the rows do not show every moved exit point clearly; what is left is said.
-    assert found.verdict in (Verdict.FOUND, Verdict.IN_PART)
+    assert found.verdict in (DiagnosisVerdict.FOUND, DiagnosisVerdict.IN_PART)
     tried = {trial.effect.id for step in found.steps for trial in step.trials}
     assert {"pulley_radius", "drum_scale", "drum_layering", "creep", "elastic_modulus"} <= tried
     skipped = dict(found.skipped)
