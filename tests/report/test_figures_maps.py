@@ -65,7 +65,7 @@ class TestGrids:
 
     def test_disc_fills_the_region_to_its_boundary(self) -> None:
         region = inset(10.35)
-        disc = region.section_m(0.5, rings=40, spokes=60)
+        disc = region.section_m(1.0, rings=40, spokes=60)
         assert region.contains(disc).all()
         assert area_m2(disc) == pytest.approx(region.area_m2, rel=1e-9)
         assert np.ptp(disc[0], axis=0).max() == 0.0
