@@ -55,7 +55,7 @@ def comparison(text: Mapping[str, Any], analysis: Analysis, folder: Path) -> Ite
     """A study differs from itself in nothing."""
     result = analysis.to_dict()
     found = compare(result, copy.deepcopy(result))
-    lines = (*found.inputs, *found.products, *found.others)
+    lines = (*found.inputs, *found.products, *found.remaining)
     yield from (f"differs from itself: {line.path}" for line in lines)
 
 
