@@ -24,6 +24,7 @@ from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations, Space
 from designer.model.uncertainty import Uncertainty
+from designer.model.verdict import Verdict
 
 _LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
@@ -126,6 +127,20 @@ class Workspace:
             first = np.sort(np.argsort(draws)[:count])
             kept, draws = kept[first], draws[first]
         return self.space.places(kept)
+
+    @property
+    def served(self) -> tuple[Verdict, ...]:
+        """Verdicts of a pose at which nothing is wrong: it is held, or `hangs_below` leaves it out.
+
+        What no finite cable holds is left out too, see `designer.workspace.demand.is_left_out`.
+        """
+        if self.hangs_below == "include":
+            return (Verdict.SOLVED,)
+        return Verdict.SOLVED, Verdict.NO_FINITE_CABLE
+
+    def not_served(self, statuses: Mapping[str, int]) -> list[Verdict]:
+        """Return the verdicts, of samples counted by their labels, at which something is wrong."""
+        return [v for v in Verdict if statuses[v.label] > 0 and v not in self.served]
 
     @property
     def sample_count(self) -> int:

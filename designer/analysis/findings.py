@@ -15,7 +15,6 @@ import numpy as np
 from designer.analysis.adrift import Adrift, adrift_in
 from designer.grades.grade import Size
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import Verdict
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
@@ -250,9 +249,6 @@ def _unserved(analysis: Analysis) -> Unserved | None:
     region = workspace.region
     if survey.is_feasible:
         return None
-    fine = [Verdict.SOLVED]
-    if workspace.hangs_below == "exclude":
-        fine.append(Verdict.NO_FINITE_CABLE)
     depth_m = inradius_m = 0.0
     lowest_m = np.inf
     with open_sweep(analysis.sweep_file) as sweep:
@@ -262,7 +258,7 @@ def _unserved(analysis: Analysis) -> Unserved | None:
             distance = region.depth_m(position)
             if distance is None:
                 return None
-            unserved = ~np.isin(part["verdict"].values, fine)
+            unserved = ~np.isin(part["verdict"].values, workspace.served)
             depth_m = max(depth_m, float(distance[unserved].max(initial=0.0)))
             inradius_m = max(inradius_m, float(distance.max(initial=0.0)))
             lowest_m = min(lowest_m, float(position[unserved, 2].min(initial=np.inf)))

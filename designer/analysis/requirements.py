@@ -100,11 +100,7 @@ def _workspace(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> Require
 def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> tuple[State, str]:
     """Return whether it is proved that a pose is not held, and what is known of it."""
     assert study.workspace is not None
-    fine = {Verdict.SOLVED}
-    if study.workspace.hangs_below == "exclude":
-        fine.add(Verdict.NO_FINITE_CABLE)
-    statuses = workspace.census.statuses
-    unserved: list[Verdict] = [v for v in Verdict if statuses[v.label] and v not in fine]
+    unserved = study.workspace.not_served(workspace.census.statuses)
     if not unserved:
         if workspace.infeasible_pose is None:
             return State.FAILS, "every pose is left out"

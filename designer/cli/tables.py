@@ -131,14 +131,14 @@ def _summary_of_selection(
     case = chosen.governing.case
     terms = terms if case is STATIC else f"in the load case '{escape(case.name)}'"
     yield "  utilisation", f"{chosen.verification.utilisation:.1%} {terms}"
-    for outcome in chosen.cases:
-        if outcome.case is not STATIC:
-            verification, cable = outcome.verification, outcome.most_used
+    for result in chosen.cases:
+        if result.case is not STATIC:
+            verification, cable = result.verification, result.most_used
             at = ", ".join(f"{x:.4g}" for x in verification.worst_place[:3])
-            more = f"; {escape(outcome.loaded.words)}" if outcome.loaded.words else ""
+            more = f"; {escape(result.loaded.words)}" if result.loaded.words else ""
             tension = f"{verification.max_tension_N / 1e3:.4g} kN"
             used = f"{verification.utilisation:.1%}, cable {cable} with {tension}"
-            yield f"  {escape(outcome.case.name)}", f"{used}, at ({at}) m{more}"
+            yield f"  {escape(result.case.name)}", f"{used}, at ({at}) m{more}"
     mass = f"{chosen.cable.linear_density_kg_per_m:.4g} kg/m, {chosen.total_mass_kg:.4g} kg in all"
     yield "  mass", mass
 
@@ -307,9 +307,14 @@ def print_check(check: Check, folder: Path, written: Sequence[str]) -> None:
 def _left(check: Check) -> Iterator[Row]:
     for name, scale, unit in _MEASURED:
         for label, model in check.models:
-            length_m = model.length_m if name == "length" else model.tension_N
-            if length_m is not None:
-                figures = (length_m.rms.value, length_m.rms.low, length_m.rms.high, length_m.median)
+            deviation = model.length_m if name == "length" else model.tension_N
+            if deviation is not None:
+                figures = (
+                    deviation.rms.value,
+                    deviation.rms.low,
+                    deviation.rms.high,
+                    deviation.median,
+                )
                 value, low, high, median = (f"{scale * x:.4g}" for x in figures)
                 yield rf"{name} \[{unit}]", label, value, f"{low} to {high}", median
     for label, model in check.models:

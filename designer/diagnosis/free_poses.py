@@ -176,7 +176,7 @@ def taken_up(
 
     Parameters
     ----------
-    problem, effects, given, rows
+    problem, effects, unconditional, rows
         As for `designer.diagnosis.search.Searcher`.
     """
     from scipy.stats import chi2

@@ -29,8 +29,8 @@ class Predictor:
     measured : Measured
         The data.
     fixed : sequence of Setting
-        Effects that are declared; with those that are tried they act in the order of ``known``.
-    known : KnownEffects
+        Effects that are declared; with those that are tried they act in the order of ``effects``.
+    effects : KnownEffects
         All effects, in the order in which they act.
     """
 

@@ -108,7 +108,7 @@ class InternalForces:
     ----------
     built : callable
         The machine with given effects.
-    shown : callable
+    sensors : callable
         What sensors make of lengths and tensions that are there, with given effects.
     """
 

@@ -131,7 +131,7 @@ class Searcher:
         Data, model, noise.
     candidates : sequence of Effect
         In the order in which effects act.
-    given : sequence of Effect
+    unconditional : sequence of Effect
         Unknown from the start: always fitted, and never a finding.
     rows : array (n_rows,) of bool
         Rows for fitting.

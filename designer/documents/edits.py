@@ -178,8 +178,8 @@ def _with_field(text: str, node: _Node, name: str, value: str) -> str:
 
 
 def _line_end(text: str, at: int) -> int:
-    find = text.find("\n", at)
-    return len(text) if find < 0 else find
+    end = text.find("\n", at)
+    return len(text) if end < 0 else end
 
 
 def field_count(text: str, keys: Sequence[Key]) -> int:

@@ -221,9 +221,9 @@ class _ListOf:
         return given
 
 
-def list_of(least: int, number: int, expected: str) -> _ListOf:
+def list_of(least: int, greatest: int, expected: str) -> _ListOf:
     """Return the check of a list's length, before its items are read."""
-    return _ListOf(least, number, expected)
+    return _ListOf(least, greatest, expected)
 
 
 def only_word(word: str, expected: str) -> BeforeValidator:

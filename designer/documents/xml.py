@@ -50,10 +50,10 @@ class Element:
 
     def need(self, *path: str) -> Element:
         """Return the same; `InputError` if there is none."""
-        find = self.find(*path)
-        if find is None:
+        element = self.find(*path)
+        if element is None:
             self.refuse(f"<{self.tag}> has no <{'/'.join(path)}>", f"<{path[-1]}> in it")
-        return find
+        return element
 
     def attribute(self, name: str) -> str:
         """Return an attribute; `InputError` if there is none."""

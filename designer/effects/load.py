@@ -91,8 +91,8 @@ def _flaws_of_parameter(parameter: object) -> Iterator[str]:
     except QuantityError as error:
         yield f"the dimension of {parameter.name!r}: its example {error}"
     if not isinstance(parameter.size, Size) and not callable(parameter.size):
-        name__ = type(parameter.size).__name__
-        yield f"the size of {parameter.name} is {name__}, not a Size or a function"
+        kind = type(parameter.size).__name__
+        yield f"the size of {parameter.name} is {kind}, not a Size or a function"
 
 
 def flaws_of_size(parameter: Parameter, machine: Machine) -> Iterator[str]:
@@ -204,8 +204,8 @@ def _sound(
 ) -> Effect | None:
     """Return an effect that can be used; None, and a line in ``problems``, for another."""
     if not isinstance(item, Effect):
-        name__ = type(item).__name__
-        problems.append(f"{offer.label}: register_effects() gave {name__}, not an Effect: left out")
+        kind = type(item).__name__
+        problems.append(f"{offer.label}: register_effects() gave {kind}, not an Effect: left out")
         return None
     named = f"{offer.label}: effect {one_line(repr(item.id))}"
     flaw = attempt(lambda: find_flaw(item), named, "cannot be built", problems)

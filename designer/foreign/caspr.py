@@ -76,20 +76,20 @@ def read_caspr(
 
 def _beside(path: Path, kind: str, suffix: str) -> Path:
     """Return where CASPR keeps the file of the other kind."""
-    before, limits, after = path.name.rpartition(f"_{kind}")
+    before, separator, after = path.name.rpartition(f"_{kind}")
     counterpart = path.with_name(f"{before}_{suffix}{after}")
-    if not limits or not counterpart.is_file():
+    if not separator or not counterpart.is_file():
         option = f"--{suffix} FILE"
         problem = f"holds the {kind} alone"
-        if limits:
+        if separator:
             problem += f", and there is no {counterpart.name} beside it"
         raise InputError([Fault(str(path), None, "", problem, option)])
     return counterpart
 
 
-def _chosen_set(cables: Element, text: str | None) -> Element:
+def _chosen_set(cables: Element, wanted_id: str | None) -> Element:
     sets = {cable_set.attributes.get("id", ""): cable_set for cable_set in cables.all("cable_set")}
-    name = text if text is not None else cables.attributes.get("default_cable_set")
+    name = wanted_id if wanted_id is not None else cables.attributes.get("default_cable_set")
     if not sets:
         cables.refuse("the file has no cable set", "<cable_set>")
     if name is None and len(sets) == 1:

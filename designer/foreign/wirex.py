@@ -90,9 +90,9 @@ def _centre(platform: Element | None, remarks: dict[str, tuple[str, ...]]) -> Po
     centre = _position(element)
     if centre != _CENTRE:
         return centre
-    listed = ", ".join(f"{item:g}" for item in centre)
+    coordinates = ", ".join(f"{coordinate:g}" for coordinate in centre)
     remarks["robot.platform.centre_of_mass"] = (
-        f"The file has [{listed}], which WireX writes where nobody entered one.",
+        f"The file has [{coordinates}], which WireX writes where nobody entered one.",
     )
     return None
 
@@ -102,39 +102,39 @@ def _rope(cable: Element | None, remarks: dict[str, tuple[str, ...]]) -> Foreign
     needed = ("radius", "breaking_load", "weight")
     if cable is None or any(name not in cable.attributes for name in needed):
         return None
-    pulleys = {name: cable.number(name) for name in _ROPE if name in cable.attributes}
-    if all(value == _ROPE[name] for name, value in pulleys.items()):
+    figures = {name: cable.number(name) for name in _ROPE if name in cable.attributes}
+    if all(value == _ROPE[name] for name, value in figures.items()):
         remarks["cable"] = (
             "The file has the 6 mm rope that WireX writes where nobody entered one.",
         )
         return None
-    if min(pulleys.values()) <= 0.0:
+    if min(figures.values()) <= 0.0:
         cable.refuse("the rope has a figure that is zero or less", "figures above zero")
     bound = BOUNDS["rope diameter"]
-    if not bound.least <= 2.0 * pulleys["radius"] <= bound.most:
-        radius_words = f"the rope has a radius of {pulleys['radius']:g} m"
+    if not bound.least <= 2.0 * figures["radius"] <= bound.most:
+        radius_words = f"the rope has a radius of {figures['radius']:g} m"
         expected = f"{0.5 * bound.least:g} m to {0.5 * bound.most:g} m: {bound.reason}"
         cable.refuse(radius_words, expected)
-    area = math.pi * pulleys["radius"] ** 2
+    area = math.pi * figures["radius"] ** 2
     remarks["cable"] = (
-        f"A rope of {2e3 * pulleys['radius']:g} mm, {pulleys['weight']:g} kg/m, breaking at "
-        f"{pulleys['breaking_load']:g} N; all over the full circle of its diameter.",
+        f"A rope of {2e3 * figures['radius']:g} mm, {figures['weight']:g} kg/m, breaking at "
+        f"{figures['breaking_load']:g} N; all over the full circle of its diameter.",
     )
     return ForeignRope(
-        density_kg_per_m3=pulleys["weight"] / area,
-        breaking_stress_Pa=pulleys["breaking_load"] / area,
-        youngs_modulus_Pa=pulleys.get("elasticity"),
+        density_kg_per_m3=figures["weight"] / area,
+        breaking_stress_Pa=figures["breaking_load"] / area,
+        youngs_modulus_Pa=figures.get("elasticity"),
     )
 
 
 def _winch(winch: Element | None, remarks: dict[str, tuple[str, ...]]) -> None:
     """Tell what the file has of the winches, as far as somebody entered it."""
     figures = []
-    for (tag, name), (default, listed) in _WINCH.items():
+    for (tag, name), (default, remark) in _WINCH.items():
         element = None if winch is None else winch.find(tag)
         if element is not None and name in element.attributes:
             value = element.number(name)
-            figures += [] if value in (0.0, default) else [listed.format(value)]
+            figures += [] if value in (0.0, default) else [remark.format(value)]
     if figures:
         remarks["robot"] = (
             f"Of the winches the file has: {', '.join(figures)}. No field of a study takes it.",

@@ -32,15 +32,15 @@ def unit_of(figure: str) -> BeforeValidator:
     """Return the check that a text is a unit of a size's figure."""
     dimension = DIMENSIONS[figure]
 
-    def check(columns: object) -> str:
-        if not isinstance(columns, str):
-            raise refusal(f"{describe(columns)} is not a unit", f"a unit of {dimension.noun}")
+    def check(unit: object) -> str:
+        if not isinstance(unit, str):
+            raise refusal(f"{describe(unit)} is not a unit", f"a unit of {dimension.noun}")
         try:
-            read_quantity(f"1 {columns}", dimension)
+            read_quantity(f"1 {unit}", dimension)
         except QuantityError:
             expected = f"a unit of {dimension.noun} such as '{dimension.unit}'"
-            raise refusal(f"{describe(columns)} does not fit", expected) from None
-        return columns
+            raise refusal(f"{describe(unit)} does not fit", expected) from None
+        return unit
 
     return BeforeValidator(check)
 

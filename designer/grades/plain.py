@@ -47,8 +47,8 @@ def _item(item: object) -> dict[str, Any]:
         if isinstance(item, str | os.PathLike):
             return {_PATH: os.fsdecode(item)}
         if not isinstance(item, Grade):
-            values = one_line(type(item).__name__)
-            return {_MISFIT: f"register_grades() gave {values}, not a path or a Grade"}
+            kind = one_line(type(item).__name__)
+            return {_MISFIT: f"register_grades() gave {kind}, not a path or a Grade"}
         plain: dict[str, Any] = _plain(item)
     except Exception as error:  # a stranger's value may do anything when it is looked at
         return {_MISFIT: f"a Grade is not usable: {described(error)}"}

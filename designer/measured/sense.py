@@ -167,11 +167,11 @@ def _wrong_cable(robot: Robot, measured: Measured, table: LogTable) -> Iterator[
             yield table.fault(None, names[cable], problem, f"lengths, or 'scale: -1' in {_MAP}")
 
 
-def _correlation(values: FloatArray, second: FloatArray) -> float:
-    seen = ~np.isnan(values)
-    if seen.sum() < FEWEST_POSES or np.ptp(values[seen]) == 0.0 or np.ptp(second[seen]) == 0.0:
+def _correlation(reading: FloatArray, prediction: FloatArray) -> float:
+    seen = ~np.isnan(reading)
+    if seen.sum() < FEWEST_POSES or np.ptp(reading[seen]) == 0.0 or np.ptp(prediction[seen]) == 0.0:
         return 0.0
-    return float(np.corrcoef(values[seen], second[seen])[0, 1])
+    return float(np.corrcoef(reading[seen], prediction[seen])[0, 1])
 
 
 def _pushing(robot: Robot, measured: Measured, table: LogTable) -> Iterator[Fault]:

@@ -234,7 +234,7 @@ def _turning_axes(turn: FloatArray) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.where(angle2 > 0.0, np.sin(0.5 * angle) / angle, 0.5)
         series = 1.0 / 6.0 - angle2 / 120.0 + angle2**2 / 5040.0
-        two = np.where(small, series, (angle - np.sin(angle)) / (angle2 * angle))
-    corner = 2.0 * half**2
+        rest = np.where(small, series, (angle - np.sin(angle)) / (angle2 * angle))
+    sine = 2.0 * half**2
     cross = -np.cross(np.eye(3)[None], turn[:, None]).transpose(0, 2, 1)
-    return np.asarray(np.eye(3) + corner * cross + two * (cross @ cross))
+    return np.asarray(np.eye(3) + sine * cross + rest * (cross @ cross))

@@ -133,19 +133,19 @@ def size_by_scp(robot: Robot, pose: Poses, material: Material, *, max_turns: int
     multiplier = np.zeros(len(problem.load))
     while turns < max_turns and trust > 1e-10:
         turns += 1
-        solve = _solve(problem, state, y, multiplier, trust)
-        if solve is None:
+        step = _solve(problem, state, y, multiplier, trust)
+        if step is None:
             trust *= 0.25
             continue
-        if float(np.abs(solve.y / y - 1.0).max()) + abs(solve.c - c) < _STILL:
+        if float(np.abs(step.y / y - 1.0).max()) + abs(step.c - c) < _STILL:
             break
-        solve = problem.corrected(solve)
-        moved = problem.state(solve.y)
-        better = problem.merit(moved, solve.c)
+        step = problem.corrected(step)
+        moved = problem.state(step.y)
+        better = problem.merit(moved, step.c)
         if better > problem.merit(state, c) + _ROUNDING:
             trust *= 0.25
             continue
-        y, c, state, multiplier = solve.y, solve.c, moved, solve.balance
+        y, c, state, multiplier = step.y, step.c, moved, step.balance
         trust = min(2.0 * trust, _TRUST)
     return problem.answer(state, y, c, turns)
 

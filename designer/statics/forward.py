@@ -144,15 +144,15 @@ class _EnergyDescent:
         mean_work = np.einsum("pi,pi->p", before + after, step)
         closer = np.linalg.norm(after, axis=-1) < np.linalg.norm(before, axis=-1)
         # At rest a step is kept if it comes closer.
-        masked = np.where(rests, closer, mean_work > 0.0)
+        is_kept = np.where(rests, closer, mean_work > 0.0)
         step_m = np.minimum(length, radius)
         wider = np.maximum(radius, np.minimum(2.0 * step_m, self.size))
-        self.radius[active] = np.where(rests, radius, np.where(masked, wider, 0.25 * step_m))
+        self.radius[active] = np.where(rests, radius, np.where(is_kept, wider, 0.25 * step_m))
         self.left[active] -= rests
-        moved = np.flatnonzero(active)[masked]
-        self.position[moved] = trial.position_m[masked]
-        self.rotation[moved] = trial.rotation[masked]
-        self.push[moved] = push[masked]
+        moved = np.flatnonzero(active)[is_kept]
+        self.position[moved] = trial.position_m[is_kept]
+        self.rotation[moved] = trial.rotation[is_kept]
+        self.push[moved] = push[is_kept]
 
 
 def moved_poses(robot: Robot, poses: Poses, step_m: FloatArray) -> Poses:

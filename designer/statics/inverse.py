@@ -318,15 +318,16 @@ def statics_with(
     cable: Cable,
     run: PulleyRun,
     verdict: VerdictArray,
-    values: FloatArray,
+    lengths_and_forces: FloatArray,
     force_N: FloatArray | None,
 ) -> Statics:
     """Return the statics of poses (n_poses,) with one cable for all.
 
-    What was ``values`` is free lengths [m] and forces x and z at the platform [N],
+    ``lengths_and_forces`` are free lengths [m] and forces x and z at the platform [N],
     (3, n_poses, n_cables); NaN unless solved.
     """
-    free, force_x, force_z = np.where((verdict == Verdict.SOLVED)[:, None], values, np.nan)
+    is_solved = (verdict == Verdict.SOLVED)[:, None]
+    free, force_x, force_z = np.where(is_solved, lengths_and_forces, np.nan)
     ones = np.ones((len(verdict), 1))
     return Statics(
         robot=robot,

@@ -51,12 +51,12 @@ class RestingPlaces:
                 f"({searched})."
             )
         turn = self.nearest_turn_rad
-        relative_rotation = f", turned by {np.degrees(turn):.0f}°" if turn > 1e-3 else ""
-        places = "one other place" if self.others == 1 else f"{self.others} other places"
+        turned_by = f", turned by {np.degrees(turn):.0f}°" if turn > 1e-3 else ""
+        elsewhere = "one other place" if self.others == 1 else f"{self.others} other places"
         nearest = "" if self.others == 1 else "the nearest "
         return (
-            f"The platform rests here, but on the same lengths it could also rest in {places}, "
-            f"{nearest}{self.nearest_m:.2g} m away{relative_rotation} ({searched})."
+            f"The platform rests here, but on the same lengths it could also rest in {elsewhere}, "
+            f"{nearest}{self.nearest_m:.2g} m away{turned_by} ({searched})."
         )
 
 

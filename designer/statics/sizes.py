@@ -105,7 +105,7 @@ def add_slowly(
 
     Parameters
     ----------
-    found, row
+    meets, row
         What is added to, and the cable's place in it.
     indices : array, optional
         The poses to solve; all if left out.

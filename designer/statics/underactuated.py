@@ -110,8 +110,8 @@ def imbalance(statics: Statics) -> FloatArray:
     force, moment = wrench[..., :3], wrench[..., 3:]
     moment = moment - np.cross(centre_of_mass_arm_m(robot, statics.poses), force)
     wrench[..., 3:] = moment
-    boundary_norm = np.linalg.norm(wrench[..., robot.balance_rows] * _scale(robot), axis=-1)
-    return np.asarray(boundary_norm / robot.weight_N)
+    norm = np.linalg.norm(wrench[..., robot.balance_rows] * _scale(robot), axis=-1)
+    return np.asarray(norm / robot.weight_N)
 
 
 def _scale(robot: Robot) -> FloatArray:

@@ -111,14 +111,14 @@ def survey(
         if np.isnan(sampled.distance_m).all():
             return None
         (worst,) = refine_over_branches(workspace.space, nearness_with, thinned, LIGHT)
-        clearances = clearance(worst.place[None])
-        first, second = (int(number) for number in clearances.pair[0])
+        closest = clearance(worst.place[None])
+        first, second = (int(number) for number in closest.pair[0])
         return Nearest(
-            distance_m=float(clearances.distance_m[0]),
-            error_m=float(clearances.error_m[0]),
+            distance_m=float(closest.distance_m[0]),
+            error_m=float(closest.error_m[0]),
             pair=(first, second),
             place=worst.place,
-            point_m=clearances.place_m[0],
+            point_m=closest.place_m[0],
         )
 
     return Interference(

@@ -266,13 +266,13 @@ class _PoseSearch:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
         order = np.argsort(-climbs.value, kind="stable")
         size = np.where(self._size > 0.0, self._size, 1e-300)
-        values: list[int] = []
+        chosen: list[int] = []
         for k in order:
-            rivals = [j for j in values if climbs.extreme[j] == climbs.extreme[k]]
+            rivals = [j for j in chosen if climbs.extreme[j] == climbs.extreme[k]]
             apart = np.abs(climbs.at[rivals] - climbs.at[k]) / size
             if len(rivals) < self._effort.finalists and not (apart < 3e-3).all(axis=1).any():
-                values.append(int(k))
-        return climbs[np.array(values, dtype=np.int64)]
+                chosen.append(int(k))
+        return climbs[np.array(chosen, dtype=np.int64)]
 
     def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""

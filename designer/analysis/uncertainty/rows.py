@@ -25,7 +25,7 @@ def utilisation_of_rows(
 
     Parameters
     ----------
-    one : Loaded
+    loaded : Loaded
         A load case without wind on a robot that `has_one_branch`.
     places : array (n_places, n_coordinates)
         Where [m].

@@ -225,7 +225,7 @@ class SceneActors:
             self.dots.paint(painting.colours(painting.of(answer, ["points"]), self.theme))
 
     def put_rows(self, position_m: FloatArray, sizes: FloatArray, brightest: float) -> None:
-        """Show measured rows (n,), coloured by how much is left of them, up to ``most``."""
+        """Show measured rows (n,), coloured by how much is left of them, up to ``brightest``."""
         import matplotlib
 
         self.rows.put(position_m)

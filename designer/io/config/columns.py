@@ -14,14 +14,12 @@ from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, descri
 _TARGET = f"a column of ours such as 'length_1_m', or '{IGNORE}', or '{COVARIATE}'"
 
 
-def _target(fields_set: object) -> str:
-    if not isinstance(fields_set, str):
-        raise refusal(f"{describe(fields_set)} is not a name", _TARGET)
-    if fields_set not in (IGNORE, COVARIATE) and dimension_of(fields_set) is None:
-        raise refusal(
-            f"{describe(fields_set)} is no column of ours", _TARGET + column_hint(fields_set)
-        )
-    return fields_set
+def _target(value: object) -> str:
+    if not isinstance(value, str):
+        raise refusal(f"{describe(value)} is not a name", _TARGET)
+    if value not in (IGNORE, COVARIATE) and dimension_of(value) is None:
+        raise refusal(f"{describe(value)} is no column of ours", _TARGET + column_hint(value))
+    return value
 
 
 class ColumnSection(Section):

@@ -135,9 +135,9 @@ def load_is_not_cancelled(parts: Parts) -> Iterator[Fault]:
     if force is None or mass_kg is None:
         return
     mass_kg += sum(
-        single.parameters.get("offset_kg", 0.0)
-        for _, single in parts.declared.effects
-        if single.id == "platform_mass"
+        effect.parameters.get("offset_kg", 0.0)
+        for _, effect in parts.declared.effects
+        if effect.id == "platform_mass"
     )
     weight = mass_kg * STANDARD_GRAVITY_M_PER_S2 * parts.down / np.linalg.norm(parts.down)
     moment, lever = (

@@ -195,9 +195,9 @@ def _level_slope(work: Work, i: int, row: int, d: int) -> Interval:
     if row == 4:
         return add(multiply(get(s[RZ]), get(a[EX])), multiply(get(a[RZ]), get(s[EX])))
     if row == 5:
-        cable = add(multiply(get(s[RX]), get(a[EY])), multiply(get(a[RX]), get(s[EY])))
+        moment = add(multiply(get(s[RX]), get(a[EY])), multiply(get(a[RX]), get(s[EY])))
         two = add(multiply(get(s[RY]), get(a[EX])), multiply(get(a[RY]), get(s[EX])))
-        return subtract(cable, two)
+        return subtract(moment, two)
     return 0.0, 0.0
 
 

@@ -240,11 +240,7 @@ def _advice(analysis: Analysis, findings: Findings) -> Context:
 def _verdicts_not_served(analysis: Analysis) -> list[Verdict]:
     assert analysis.study.workspace is not None
     assert analysis.workspace is not None
-    served = [Verdict.SOLVED]
-    if analysis.study.workspace.hangs_below == "exclude":
-        served.append(Verdict.NO_FINITE_CABLE)
-    statuses = analysis.workspace.census.statuses
-    return [v for v in Verdict if v not in served and statuses[v.label] > 0]
+    return analysis.study.workspace.not_served(analysis.workspace.census.statuses)
 
 
 def _is_layer(analysis: Analysis, unserved: Unserved) -> bool:

@@ -26,7 +26,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
     if profile is None:
         return None
     start, top = _window(profile), _top(profile, focus)
-    diameters = "Needed diameter from the centre of the region through the worst pose to the edge"
+    caption = "Needed diameter from the centre of the region through the worst pose to the edge"
     with canvas.drawing():
         figure = canvas.sheet(62.0, width_mm=palette.HALF_WIDTH_MM)
         axes = figure.subplots()
@@ -49,7 +49,7 @@ def edge_chart(maps: WorkspaceMaps) -> str | None:
         height = canvas.significant(focus.position_m[2], 3)
         axes.set_title(f"needed diameter [mm] at z = {height} m", loc="left")
         axes.set_xlabel("distance to the exit points' hull [m]")
-        return canvas.svg(figure, "edge", diameters)
+        return canvas.svg(figure, "edge", caption)
 
 
 def _window(profile: EdgeProfile) -> float:

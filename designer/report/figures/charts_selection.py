@@ -181,15 +181,15 @@ def pareto_chart(selection: SelectionResult) -> str | None:
     Sizes that no other beats have a dark rim. None where there is one objective only, or nothing
     holds.
     """
-    first, *alternatives = selection.objectives
-    if not alternatives or not selection.front:
+    first, *further = selection.objectives
+    if not further or not selection.front:
         return None
     up = _Along.of(first, selection)
     with canvas.drawing():
         figure = canvas.sheet(60.0)
-        panels = figure.subplots(1, len(alternatives), sharey=True, squeeze=False)[0]
-        for axes, label_place in zip(panels, alternatives, strict=True):
-            _panel(axes, selection, _Along.of(label_place, selection), up)
+        panels = figure.subplots(1, len(further), sharey=True, squeeze=False)[0]
+        for axes, objective in zip(panels, further, strict=True):
+            _panel(axes, selection, _Along.of(objective, selection), up)
         panels[0].set_title(up.label, loc="left")
         _pareto_legend(figure, selection)
         return canvas.svg(figure, "pareto", "Sizes that hold, by what they are compared by")

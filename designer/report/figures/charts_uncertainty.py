@@ -29,7 +29,7 @@ def odds_chart(sizes: Sequence[Size]) -> str:
         rows = figure.subplots(len(sizes), 1, sharex=True, squeeze=False)[:, 0]
         finite = [100.0 * used[np.isfinite(used)] for _, used, _ in sizes]
         ends = np.concatenate(
-            [*(np.percentile(share, [0.1, _TAIL]) for share in finite if len(share)), [100.0]]
+            [*(np.percentile(values, [0.1, _TAIL]) for values in finite if len(values)), [100.0]]
         )
         room = 0.04 * max(float(np.ptp(ends)), 1.0)
         edges = np.linspace(ends.min() - room, ends.max() + room, _BARS * len(sizes) + 1)

@@ -102,8 +102,8 @@ def _without_web(page: str) -> str:
         ("https://kitware.github.io/vtk-js/icon/", "`"),
         ("data:image/jpeg;base64,", ")"),
     ):
-        before, note, after = page.partition(begins)
-        if note:
+        before, address, after = page.partition(begins)
+        if address:
             page = f"{before}data:,{after[after.index(ends) :]}"
     return page
 

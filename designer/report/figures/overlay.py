@@ -128,7 +128,7 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
     near_corner = np.where(view.toward_camera > 0.0, high, low)
     small = {"fontsize": palette.FONT_POINTS - 1.0}
     points = axes.figure.dpi / 72.0
-    occupied = view.pixels(np.array([*corner, low[2]]))  # where the upright axis has its own label
+    label_px = view.pixels(np.array([*corner, low[2]]))  # where the upright axis has its own label
     for axis, across in ((0, 1), (1, 0)):
         name = np.array([*middle[:2], low[2]])
         name[across] = near_corner[across]
@@ -139,7 +139,7 @@ def box_axes(axes: Axes, view: View, bounds_m: FloatArray) -> None:
         for tick in _ticks_along(view, bounds_m, axis, 27.0 * points):
             point = name.copy()
             point[axis] = tick
-            if np.hypot(*(view.pixels(point) - occupied)) >= 13.5 * points:
+            if np.hypot(*(view.pixels(point) - label_px)) >= 13.5 * points:
                 _write(axes, view, point, fmt.trimmed(tick, 6), 9.0 * outward, **small)
         # The name of an axis begins beyond its numbers, wherever these stand.
         side = "left" if outward[0] > 0.0 else "right"

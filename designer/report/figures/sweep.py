@@ -46,7 +46,7 @@ class Axis:
         title = f"{name} [{unit}]" if unit else name
         if values.dtype.kind == "f":
             return cls(title, np.where(np.isfinite(values), values, np.nan))
-        labels, places = np.unique([str(axis) for axis in values.tolist()], return_inverse=True)
+        labels, places = np.unique([str(value) for value in values.tolist()], return_inverse=True)
         return cls(title, places.astype(float), tuple(map(str, labels)))
 
     def tick(self, axes: Axes) -> None:

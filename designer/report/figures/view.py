@@ -118,8 +118,8 @@ def clear_azimuth_rad(lines_m: FloatArray, elevation_rad: float) -> float:
     azimuths = azimuths[np.abs(np.sin(2.0 * azimuths)) > 0.49]  # not along the x or the y axis
 
     def apart(azimuth: float) -> float:
-        view = View(azimuth, elevation_rad, np.zeros(3), 1.0).pixels(points)
-        gaps = np.sort(np.linalg.norm(view[first] - view[second], axis=1))
+        pixels = View(azimuth, elevation_rad, np.zeros(3), 1.0).pixels(points)
+        gaps = np.sort(np.linalg.norm(pixels[first] - pixels[second], axis=1))
         return float(gaps[: len(lines_m)].sum())
 
     return float(max(azimuths, key=lambda azimuth: round(apart(float(azimuth)), 6)))
