@@ -27,10 +27,11 @@ _HOMES = {
     "designer.model.space": "Orientations",
     "designer.model.uncertainty": "Normal Uncertainty Uniform",
     "designer.model.verdict": "Verdict",
+    "designer.model.workspace": "Workspace",
     "designer.optimum.optimise": "optimise",
     "designer.optimum.result": "Optimum",
     "designer.resources": "example_file example_names",
-    "designer.study": "CableGroup DeclaredEffect Selection Study Workspace",
+    "designer.study": "CableGroup DeclaredEffect Selection Study",
 }
 """Where the public names are defined, those of each module separated by spaces."""
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
@@ -52,10 +53,11 @@ if TYPE_CHECKING:
     from designer.model.space import Orientations
     from designer.model.uncertainty import Normal, Uncertainty, Uniform
     from designer.model.verdict import Verdict
+    from designer.model.workspace import Workspace
     from designer.optimum.optimise import optimise
     from designer.optimum.result import Optimum
     from designer.resources import example_file, example_names
-    from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
+    from designer.study import CableGroup, DeclaredEffect, Selection, Study
 
 __all__ = [
     "Analysis",

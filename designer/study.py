@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
 
-from designer.arrays import FloatArray, frozen_array, require_number, require_one_of
+from designer.arrays import require_number, require_one_of
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
@@ -20,140 +19,13 @@ from designer.model.limits import RopeLimits
 from designer.model.load_case import EACH, LoadCase
 from designer.model.machine import TEMPERATE, Machine, Surroundings
 from designer.model.measurements import Measurements
-from designer.model.region import CHUNK, Region, Sampling
 from designer.model.robot import Poses, Robot
-from designer.model.space import Orientations, Space
 from designer.model.uncertainty import Uncertainty
-from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 
 _LIKELY_DIAMETER_M = 0.01  # Of the cable that stands in where none is given yet
 _FLAT = 1e-6
-SAG_MAX = 0.2
-"""Largest sag over chord of products, where the study gives none: a slacker one hangs."""
-HangsBelow = Literal["include", "exclude"]
 Objective = Literal["mass", "cost", "drum_diameter", "max_tension", "stiffness"]
-
-
-@dataclass(frozen=True, slots=True)
-class Workspace:
-    """Which poses the cable must serve.
-
-    Parameters
-    ----------
-    region : Region
-        Prism, rectangle or list of points, world frame.
-    samples, sampling, seed
-        Number of poses to try (a list of points is taken whole), ``low_discrepancy`` (Sobol) or in
-        a ``grid``, and seed of the Sobol scrambling.
-    hangs_below : str
-        ``include`` or ``exclude`` poses in which a cable hangs below the platform.
-    clearance_m : float or None
-        Least distance that cables shall keep from each other and from the platform [m]; None asks
-        for none.
-    orientations : Orientations
-        How the platform shall be turned at every position.
-    floor_m : float or None
-        Height along the vertical that no cable shall hang below [m]; None for no floor.
-    sag_max, family_sag_max : float or None
-        Largest sag over chord of products, and of the configured cable; None for any. Internal
-        forces are chosen to keep it, see `Robot.sag_max`.
-    proof_s : float
-        Time for a proof that the chosen rope holds in all poses [s]; zero for none.
-    """
-
-    region: Region
-    samples: int = 20_000
-    sampling: Sampling = "low_discrepancy"
-    seed: int = 0
-    hangs_below: HangsBelow = "include"
-    clearance_m: float | None = None
-    orientations: Orientations = field(default_factory=Orientations)
-    floor_m: float | None = None
-    sag_max: float | None = SAG_MAX
-    family_sag_max: float | None = None
-    proof_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_number("samples", self.samples, least=1)
-        require_number("seed", self.seed, least=0)
-        require_number("clearance_m", self.clearance_m, least=0.0)
-        require_number("floor_m", self.floor_m)
-        require_number("sag_max", self.sag_max, above=0.0)
-        require_number("family_sag_max", self.family_sag_max, above=0.0)
-        require_number("proof_s", self.proof_s, least=0.0)
-        require_one_of("sampling", [self.sampling], get_args(Sampling))
-        require_one_of("hangs_below", [self.hangs_below], get_args(HangsBelow))
-
-    @property
-    def space(self) -> Space:
-        """All poses, as places: positions in every orientation."""
-        return Space(self.region, self.orientations)
-
-    def of_case(self, case: LoadCase) -> Workspace:
-        """Return the workspace of a load case, which may have a region of its own."""
-        return self if case.region is None else replace(self, region=case.region)
-
-    def positions_m(self) -> Iterator[FloatArray]:
-        """Yield the sample positions in pieces that have about `CHUNK` places at most (n, 3) [m].
-
-        Memory stays flat, however many there are.
-        """
-        size = max(CHUNK // self.orientations.count, 1)
-        draw = self.samples, self.sampling, self.seed
-        is_short = self.samples <= CHUNK
-        for chunk in (
-            _kept_samples_m(self.region, *draw) if is_short else self.region.samples_m(*draw)
-        ):
-            yield from (chunk[start : start + size] for start in range(0, len(chunk), size))
-
-    def places(self) -> Iterator[FloatArray]:
-        """Yield the sample places in chunks (at most about `CHUNK`, n_coordinates) [m, rad].
-
-        The orientations of a position follow one another in one chunk.
-        """
-        return map(self.space.places, self.positions_m())
-
-    def thinned(self, most: int) -> FloatArray:
-        """Return about `most` places (n, n_coordinates), fairly drawn from all samples [m, rad].
-
-        Drawn are positions, from the whole of the region; each comes in all its orientations.
-        """
-        count = max(most // self.orientations.count, 1)
-        rng = np.random.default_rng(self.seed)
-        kept, draws = np.empty((0, 3)), np.empty(0)
-        for positions in self.positions_m():
-            kept = np.concatenate([kept, positions])
-            draws = np.concatenate([draws, rng.random(len(positions))])
-            first = np.sort(np.argsort(draws)[:count])
-            kept, draws = kept[first], draws[first]
-        return self.space.places(kept)
-
-    @property
-    def served(self) -> tuple[Verdict, ...]:
-        """Verdicts of a pose at which nothing is wrong: it is held, or `hangs_below` leaves it out.
-
-        What no finite cable holds is left out too, see `designer.workspace.demand.is_left_out`.
-        """
-        if self.hangs_below == "include":
-            return (Verdict.SOLVED,)
-        return Verdict.SOLVED, Verdict.NO_FINITE_CABLE
-
-    def not_served(self, statuses: Mapping[str, int]) -> list[Verdict]:
-        """Return the verdicts, of samples counted by their labels, at which something is wrong."""
-        return [v for v in Verdict if statuses[v.label] > 0 and v not in self.served]
-
-    @property
-    def sample_count(self) -> int:
-        """How many positions there are to try, for a progress bar (an estimate)."""
-        return sum(map(len, self.positions_m())) if self.region.is_discrete else self.samples
-
-
-@lru_cache(maxsize=8)
-def _kept_samples_m(
-    region: Region, count: int, sampling: Sampling, seed: int
-) -> tuple[FloatArray, ...]:
-    """Return the samples of a region: every candidate of a selection is tried at the same."""
-    return tuple(map(frozen_array, region.samples_m(count, sampling, seed)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from designer.io.config import build
 from designer.io.config.schema import WorkspaceSection
 from designer.model.cable import Material
 from designer.model.robot import Platform, Robot
+from designer.model.workspace import Workspace
 from designer.plugins import examine
-from designer.study import Workspace
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -11,8 +11,8 @@ from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Wind
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Robot
+from designer.model.workspace import Workspace
 from designer.report.templates import environment
-from designer.study import Workspace
 
 EXITS = np.array([[0, 0, 11.5], [30, 1, 12.5], [14, 26, 11.0], [2, 24, 12.0]])
 WORKSPACE = Workspace(Prism.box((8, 20), (4, 14), (1, 8)), samples=30)

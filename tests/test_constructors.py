@@ -18,8 +18,9 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
-from designer.study import CableGroup, DeclaredEffect, Selection, Study, Workspace
+from designer.study import CableGroup, DeclaredEffect, Selection, Study
 
 EXITS = frozen_array([[0, 0, 9], [9, 0, 9], [9, 9, 9], [0, 9, 9], [4, 0, 9], [4, 9, 9]])
 BODY = frozen_array([[-1, -1, 0], [1, -1, 0], [1, 1, 1], [-1, 1, 0], [0, -1, 1], [0, 1, 1]])

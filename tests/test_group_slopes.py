@@ -15,13 +15,14 @@ from designer.grades.grade import Grade, Modulus, Reference, Size
 from designer.model.cable import Cable, Cables
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.report.blocks import Section
 from designer.report.design import carries
 from designer.report.render import rendered
 from designer.selection.assignment import Assignment, GroupVerification
 from designer.selection.candidate import Candidate
 from designer.statics.inverse import solve_sagging
-from designer.study import CableGroup, Workspace
+from designer.study import CableGroup
 
 EXITS = np.array([[0.0, 0.0, 11.5], [30.0, 0.0, 11.5], [15.0, 70.0, 25.0]])
 PLACE = np.array([12.0, 5.0, 6.5])

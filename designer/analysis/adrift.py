@@ -17,8 +17,8 @@ from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.space import named_place
+from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_massless
-from designer.study import Workspace
 
 _MOST_SAMPLES, _FEW_SAMPLES = 512, 32
 """Poses of each direction; the few for robots with spare cables, of which each is a programme."""

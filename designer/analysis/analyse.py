@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import platform
 import shutil
 import weakref
 from dataclasses import dataclass, field
-from datetime import datetime
 from functools import cached_property
-from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-from designer import __version__
 from designer.analysis.carries import Carries, carries_of
 from designer.analysis.findings import Findings, find
 from designer.analysis.governing import GoverningPose, governing_pose
 from designer.analysis.governing_ropes import GoverningRopes, governing_ropes
 from designer.analysis.group_slopes import GroupSlopes, group_slopes
 from designer.analysis.pose import PoseAnalysis, analyse_pose
+from designer.analysis.provenance import Provenance
 from designer.analysis.requirements import requirements_of
 from designer.analysis.uncertainty.uncertainty import UncertaintyAnalysis, uncertainty_of
 from designer.analysis.verification import SecondAnswer, second_answers
@@ -47,43 +43,6 @@ from designer.workspace.hanging import HangingCables
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
-
-
-@dataclass(frozen=True, slots=True)
-class Provenance:
-    """Where the numbers come from.
-
-    Parameters
-    ----------
-    version : str
-        Of this program.
-    libraries : tuple of (name, version)
-        What computed and drew them.
-    system : str
-        Operating system and Python.
-    created : datetime
-        When the analysis was started.
-    """
-
-    version: str
-    libraries: tuple[tuple[str, str], ...]
-    system: str
-    created: datetime
-
-    @classmethod
-    def now(cls, study: Study | None = None) -> Provenance:
-        """Return the provenance of an analysis that starts now, with what the study asks for."""
-        names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
-        if study is not None:
-            has_groups = study.selection is not None and bool(study.selection.groups)
-            if has_groups or study.robot.is_redundant:  # chosen by mathematical programmes
-                names += ["cvxpy", "highspy"]
-        return cls(
-            version=__version__,
-            libraries=tuple((name, version(name)) for name in names if find_spec(name)),
-            system=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
-            created=datetime.now().astimezone(),
-        )
 
 
 class TemporaryFolder:

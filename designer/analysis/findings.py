@@ -15,13 +15,13 @@ import numpy as np
 from designer.analysis.adrift import Adrift, adrift_in
 from designer.grades.grade import Size
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import HangsBelow, Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.result import GradeOutcome
 from designer.selection.verify import Verification, verify
 from designer.sizing.limit import limit_ratio
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import open_sweep

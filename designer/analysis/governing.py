@@ -12,8 +12,8 @@ from designer.model.robot import Poses
 from designer.selection.candidate import Candidate
 from designer.selection.cases import CaseResult
 from designer.statics.inverse import Statics
+from designer.statics.pulleys import PulleyRun
 from designer.statics.shape import sag_m, stretch_m, string_frequency_Hz
-from designer.statics.task import PulleyRun
 
 
 @dataclass(frozen=True, slots=True, eq=False)

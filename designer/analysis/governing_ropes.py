@@ -11,9 +11,9 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.cases import governing
 from designer.statics.inverse import MasslessStatics, Statics, solve_massless, solve_sagging
-from designer.study import Workspace
 
 if TYPE_CHECKING:
     from designer.analysis.analyse import Analysis

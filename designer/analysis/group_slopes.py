@@ -16,11 +16,12 @@ from designer.analysis.sensitivities import Sensitivity
 from designer.arrays import FloatArray, IntArray
 from designer.model.cable import Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.assignment import Assignment
 from designer.statics.geometry import load_wrench_N
 from designer.statics.inverse import solve_sagging
 from designer.statics.slopes import utilisation_slopes
-from designer.study import CableGroup, Workspace
+from designer.study import CableGroup
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,9 +9,9 @@ import numpy as np
 from designer.analysis.maps import WorkspaceMaps
 from designer.arrays import FloatArray
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.usable import Usable, UsableSize
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 
 _MOST = 5

@@ -15,9 +15,10 @@ from designer.arrays import FloatArray
 from designer.model.region import Region
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import Statics
-from designer.study import Study, Workspace, as_built_by
+from designer.study import Study, as_built_by
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.store import columns
 

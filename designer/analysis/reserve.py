@@ -18,8 +18,8 @@ from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.region import Region
 from designer.model.space import named_position
+from designer.model.workspace import HangsBelow, Workspace
 from designer.selection.cases import CaseResult
-from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import rope_demand, settled_demand
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 

@@ -10,12 +10,13 @@ from designer.diagnosis.result import Diagnosis, RopeChoice, Use
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.cable import Cable
+from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import best_product
 from designer.selection.stiffening import as_it_meets
 from designer.selection.verify import verify
-from designer.study import DeclaredEffect, Study, Workspace, as_built_by
+from designer.study import DeclaredEffect, Study, as_built_by
 from designer.workspace.section import section_of_workspace
 from designer.workspace.sweep import map_workspace
 

@@ -15,6 +15,7 @@ from designer.model.cable import Cable, Cables
 from designer.model.load_case import STATIC
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.candidate import undominated
 from designer.selection.cases import Cases, governing, searched_all, together
@@ -23,7 +24,6 @@ from designer.selection.verify import Verification
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.shape import sag_ratio
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.study import Workspace
 from designer.workspace.demand import demand_of, in_worst_turn, is_left_out, size_worst
 from designer.workspace.result import WorkspaceMap
 from designer.workspace.section import section_of_workspace

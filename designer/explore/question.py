@@ -18,6 +18,7 @@ from designer.grades.registry import Catalogue
 from designer.model.cable import Cable, Cables, Material
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.plugins.find import Plugins
 from designer.selection.candidate import Candidate, candidates_of, is_allowed
 from designer.selection.cases import FEW_AT_FIRST
@@ -25,7 +26,7 @@ from designer.selection.efficiency import Allowance
 from designer.selection.select import at_samples
 from designer.selection.stiffening import as_it_meets
 from designer.statics.inverse import solve_sagging
-from designer.study import Selection, Study, Workspace, as_built_by, require_enough_cables
+from designer.study import Selection, Study, as_built_by, require_enough_cables
 from designer.workspace.section import section_of_pose
 
 

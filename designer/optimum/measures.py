@@ -23,6 +23,7 @@ from designer.model.point_list import PointList
 from designer.model.requirement import Requirement
 from designer.model.robot import Poses
 from designer.model.space import Space
+from designer.model.workspace import Workspace
 from designer.progress import SILENT
 from designer.selection.candidate import Candidate, candidates_of, is_allowed, undominated
 from designer.selection.cases import governing
@@ -32,7 +33,7 @@ from designer.selection.screen import Screen
 from designer.selection.select import at_samples
 from designer.selection.verify import verify_sizes
 from designer.sizing.newton import size_poses
-from designer.study import Objective, Selection, Study, Workspace, as_built_by
+from designer.study import Objective, Selection, Study, as_built_by
 from designer.sweep.point import value_at
 from designer.units import FORCE, LENGTH, MASS, NUMBER, Dimension
 from designer.workspace.demand import demand_of, diameter_demand, rope_demand

@@ -15,7 +15,7 @@ from designer import __version__
 from designer.report.phrases import shown_time
 
 if TYPE_CHECKING:
-    from designer.analysis.analyse import Provenance
+    from designer.analysis.provenance import Provenance
     from designer.study import Study
 
 MOST_ROWS = 8

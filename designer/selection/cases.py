@@ -20,6 +20,7 @@ from designer.arrays import IntArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import HangsBelow, Workspace
 from designer.progress import Advance
 from designer.selection.samples import over_kept_lengths, over_samples, sampled_at_tension
 from designer.selection.stiffening import StiffnessSearch
@@ -27,7 +28,6 @@ from designer.selection.verify import Sampled, Verification, refined
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import HangsBelow, Workspace
 from designer.workspace.demand import rope_demand, settled, settled_demand
 from designer.workspace.refine import LIGHT, refine_over_branches
 

@@ -15,9 +15,9 @@ from designer.grades.grade import Grade
 from designer.model.cable import Material
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
-from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import Worst, worst_over_samples
 from designer.workspace.section import FamilyAt, thinnest

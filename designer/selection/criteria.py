@@ -12,10 +12,11 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.load_case import Loaded
 from designer.model.robot import Robot
+from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics
 from designer.statics.shape import sag_ratio, string_frequency_Hz
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.study import Selection, Workspace
+from designer.study import Selection
 from designer.workspace.clearance import names_of, smallest_clearance
 
 ROUNDING = 1e-9

@@ -18,9 +18,10 @@ from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
 from designer.model.cable import Cable, Material
 from designer.model.load_case import LoadCase
+from designer.model.workspace import Workspace
 from designer.progress import Reporter
 from designer.selection.cases import CaseResult, Cases, governing, searched_all
-from designer.study import Study, Workspace
+from designer.study import Study
 from designer.workspace.section import FIRST_TRIED_M, thinnest_that
 
 _STILL = 1e-9

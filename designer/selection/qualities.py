@@ -10,10 +10,10 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.model.cable import Cable, Cables, Material
+from designer.model.workspace import Workspace
 from designer.selection.assignment import Assignment
 from designer.selection.candidate import Candidate
 from designer.selection.family_need import CaseNeed
-from designer.study import Workspace
 from designer.workspace.hanging import HangingCables, survey_hanging
 from designer.workspace.interference import Interference, survey
 from designer.workspace.result import WorkspaceMap

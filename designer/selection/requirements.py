@@ -22,13 +22,14 @@ from designer.model.load_case import LoadCase, Loaded
 from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import OPEN, Verdict
+from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.cases import CaseResult, steepest, worst_of_each
 from designer.selection.criteria import ROUNDING, WHERE, Criterion
 from designer.statics.cable_loss import Fate
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import Selection, Workspace
+from designer.study import Selection
 from designer.workspace.demand import is_left_out, length_demand, settled
 from designer.workspace.refine import LIGHT, Demand, Worst, refine_over_branches
 

@@ -10,10 +10,10 @@ from designer.arrays import FloatArray
 from designer.model.cable import Cable
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.stiffening import StiffnessSearch
 from designer.selection.verify import Sampled, verify_sizes
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out, rope_demand, settled
 
 FEW_SAMPLES = 64

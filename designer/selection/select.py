@@ -17,6 +17,7 @@ from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.load_case import STATIC, LoadCase
 from designer.model.robot import Robot
+from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.proof.prove import Budget
 from designer.selection.candidate import (
@@ -49,7 +50,7 @@ from designer.selection.screen import Screen
 from designer.selection.usable import Usable, serves, usable
 from designer.selection.verify import Verification, verify_sizes
 from designer.statics.sizes import is_quick
-from designer.study import Objective, Selection, Workspace
+from designer.study import Objective, Selection
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 _FEW = 16

@@ -11,9 +11,9 @@ from designer.arrays import BoolArray, FloatArray
 from designer.grades.grade import Grade, Size
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import is_quick
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 
 _FEW_PLACES, _FEW_POSITIONS = 1000, 100

@@ -16,9 +16,9 @@ from designer.arrays import FloatArray, IntArray
 from designer.kernel.calling import Meets
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.statics.sizes import add_slowly, is_quick, meet
-from designer.study import Workspace
 from designer.workspace.demand import rope_demand
 from designer.workspace.refine import Effort, Worst, refine_over_branches, worst_over_samples
 

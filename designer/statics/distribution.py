@@ -28,7 +28,8 @@ from designer.statics.geometry import (
     load_wrench_N,
     upright_situation,
 )
-from designer.statics.task import flat_poses, straight_run
+from designer.statics.pulleys import straight_run
+from designer.statics.task import flat_poses
 
 _PROVEN = 1e-6
 """Residual of the optimality conditions up to which they count as met."""

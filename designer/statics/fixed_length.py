@@ -11,7 +11,7 @@ from designer.model.verdict import Verdict
 from designer.physics import catenary
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics
-from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
+from designer.statics.pulleys import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 
 def cables_of_length(

@@ -17,8 +17,8 @@ from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.geometry import cable_geometry, one_cable, upright_situation
 from designer.statics.inverse import Statics, statics_with
+from designer.statics.pulleys import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 from designer.statics.stiffness import per_reach
-from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 from designer.statics.taut import solve_taut
 
 _LEAST_PULL = 1.0 / 16.0

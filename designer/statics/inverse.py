@@ -21,7 +21,8 @@ from designer.statics.geometry import (
     structure_matrix,
     upright_poses,
 )
-from designer.statics.task import PulleyRun, Task, solve_task, straight_run
+from designer.statics.pulleys import PulleyRun, straight_run
+from designer.statics.task import Task, solve_task
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution

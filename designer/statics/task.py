@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,56 +17,27 @@ from designer.statics.geometry import (
     CableGeometry,
     cable_geometry,
     level_geometry,
-    upright_exit_points_m,
     upright_situation,
+)
+from designer.statics.pulleys import (
+    MOST_ITERATIONS,
+    SETTLED_RAD,
+    STILL_RAD,
+    PulleyRun,
+    over_pulleys,
+    run_at,
+    straight_run,
 )
 
 if TYPE_CHECKING:
     from designer.kernel.batch import Solution
 
-_MOST_TURNS = 40
-# Last turn of the angle at which a cable leaves its pulley: at rounding, and good enough.
-_STILL_RAD = 1e-13
-SETTLED_RAD = 1e-9
-_PATIENCE = 8
-"""Turns after which a pose that does not come nearer moves by half as much."""
-_LEAST_SHARE = 1.0 / 32.0
-"""Of the way to the next tangent point, however it swings."""
 _WORTH_A_SEARCH = 5e-4
 """Relative, in weight or tension: half of that in diameter."""
 _SAME = 1e-7
 """Relative: what two searches may leave between them that end in the same branch."""
 LONG = 1.5
 """Length over chord above which a cable counts as far too long."""
-
-Answer = TypeVar("Answer")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PulleyRun:
-    """How the cables run over their pulleys.
-
-    Parameters
-    ----------
-    exit_points_m : array (n_cables, 3) or (..., n_cables, 3)
-        Where the cables leave the pulleys, upright frame [m]; the exit points without pulleys.
-    wrap_m : array (..., n_cables) or zero
-        Length that lies on the pulleys [m].
-    """
-
-    exit_points_m: FloatArray
-    wrap_m: FloatArray
-
-    @property
-    def has_wrap(self) -> bool:
-        """Whether there are pulleys at all."""
-        return bool(self.wrap_m.any())
-
-    def unstrained(self, strain: FloatArray | float) -> PulleyRun:
-        """Return the run with the wrapped length taken back to no tension."""
-        if not self.has_wrap:
-            return self
-        return replace(self, wrap_m=self.wrap_m / (1.0 + strain))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,44 +69,6 @@ class Task:
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
         return self if self.force_N is None else replace(self, force_N=self.force_N[at])
-
-
-def straight_run(robot: Robot, poses: Poses) -> PulleyRun:
-    """Return how straight cables run over the pulleys in poses (...)."""
-    if robot.pulley_radius_m == 0.0:
-        return PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-    geometry = level_geometry(robot, poses)
-    return _run(robot, geometry, _straight_slope_rad(robot, geometry))
-
-
-def _straight_slope_rad(robot: Robot, geometry: CableGeometry) -> FloatArray:
-    return pulley.straight_slope_rad(
-        geometry.horizontal_distance_m, geometry.drop_m, robot.pulley_radius_m
-    )
-
-
-def _run(robot: Robot, level: CableGeometry, slope_rad: FloatArray) -> PulleyRun:
-    """Return the run over pulleys, which stand upright however the load on the cables points."""
-    radius, exits = robot.pulley_radius_m, robot.exit_points_m @ robot.level.T
-    points = pulley.tangent_point_m(exits, level.outward, slope_rad, radius)
-    if robot.cable_load_direction is not None:
-        points = points @ robot.leaning.T
-    return PulleyRun(points, pulley.wrap_length_m(slope_rad, radius))
-
-
-def _slope_over_pulley_rad(
-    robot: Robot, poses: Poses, level: CableGeometry, run: PulleyRun, slope_rad: FloatArray
-) -> FloatArray:
-    """Return the angle at which cables leave in their pulleys' planes (...), from true horizontal.
-
-    ``slope_rad`` (...) is that in the plane of load and chord, from across the load.
-    """
-    if robot.cable_load_direction is None:
-        return slope_rad
-    outward = cable_geometry(robot, poses, run.exit_points_m).outward
-    down = -np.sin(slope_rad)[..., None]
-    along = np.concatenate([np.cos(slope_rad)[..., None] * outward, down], axis=-1) @ robot.leaning
-    return np.asarray(np.arctan2(-along[..., 2], (along[..., :2] * level.outward).sum(axis=-1)))
 
 
 def flat_poses(poses: Poses) -> Poses:
@@ -214,14 +146,14 @@ def _solve_over_pulleys(
         return solution, np.arctan2(downward, solution.force_x_N), 0.0
 
     solution, run, gap_rad = over_pulleys(robot, flat, solve, turns)
-    if turns >= _MOST_TURNS:  # what is said of poses that did not settle is taken back
+    if turns >= MOST_ITERATIONS:  # what is said of poses that did not settle is taken back
         lost = ~(gap_rad <= SETTLED_RAD) & (solution.verdict == Verdict.SOLVED)
         solution.verdict[lost] = Verdict.NOT_CONVERGED
         for values in (getattr(solution, field.name) for field in fields(solution)):
             if values.dtype == np.float64:
                 values[lost] = np.nan
         return solution, run
-    at = np.flatnonzero(gap_rad > _STILL_RAD)
+    at = np.flatnonzero(gap_rad > STILL_RAD)
     if len(at) > 0:
         again = _solve_over_pulleys(
             robot,
@@ -342,7 +274,7 @@ def _between_tangents(robot: Robot, level: CableGeometry, situation: Situation) 
     as seen across the load; but it stays between these two.
     """
     slope = pulley.lower_slope_rad(level.horizontal_distance_m, level.drop_m, robot.pulley_radius_m)
-    lower = _run(robot, level, slope).exit_points_m
+    lower = run_at(robot, level, slope).exit_points_m
     return situation._replace(
         exit_points=plain(np.concatenate([situation.exit_points, lower], axis=1)),
         attachments=plain(np.tile(situation.attachments, (2, 1))),
@@ -353,66 +285,3 @@ def part_of(poses: Poses, chosen: IntArray) -> Poses:
     """Return some of poses (n_poses,)."""
     rotation = poses.rotation if poses.rotation.ndim == 2 else poses.rotation[chosen]
     return Poses(poses.position_m[chosen], rotation)
-
-
-def leaving(
-    axial_stiffness_N: float | FloatArray,
-    weight_N_per_m: float | FloatArray,
-    length_m: FloatArray,
-    force_x_N: FloatArray,
-    force_z_N: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return angle below the horizontal [rad] and strain of cables at their pulleys (...)."""
-    downward = weight_N_per_m * length_m - force_z_N
-    strain = np.hypot(force_x_N, downward) / axial_stiffness_N
-    return np.arctan2(downward, force_x_N), strain
-
-
-def over_pulleys(
-    robot: Robot,
-    poses: Poses,
-    solve: Callable[[PulleyRun], tuple[Answer, FloatArray, FloatArray | float]],
-    turns: int = _MOST_TURNS,
-) -> tuple[Answer, PulleyRun, FloatArray]:
-    """Solve until the tangent points on the pulleys rest; once, where there are none.
-
-    The tangent point follows the slope of the sagging cable at its upper end, which moves by about
-    radius over length of what the tangent point moved: a handful of turns reach rounding. Slack
-    cables over a large pulley may swing between two ways to hang; steps are then made shorter.
-
-    Parameters
-    ----------
-    robot, poses
-        The robot and its poses (...).
-    solve : callable
-        Takes the run of the cables, and returns an answer with the angle at which each cable
-        leaves, in its own plane and upright frame below the horizontal [rad], and its strain there.
-
-    Returns
-    -------
-    answer, run
-        Of the last turn.
-    gap_rad : array (...)
-        By how much the angle at which a cable leaves its pulley still changed.
-    """
-    if robot.pulley_radius_m == 0.0:
-        run = PulleyRun(upright_exit_points_m(robot), np.zeros(1))
-        return solve(run)[0], run, np.zeros(poses.shape)
-    level = level_geometry(robot, poses)
-    slope = straight = _straight_slope_rad(robot, level)
-    strain: FloatArray | float = 0.0
-    share, gap = np.ones(poses.shape), np.full(poses.shape, np.inf)
-    for turn in range(turns):
-        run = _run(robot, level, slope).unstrained(strain)
-        answer, slope_over_pulley_rad, strain = solve(run)
-        slope_over_pulley_rad = _slope_over_pulley_rad(
-            robot, poses, level, run, slope_over_pulley_rad
-        )
-        step = np.where(np.isfinite(slope_over_pulley_rad), slope_over_pulley_rad, straight) - slope
-        before, gap = gap, np.fmax.reduce(np.abs(step), axis=-1, initial=0.0)
-        if np.all(gap <= _STILL_RAD):
-            break
-        swings = (turn >= _PATIENCE) & (gap > 0.5 * before) & (gap > SETTLED_RAD)
-        share = np.where(swings, np.maximum(0.5 * share, _LEAST_SHARE), share)
-        slope = slope + share[..., None] * step
-    return answer, run, gap

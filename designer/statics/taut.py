@@ -15,7 +15,7 @@ from designer.arrays import FloatArray
 from designer.model.cable import Cable
 from designer.model.robot import Poses, Robot
 from designer.statics.geometry import one_cable, upright_situation
-from designer.statics.task import straight_run
+from designer.statics.pulleys import straight_run
 
 _SMALLEST_SHARE = 1e-3
 _REGULAR = 1e-4

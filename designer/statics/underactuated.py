@@ -27,7 +27,7 @@ from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.geometry import centre_of_mass_arm_m, one_cable, upright_situation
 from designer.statics.inverse import Statics, statics_with
-from designer.statics.task import SETTLED_RAD, PulleyRun, leaving, over_pulleys
+from designer.statics.pulleys import SETTLED_RAD, PulleyRun, leaving, over_pulleys
 
 _SMALLEST_SHARE = 1e-3
 _STILL = 1e-7

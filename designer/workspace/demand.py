@@ -10,10 +10,10 @@ from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
 from designer.model.verdict import Verdict
+from designer.model.workspace import HangsBelow, Workspace
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.study import HangsBelow, Workspace
 from designer.workspace.refine import Demand
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.task import LONG
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from designer.arrays import FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.statics.inverse import Statics, solve_sagging
-from designer.study import Workspace
 from designer.workspace.clearance import (
     Clearance,
     clearance_among_cables,

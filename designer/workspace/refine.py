@@ -17,7 +17,7 @@ import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.model.space import Space
-from designer.study import Workspace
+from designer.model.workspace import Workspace
 from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
 
 Demand = Callable[[FloatArray], FloatArray]

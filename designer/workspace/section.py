@@ -21,8 +21,8 @@ from designer.effects.design import AsBuilt
 from designer.errors import DesignerError
 from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
-from designer.study import Workspace
 from designer.workspace.refine import Worst
 from designer.workspace.sweep import map_workspace
 

@@ -11,9 +11,9 @@ from designer.arrays import FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.space import named_position
+from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 from designer.workspace.refine import LIGHT, Demand, refine_over_branches
 

@@ -17,10 +17,10 @@ from designer.model.cable import Material
 from designer.model.robot import Poses, Robot
 from designer.model.space import turn_of
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.sizing.limit import limit_ratio
 from designer.sizing.newton import Sizing, size_poses
-from designer.study import Workspace
 from designer.workspace.demand import (
     diameter_demand,
     is_left_out,

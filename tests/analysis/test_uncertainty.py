@@ -29,10 +29,11 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Robot
 from designer.model.uncertainty import Normal, Spread, Uncertainty, Uniform
+from designer.model.workspace import Workspace
 from designer.progress import SILENT
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
-from designer.study import Selection, Study, Workspace
+from designer.study import Selection, Study
 
 ANCHORS = np.array([[0.0, 0, 12], [30, 0, 12], [15, 26, 12]])
 ROBOT = Robot(ANCHORS, Platform(180.0))

@@ -32,11 +32,11 @@ from designer.model.cable import Material
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.verdict import Verdict
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.sizing.scp import size_by_scp
 from designer.statics.distribution import distribute_evenly
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
 from designer.workspace.sweep import map_workspace
 
 REGION = Prism.box((-4.0, 4.0), (-3.0, 3.0), (0.3, 3.0))

@@ -22,9 +22,9 @@ from designer.grades.registry import load_catalogue
 from designer.model.cable import Cable
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.verify import Sampled, verify_sizes
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
 
 SAFETY_FACTOR = 2.0
 

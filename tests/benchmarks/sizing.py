@@ -36,10 +36,10 @@ from designer.model.cable import Material
 from designer.model.prism import Prism
 from designer.model.region import CHUNK
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
 from designer.statics.inverse import solve_massless, solve_sagging
-from designer.study import Workspace
 from designer.workspace import sweep
 from designer.workspace.store import sweep_file
 from designer.workspace.sweep import map_workspace

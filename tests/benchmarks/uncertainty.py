@@ -35,9 +35,10 @@ from designer.model.cable import Material
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Robot
 from designer.model.uncertainty import Normal, Uncertainty, Uniform
+from designer.model.workspace import Workspace
 from designer.progress import SILENT
 from designer.selection.select import select
-from designer.study import Selection, Study, Workspace
+from designer.study import Selection, Study
 
 SIZES = [round(2.0 + 0.05 * k, 2) for k in range(300)]
 STEEL = Material(5290.0, 62.7e9, 198e6)

@@ -28,10 +28,11 @@ from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
 from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.resources import example_file, example_names
 from designer.selection.verify import verify
 from designer.statics.inverse import solve_sagging
-from designer.study import Study, Workspace
+from designer.study import Study
 from designer.workspace.clearance import smallest_clearance
 from designer.workspace.demand import diameter_demand, massless_demand, rope_demand
 from designer.workspace.interference import survey

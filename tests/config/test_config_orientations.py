@@ -10,7 +10,8 @@ import pytest
 from designer.errors import Fault
 from designer.model.rectangle import Rectangle
 from designer.model.space import FILLING
-from designer.study import Study, Workspace
+from designer.model.workspace import Workspace
+from designer.study import Study
 
 BODY = """\
 robot:

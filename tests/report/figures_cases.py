@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.analysis.analyse import Analysis, Provenance
+from designer.analysis.analyse import Analysis
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
+from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.model.cable import Material
@@ -18,7 +19,8 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
-from designer.study import HangsBelow, Study, StudySource, Workspace
+from designer.model.workspace import HangsBelow, Workspace
+from designer.study import Study, StudySource
 
 STEEL = Material(7800.0, 200e9, 180e6)
 THREE = Robot(frozen_array([[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]), Platform(4000.0))

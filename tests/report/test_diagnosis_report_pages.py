@@ -12,7 +12,7 @@ import pytest
 from markupsafe import escape
 from report_parts import said, table, tables, texts
 
-from designer.analysis.analyse import Provenance
+from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.diagnosis.case import case_of
 from designer.diagnosis.diagnose import diagnose

@@ -15,6 +15,7 @@ from designer.analysis.maps import WorkspaceMaps
 from designer.analysis.pose import analyse_pose
 from designer.grades.registry import load_catalogue
 from designer.model.prism import Prism
+from designer.model.workspace import Workspace
 from designer.report import format as fmt
 from designer.report.figures import canvas
 from designer.report.figures.charts_edge import edge_chart
@@ -37,7 +38,7 @@ from designer.report.figures.colours import (
 from designer.report.figures.sections import slice_panels
 from designer.selection.result import SelectionResult
 from designer.selection.select import select
-from designer.study import Selection, Workspace
+from designer.study import Selection
 
 pytestmark = pytest.mark.slow
 

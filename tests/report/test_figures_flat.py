@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from report_parts import pictures
 
-from designer.analysis.analyse import Analysis, Provenance
+from designer.analysis.analyse import Analysis
 from designer.analysis.maps import WorkspaceMaps, workspace_maps
+from designer.analysis.provenance import Provenance
 from designer.arrays import frozen_array
 from designer.grades.registry import Catalogue
 from designer.io.config import read_study

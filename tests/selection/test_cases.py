@@ -19,6 +19,7 @@ from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.resources import example_file
 from designer.selection.cases import CaseResult, Cases, governing, searched_all, together
 from designer.selection.result import SelectionResult
@@ -26,7 +27,7 @@ from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.statics.cable_loss import Fate, settle
 from designer.statics.inverse import solve_sagging
-from designer.study import Study, Workspace
+from designer.study import Study
 
 PARKED = {
     "yard": Prism.box((13, 17), (7, 11), (1, 2)),

@@ -13,10 +13,10 @@ from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.family_need import family_need, most_needed
 from designer.statics.cable_loss import settle
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
 from designer.workspace.sweep import map_workspace
 
 ROBOT = Robot(

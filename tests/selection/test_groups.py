@@ -17,6 +17,7 @@ from designer.model.cable import Cable, Cables
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate, priced, undominated
 from designer.selection.groups.balance import balance_at
 from designer.selection.groups.blocks import block_by_trial, block_by_weight, is_monotone
@@ -25,7 +26,7 @@ from designer.selection.groups.result import GroupChoice
 from designer.selection.groups.trials import Trials, verify_groups
 from designer.selection.select import select
 from designer.statics.inverse import solve_sagging
-from designer.study import CableGroup, Selection, Workspace
+from designer.study import CableGroup, Selection
 from designer.workspace.demand import is_left_out
 
 pytestmark = pytest.mark.slow

@@ -11,12 +11,13 @@ from ropes import rope
 from designer.grades.grade import Grade
 from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.selection.result import GradeOutcome
 from designer.selection.select import select
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Selection, Workspace
+from designer.study import Selection
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 

@@ -8,9 +8,10 @@ import pytest
 from ropes import rope
 
 from designer.model.prism import Prism
+from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance, bending_efficiency
 from designer.selection.select import select
-from designer.study import Selection, Workspace
+from designer.study import Selection
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,12 @@ from designer.arrays import frozen_array
 from designer.model.cable import Cable
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
+from designer.model.workspace import Workspace
 from designer.selection.candidate import common_currency
 from designer.selection.compare import dominator_of, is_undominated
 from designer.selection.objectives import MEANINGS, CandidateFigures
 from designer.selection.select import best_product, select
-from designer.study import Objective, Selection, Workspace
+from designer.study import Objective, Selection
 from designer.workspace.stiffness import smallest_stiffness_N_per_m
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]

@@ -14,10 +14,11 @@ from designer.cli.commands import main
 from designer.model.cable import Material
 from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.selection.select import select
 from designer.sizing.newton import size_poses
-from designer.study import Selection, Workspace
+from designer.study import Selection
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 

@@ -13,10 +13,10 @@ from designer.model.cable import Cable
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.selection.verify import refined, verify, verify_sizes
 from designer.statics import sizes
 from designer.statics.inverse import solve_sagging
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]

@@ -14,12 +14,13 @@ from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.resources import example_file
 from designer.selection.select import select
 from designer.selection.usable import usable
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
-from designer.study import Selection, Workspace
+from designer.study import Selection
 
 TRIANGLE = [[0, 0, 0], [500, 0, 0], [250, 433.01, 0]]
 SIZES = [8.0, 14.0, 16.0, 18.0, 20.0, 24.0, 32.0]

@@ -18,6 +18,7 @@ from designer.model.load_case import LoadCase, Wind
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.candidate import candidates_of, undominated
 from designer.selection.groups.choose import choose_groups_of
 from designer.selection.result import SelectionResult
@@ -25,7 +26,7 @@ from designer.selection.select import select
 from designer.selection.stiffening import as_it_meets
 from designer.statics.cable_loss import settle
 from designer.statics.inverse import solve_sagging
-from designer.study import CableGroup, Selection, Workspace
+from designer.study import CableGroup, Selection
 
 ROBOT = Robot(
     np.array([[0, 0, 11.5], [30, 1, 12.5], [14, 26, 11.0]]), Platform(180.0, drag_area_m2=0.6)

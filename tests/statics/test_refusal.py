@@ -23,7 +23,7 @@ from designer.statics.geometry import (
     upright_situation,
 )
 from designer.statics.inverse import solve_sagging
-from designer.statics.task import over_pulleys, straight_run
+from designer.statics.pulleys import over_pulleys, straight_run
 
 OUTSIDE, NOT_FOUND = Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND
 

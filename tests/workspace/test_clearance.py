@@ -15,10 +15,10 @@ from designer.model.cable import Cable
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.physics import catenary
 from designer.statics.fixed_length import cables_of_length
 from designer.statics.inverse import Statics, solve_sagging
-from designer.study import Workspace
 from designer.workspace.clearance import (
     PLATFORM,
     cable_margin_m,

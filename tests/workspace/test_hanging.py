@@ -11,10 +11,10 @@ from designer.arrays import frozen_array
 from designer.model.cable import Material
 from designer.model.prism import Prism
 from designer.model.robot import Platform, Poses, Robot
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 from designer.statics.task import LONG
-from designer.study import Workspace
 from designer.workspace.hanging import HangingCables, look_at, survey_hanging
 from designer.workspace.sweep import map_workspace
 

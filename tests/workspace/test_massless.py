@@ -14,12 +14,13 @@ from designer.io.config import read_study
 from designer.model.prism import Prism
 from designer.model.robot import Poses
 from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.report.design.source import Source
 from designer.report.design.workspace import section as workspace_section
 from designer.resources import example_file
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_massless
-from designer.study import Study, Workspace
+from designer.study import Study
 from designer.workspace.demand import is_left_out
 from designer.workspace.sweep import map_workspace
 

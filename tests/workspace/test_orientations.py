@@ -14,9 +14,9 @@ from designer.model.prism import Prism
 from designer.model.region import CHUNK
 from designer.model.robot import Poses, Robot
 from designer.model.space import FILLING, Orientations, Space
+from designer.model.workspace import Workspace
 from designer.selection.verify import verify
 from designer.sizing.newton import size_poses
-from designer.study import Workspace
 from designer.workspace.demand import diameter_demand
 from designer.workspace.refine import refine
 from designer.workspace.store import open_sweep

@@ -13,8 +13,8 @@ from designer.model.prism import Prism
 from designer.model.region import CHUNK
 from designer.model.robot import Poses
 from designer.model.space import Orientations, Space
+from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
-from designer.study import Workspace
 from designer.workspace.pool import Pool
 from designer.workspace.refine import Worst, refine
 from designer.workspace.store import open_sweep

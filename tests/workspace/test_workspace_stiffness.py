@@ -9,9 +9,9 @@ from designer.arrays import frozen_array
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.statics.inverse import solve_sagging
 from designer.statics.stiffness import largest_displacement_m_per_N
-from designer.study import Workspace
 from designer.workspace.stiffness import survey_stiffness
 
 

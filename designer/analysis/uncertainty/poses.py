@@ -23,11 +23,11 @@ from designer.arrays import FloatArray
 from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.robot import Poses
+from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.cases import CaseResult
 from designer.statics.inverse import solve_sagging
 from designer.statics.sizes import add_slowly, is_quick, meet
-from designer.study import Workspace
 from designer.workspace.demand import demand_of, settled_demand
 from designer.workspace.refine import LIGHT, Effort, refine
 

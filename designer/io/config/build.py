@@ -37,6 +37,7 @@ from designer.model.rectangle import Rectangle
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
+from designer.model.workspace import Workspace
 from designer.plugins.find import Plugins, find_plugins
 from designer.study import (
     CableGroup,
@@ -46,7 +47,6 @@ from designer.study import (
     Selection,
     Study,
     StudySource,
-    Workspace,
 )
 from designer.units import DENSITY, STRESS, format_SI
 

@@ -54,7 +54,8 @@ from designer.io.config.orientation import (
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import Reading
 from designer.model.region import Sampling
-from designer.study import SAG_MAX, HangsBelow, Objective
+from designer.model.workspace import SAG_MAX, HangsBelow
+from designer.study import Objective
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from designer.analysis.analyse import Provenance
+from designer.analysis.provenance import Provenance
 from designer.report.blocks import Fact
 from designer.report.paper import why_no_pdf
 from designer.report.phrases import shown_time

@@ -14,6 +14,7 @@ from designer.analysis.governing_ropes import GoverningRopes
 from designer.model.region import Region
 from designer.model.robot import Robot
 from designer.model.verdict import Verdict
+from designer.model.workspace import HangsBelow, Workspace
 from designer.report import format as fmt
 from designer.report.blocks import (
     Block,
@@ -33,7 +34,7 @@ from designer.report.design.source import Source
 from designer.report.design.workspace_figures import rope_figures, workspace_figures
 from designer.report.phrases import described_region, orientation_words
 from designer.report.pictures import chart
-from designer.study import HangsBelow, Study, Workspace
+from designer.study import Study
 from designer.workspace.result import Census, Extreme, WorkspaceMap
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from designer.analysis.analyse import Provenance
+from designer.analysis.provenance import Provenance
 from designer.diagnosis.check import Check
 from designer.report import format as fmt
 from designer.report.blocks import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from designer.analysis.analyse import Provenance
+from designer.analysis.provenance import Provenance
 from designer.diagnosis.result import Diagnosis
 from designer.report import format as fmt
 from designer.report.blocks import Box, Fact, Facts, Report, Section

@@ -37,9 +37,9 @@ import numpy as np
 
 from designer.arrays import FloatArray, IntArray
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.candidate import Candidate
 from designer.statics.geometry import cable_geometry, load_wrench_N, structure_matrix
-from designer.study import Workspace
 
 Members = Sequence[IntArray]
 """Of each group the indices of its cables."""

@@ -24,9 +24,9 @@ import numpy as np
 
 from designer.model.cable import Cable
 from designer.model.robot import Robot
+from designer.model.workspace import Workspace
 from designer.selection.groups.master import Block, Combination, alone
 from designer.selection.groups.trials import Trials
-from designer.study import Workspace
 
 
 def is_monotone(robot: Robot, workspace: Workspace) -> bool:

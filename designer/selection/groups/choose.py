@@ -21,6 +21,7 @@ from designer.arrays import FloatArray
 from designer.effects.design import AsBuilt
 from designer.grades.grade import Grade
 from designer.model.robot import Robot
+from designer.model.workspace import Workspace
 from designer.progress import SILENT, Reporter
 from designer.selection.assignment import NOT_ASSIGNED, Assignment, GroupVerification
 from designer.selection.candidate import Candidate, candidates_of, is_allowed, priced, undominated
@@ -35,7 +36,7 @@ from designer.selection.groups.result import (
     TriedAssignment,
 )
 from designer.selection.groups.trials import Refutation, Trials, verify_groups
-from designer.study import CableGroup, Selection, Workspace
+from designer.study import CableGroup, Selection
 
 MOST_PROPOSALS = 100
 """Where to stop and report a gap."""

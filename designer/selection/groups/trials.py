@@ -16,13 +16,13 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray
 from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
+from designer.model.workspace import Workspace
 from designer.selection.assignment import GroupVerification
 from designer.selection.candidate import Candidate
 from designer.selection.groups.balance import Members
 from designer.selection.groups.master import Combination
 from designer.statics.geometry import cable_geometry
 from designer.statics.inverse import Statics, solve_sagging
-from designer.study import Workspace
 from designer.workspace.demand import is_left_out, length_demand
 from designer.workspace.pool import Pool
 from designer.workspace.refine import Demand, refine_over_branches

@@ -1,0 +1,49 @@
+"""Where the numbers of an analysis come from."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import dataclass
+from datetime import datetime
+from importlib.metadata import version
+from importlib.util import find_spec
+
+from designer import __version__
+from designer.study import Study
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Where the numbers come from.
+
+    Parameters
+    ----------
+    version : str
+        Of this program.
+    libraries : tuple of (name, version)
+        What computed and drew them.
+    system : str
+        Operating system and Python.
+    created : datetime
+        When the analysis was started.
+    """
+
+    version: str
+    libraries: tuple[tuple[str, str], ...]
+    system: str
+    created: datetime
+
+    @classmethod
+    def now(cls, study: Study | None = None) -> Provenance:
+        """Return the provenance of an analysis that starts now, with what the study asks for."""
+        names = ["numpy", "scipy", "numba", "xarray", "pyvista", "matplotlib", "plutoprint"]
+        if study is not None:
+            has_groups = study.selection is not None and bool(study.selection.groups)
+            if has_groups or study.robot.is_redundant:  # chosen by mathematical programmes
+                names += ["cvxpy", "highspy"]
+        return cls(
+            version=__version__,
+            libraries=tuple((name, version(name)) for name in names if find_spec(name)),
+            system=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            created=datetime.now().astimezone(),
+        )
