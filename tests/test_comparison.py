@@ -106,7 +106,7 @@ def test_a_result_without_inputs_says_so(results) -> None:
 def test_results_with_hardly_anything_in_them() -> None:
     found = compare({"provenance": {}}, {"provenance": {}, "selection": [], "pose": None})
     assert found.to_dict()["names"] == [None, None]
-    comparison_report(found, ("a.json", "b.json"), moment())
+    render_html(comparison_report(found, ("a.json", "b.json"), moment()))
 
 
 def moment():
@@ -125,7 +125,7 @@ def test_a_study_and_a_result_file(tmp_path, designer, results) -> None:
         "comparison.html", "comparison.json", "comparison.pdf",
     ]  # fmt: skip
     pages = "".join(page.extract_text() for page in PdfReader("both/comparison.pdf").pages)
-    assert "What differs" in pages
+    assert "1 Differences" in pages
     assert "5000 kg" in pages
     assert "<h1" in Path("both/comparison.html").read_text()
 

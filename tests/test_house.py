@@ -17,7 +17,7 @@ ROOMS = [
     "__init__", "errors", "arrays", "spelling", "units", "resources", "progress", "model",
     "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
-    "foreign", "reference", "report", "api", "sweep", "optimum", "explore", "cli", "__main__",
+    "foreign", "reference", "sweep", "optimum", "report", "api", "explore", "cli", "__main__",
 ]  # fmt: skip
 """From the bottom up."""
 

@@ -69,15 +69,15 @@ def _print_comparison(
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
-    from designer.report.comparison import change, shown
+    from designer.report.phrases import relative_change, result_value
 
     if comparison.is_same:
         show("Nothing differs.")
     table = bare_table("", f"A: {names[0]}", f"B: {names[1]}", "change")
     for line in (*comparison.inputs, *comparison.answers, *comparison.unmet):
         if line.differs:
-            values = (shown(line.path, value) for value in (line.a, line.b))
-            table.add_row(*map(escape, (line.label or line.path, *values, change(line))))
+            values = (result_value(value, line.path) for value in (line.a, line.b))
+            table.add_row(*map(escape, (line.label or line.path, *values, relative_change(line))))
     if table.row_count:
         show(table)
     show(f"{folder}: {', '.join(written)}", markup=False)

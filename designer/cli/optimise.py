@@ -56,8 +56,8 @@ def optimise(
 
     from designer.io.results import write_results
     from designer.optimum.optimise import optimum_of
-    from designer.optimum.page import write_optimum
     from designer.optimum.plan import read_optimisation
+    from designer.report.optimum import write_optimum
     from designer.report.render import REPORT_FILES, write_report_pages
 
     laid_out = read_optimisation(plan, with_plugins=not no_plugins)
@@ -89,7 +89,7 @@ def _print_summary(optimum: Optimum) -> None:
     from rich.markup import escape
 
     from designer.cli.terminal import bare_table, show
-    from designer.optimum.page import headline, trust_lines
+    from designer.report.optimum import headline, trust_lines
 
     show(headline(optimum), markup=False)
     table = bare_table("", "given", "optimised", "bounds")

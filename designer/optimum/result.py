@@ -16,6 +16,7 @@ from designer.documents.plain import finite, json_text
 from designer.optimum.plan import Limit, OptimisationPlan, Values
 from designer.optimum.search import Searched
 from designer.optimum.trial import Trial
+from designer.optimum.variables import Variable
 
 _NEAR = 0.02
 """Of each range: two designs that are no further apart are the same place."""
@@ -143,6 +144,32 @@ class Optimum:
     def agrees(self, trial: Trial | None) -> bool:
         """Tell whether a start came to the place of the answer, within some of each range."""
         return trial is not None and is_near(self.plan, trial.values, self.best.values, _NEAR)
+
+    @property
+    def agreeing(self) -> int:
+        """How many starts came to the place of the answer."""
+        return sum(map(self.agrees, self.starts))
+
+    @property
+    def range_of_starts(self) -> float:
+        """Largest objective of a start over the smallest, less one; NaN where that says nothing."""
+        values = [trial.value for trial in self.starts if trial is not None]
+        return max(values) / min(values) - 1.0 if values[1:] and min(values) > 0.0 else math.nan
+
+    @property
+    def out_of_bounds(self) -> list[Variable]:
+        """The variables whose value in the study as it is lies outside the bounds."""
+        return [
+            variable
+            for variable in self.plan.variables
+            if variable.given is not None and not variable.is_within(variable.given)
+        ]
+
+    @property
+    def at_bounds(self) -> list[tuple[Variable, str]]:
+        """The variables that stand at a bound, each with which one."""
+        pairs = zip(self.plan.variables, self.best.values, strict=True)
+        return [(one, bound) for one, value in pairs if (bound := one.bound_at(value))]
 
     @property
     def reasons(self) -> list[tuple[str, int]]:

@@ -6,10 +6,12 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from datetime import datetime
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup
 
+from designer.analysis.comparison import ComparisonLine
 from designer.arrays import FloatArray
 from designer.grades.grade import Grade
 from designer.model.load_case import LoadCase, Wind
@@ -19,6 +21,9 @@ from designer.model.space import Orientations
 from designer.report import format as fmt
 from designer.selection.assignment import Assignment
 from designer.study import Study
+
+if TYPE_CHECKING:
+    from designer.optimum.measures import Measure
 
 _MOST_LISTED = 6
 """As many orientations as a line has room for."""
@@ -250,3 +255,48 @@ def length_of_statements(html: str) -> int:
     """Return how many characters the statements have, without their titles."""
     texts = (re.sub(r"<strong>.*?</strong>", "", part) for part in each_statement(html))
     return sum(len(Markup(text).striptags()) for text in texts)
+
+
+_BY_PATH: tuple[tuple[str, Callable[[float], str]], ...] = (
+    ("utilisation", fmt.utilisation),
+    ("ratio", fmt.percent),
+    ("drum_diameter_m", fmt.metres),
+    ("diameter_m", lambda x: f"{fmt.number(1e3 * x, 5)} mm"),
+    ("distance_m", lambda x: f"{fmt.number(1e3 * x, 5)} mm"),
+    ("m_per_N", lambda x: f"{fmt.number(1e6 * x)} mm/kN"),
+    ("kg_per_m", fmt.kilograms_per_metre),
+    ("_kg", fmt.kilograms),
+    ("_N", fmt.newtons),
+    ("", lambda x: fmt.trimmed(x, 6)),
+)
+"""How values of ``result.json`` are shown, by the end of their path."""
+
+
+def result_value(value: Any, path: str) -> str:
+    """Return a value of ``result.json``, which stands there at a path, as a reader wants it."""
+    if value is None:
+        return fmt.MISSING
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list):
+        return f"({', '.join(result_value(part, path) for part in value)})"
+    if isinstance(value, str):
+        return value
+    return next(text for end, text in _BY_PATH if path.endswith(end))(float(value))
+
+
+def relative_change(line: ComparisonLine) -> str:
+    """Return the relative change of a number; empty where there is none."""
+    return fmt.signed_percent(line.relative) if line.differs and line.relative is not None else ""
+
+
+def objective_value(value: float | None, measure: Measure) -> str:
+    """Return a value of what an optimisation is for, or of its limits, as a reader wants it."""
+    if value is not None and measure.dimension.unit == "m^3":
+        return fmt.cubic_metres(value)
+    return result_value(value, measure.path)
+
+
+def paragraphs(html: str) -> list[Markup]:
+    """Return what stands in each plain paragraph of a part of a page."""
+    return [Markup(text) for text in re.findall(r"<p>(.*?)</p>", html, re.DOTALL)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import combinations
@@ -14,20 +16,10 @@ from designer.analysis.result_json import evaluates_answer
 from designer.arrays import BoolArray, FloatArray
 from designer.documents.csv_text import csv_text
 from designer.io.output import write_whole
-from designer.report import format as fmt
-from designer.report.blocks import (
-    Block,
-    Column,
-    Heads,
-    Picture,
-    Report,
-    Section,
-    Statement,
-    Table,
-    plain_report,
-)
+from designer.report.blocks import Report, Section, plain_report
 from designer.report.figures import sweep as figures
 from designer.report.figures.sweep import Axis
+from designer.report.pictures import vector
 from designer.report.render import write_pages
 
 if TYPE_CHECKING:
@@ -54,19 +46,19 @@ class SweptPoints:
     holds: BoolArray
 
     @classmethod
-    def of(cls, found: xr.Dataset) -> SweptPoints:
+    def of(cls, dataset: xr.Dataset) -> SweptPoints:
         """Return the points of a store, read whole."""
 
         def axes(role: str) -> dict[str, Axis]:
-            arrays = found.filter_by_attrs(role=role).items()
+            arrays = dataset.filter_by_attrs(role=role).items()
             return {str(k): Axis.of(str(k), v.attrs.get("units", ""), v.values) for k, v in arrays}
 
         kept = axes("kept")
         numbers = {name: axis for name, axis in kept.items() if not axis.labels}
         numbers = {k: v for k, v in numbers.items() if np.isfinite(v.values).any()}
-        holds = np.asarray(found["reason"].values == "")
+        holds = np.asarray(dataset["reason"].values == "")
         signs = {"minimise": 1.0, "maximise": -1.0}
-        goals = {k: signs[found[k].goal] for k in numbers if "goal" in found[k].attrs}
+        goals = {k: signs[dataset[k].goal] for k in numbers if "goal" in dataset[k].attrs}
         values = [sign * numbers[name].values for name, sign in goals.items()]
         front = pareto_front(np.column_stack(values), holds) if goals else np.zeros_like(holds)
         return cls(
@@ -99,121 +91,93 @@ def pareto_front(values: FloatArray, counts: BoolArray) -> BoolArray:
     return front
 
 
-def sweep_report(found: xr.Dataset, name: str, created: datetime) -> Report[None]:
+def sweep_report(dataset: xr.Dataset, name: str, created: datetime) -> Report[None]:
     """Return the document on a store, of a sweep called ``name``."""
-    points = SweptPoints.of(found)
-    sections = [
-        Section.of("answer", "What came out", *_overview(found, points)),
-        _trade_offs(points),
-        _influences(points),
-        _reasons(found),
-    ]
+    points = SweptPoints.of(dataset)
+    contexts = {
+        "answer": _overview(dataset, points),
+        "trade-offs": _trade_offs(points),
+        "fields": _influences(points),
+        "reasons": _reasons(dataset),
+    }
+    sections = (Section(key, context=value) for key, value in contexts.items() if value)
     return plain_report("sweep", name, "Sweep over a study", created, sections)
 
 
-def write_sweep(found: xr.Dataset, name: str, folder: Path, templates: Path | None = None) -> None:
+def write_sweep(
+    dataset: xr.Dataset, name: str, folder: Path, templates: Path | None = None
+) -> None:
     """Write ``sweep.html``, ``sweep.pdf`` and ``sweep.csv`` into an existing folder."""
-    write_pages(sweep_report(found, name, datetime.now().astimezone()), folder, templates)
-    write_whole(folder / "sweep.csv", _table(found).encode())
+    write_pages(sweep_report(dataset, name, datetime.now().astimezone()), folder, templates)
+    write_whole(folder / "sweep.csv", _table(dataset).encode())
 
 
-def _table(found: xr.Dataset) -> str:
+def _table(dataset: xr.Dataset) -> str:
     """Return all points as CSV."""
-    table = found.to_dataframe().reset_index()
+    table = dataset.to_dataframe().reset_index()
     rows = table.itertuples(index=False)
     return csv_text([table.columns, *([None if x != x else x for x in row] for row in rows)])  # noqa: PLR0124
 
 
-def _overview(found: xr.Dataset, points: SweptPoints) -> tuple[Block | None, ...]:
-    n, holds = len(points.holds), int(points.holds.sum())
-    fields = fmt.listing(axis.title for axis in points.varied)
-    text = f"{fmt.count(n)} {'study' if n == 1 else 'studies'} over {fields}."
-    if not evaluates_answer(str(name) for name in found.filter_by_attrs(role="kept")):
-        text += f" {NOT_EVALUATED}"
-        head = Statement(f"{fmt.share(holds, n)} of the studies are solved", text)
-    elif holds == n:
-        head = Statement("Every study has an answer", text, "good")
-    else:
-        head = Statement(f"{fmt.share(holds, n)} of the studies have an answer", text, "doubt")
-    best = [_best(points, *each) for each in zip(points.goals, points.signs, strict=True)]
-    rows = [row for row in best if row is not None]
-    if not rows:
-        return (head,)
-    heads: Heads = ("Best by", Column("Value"), *(Column(axis.title) for axis in points.varied))
-    return (head, Table.of("The best point by each goal.", heads, *rows))
+def _overview(dataset: xr.Dataset, points: SweptPoints) -> Mapping[str, object]:
+    kept = (str(name) for name in dataset.filter_by_attrs(role="kept"))
+    return {
+        "studies": len(points.holds),
+        "holding": int(points.holds.sum()),
+        "fields": [axis.title for axis in points.varied],
+        "not_evaluated": "" if evaluates_answer(kept) else NOT_EVALUATED,
+        "field_heads": _heads(points.varied),
+        "best": [
+            [goal.title, goal.text(at), *(axis.text(at) for axis in points.varied)]
+            for goal, sign in zip(points.goals, points.signs, strict=True)
+            for at in _best(points, goal, sign)
+        ],
+    }
 
 
-def _best(points: SweptPoints, goal: Axis, sign: float) -> tuple[str, ...] | None:
-    """Return the row of the best by one goal, of equals one that no other beats in the rest.
+def _heads(axes: Sequence[Axis]) -> list[tuple[str, str]]:
+    return [(axis.title, "") for axis in axes]
 
-    None where no study that holds has this goal.
+
+def _best(points: SweptPoints, goal: Axis, sign: float) -> list[int]:
+    """Return the best point by one goal, of equals one that no other beats in the rest.
+
+    Empty where no study that holds has this goal.
     """
     held = np.flatnonzero(points.holds & np.isfinite(goal.values))
-    if not len(held):
-        return None
-    at = held[np.lexsort((~points.front[held], sign * goal.values[held]))[0]]
-    return (goal.title, _shown(goal, at), *(_shown(axis, at) for axis in points.varied))
+    order = np.lexsort((~points.front[held], sign * goal.values[held]))
+    return [int(held[at]) for at in order[:1]]
 
 
-def _shown(axis: Axis, at: int) -> str:
-    value = axis.values[at]
-    return axis.labels[int(value)] if axis.labels else fmt.trimmed(float(value), 5)
-
-
-def _trade_offs(points: SweptPoints) -> Section | None:
+def _trade_offs(points: SweptPoints) -> Mapping[str, object] | None:
     front = np.flatnonzero(points.front)
     if len(points.goals) < 2 or not len(front):
         return None
     pairs = list(combinations(points.goals, 2))[:_MOST_PAIRS]
     front = front[np.argsort(points.goals[0].values[front])]
-    shown = front[np.unique(np.linspace(0, len(front) - 1, _MOST_POINTS).astype(int))]
-    caption = "Pareto-optimal points: none is better by one goal without being worse by another."
-    if len(shown) < len(front):
-        caption += f" {len(shown)} of {len(front)}, evenly picked; sweep.csv has all points."
-    heads = tuple(Column(axis.title) for axis in (*points.varied, *points.goals))
-    rows = (tuple(_shown(a, k) for a in (*points.varied, *points.goals)) for k in shown)
-    return Section.of(
-        "trade-offs",
-        "What is traded for what",
-        Picture(
-            "Goals against each other. Dark: Pareto-optimal points; pale: all others.",
-            "",
-            svg=figures.trade_offs(pairs, points.front),
-        ),
-        Table.of(caption, heads, *rows, kind="long"),
-    )
+    rows = front[np.unique(np.linspace(0, len(front) - 1, _MOST_POINTS).astype(int))]
+    axes = (*points.varied, *points.goals)
+    return {
+        "chart": vector(figures.trade_offs(pairs, points.front)),
+        "front": len(front),
+        "heads": _heads(axes),
+        "rows": [[axis.text(at) for axis in axes] for at in rows],
+    }
 
 
-def _influences(points: SweptPoints) -> Section | None:
+def _influences(points: SweptPoints) -> Mapping[str, object] | None:
     if not points.kept:
         return None
     kept, varied = points.kept[:_MOST_FIELDS], points.varied[:_MOST_FIELDS]
     colour = (points.goals or points.kept)[0]
     lines = figures.parallel((*points.varied, *points.kept), colour, points.front)
-    return Section.of(
-        "fields",
-        "What each field does",
-        Picture(
-            "Each result over each field; dark: Pareto-optimal points.",
-            "",
-            svg=figures.influences(varied, kept, points.front),
-        ),
-        Picture(
-            f"A line for each study over all quantities, coloured by {colour.title}; "
-            "Pareto-optimal ones thick.",
-            "",
-            svg=lines,
-        )
-        if lines
-        else "No study has all of the results that are kept.",
-    )
+    return {
+        "influences": vector(figures.influences(varied, kept, points.front)),
+        "parallel": vector(lines or None),
+        "colour": colour.title,
+    }
 
 
-def _reasons(found: xr.Dataset) -> Section | None:
-    reasons, counts = np.unique([why for why in found["reason"].values if why], return_counts=True)
-    if not len(reasons):
-        return None
-    order = np.argsort(-counts)[:_MOST_POINTS]
-    rows = ((fmt.count(int(counts[k])), str(reasons[k])) for k in order)
-    table = Table.of("Studies without an answer, by reason.", (Column("Studies"), "Reason"), *rows)
-    return Section.of("reasons", "What has no answer", table)
+def _reasons(dataset: xr.Dataset) -> Mapping[str, object] | None:
+    reasons = Counter(sorted(reason for reason in dataset["reason"].values if reason))
+    return {"reasons": reasons.most_common(_MOST_POINTS)} if reasons else None

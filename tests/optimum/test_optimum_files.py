@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, optimum, written
+from report_parts import pictures
 
 import designer
 from designer.cli.commands import main
 from designer.errors import DesignerError
-from designer.optimum.page import headline, optimum_report, trust_lines, write_optimum
-from designer.report.blocks import Picture
+from designer.report.optimum import headline, optimum_report, trust_lines, write_optimum
 
 
 @pytest.mark.slow
@@ -95,8 +95,7 @@ def test_no_design_that_holds_is_no_flat_optimum(tmp_path: Path) -> None:
     count = len(found.searched.trials) - 1  # without the robot as given
     assert f"of {count}\N{NO-BREAK SPACE}designs: the configured pose: no cables hold it." in line
     report = optimum_report(found, found.optimised.provenance.created)
-    pictures = [b for s in report.sections for b in s.blocks if isinstance(b, Picture)]
-    assert len(pictures) == 1  # the robot: there is nothing to show of an objective
+    assert len(pictures(report)) == 1  # the robot: there is nothing to show of an objective
 
 
 def test_no_design_that_is_a_study_is_told_with_its_reason(tmp_path: Path) -> None:

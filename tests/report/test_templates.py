@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import sys
+from datetime import datetime
 from pathlib import Path
 
 import pytest
 
+from designer.analysis.comparison import compare
 from designer.cli.commands import main
 from designer.errors import InputError
-from designer.report.blocks import Report, Section
+from designer.report.blocks import Report
+from designer.report.comparison import comparison_report
 from designer.report.render import render_html, write_pages
 from designer.report.templates import check_templates
 
@@ -17,9 +20,8 @@ EXTENDS = '{% extends "default/page.html.j2" %}'
 
 
 def report() -> Report[None]:
-    sections = (Section("inputs", "What was asked", ()),)
-    when = "2026-01-02"
-    return Report("comparison", "Crane", "Comparison", "designer", when, when, None, sections)
+    result = {"name": "Crane", "provenance": {}}
+    return comparison_report(compare(result, result), ("a", "b"), datetime(2026, 1, 2))
 
 
 def page(folder: Path, text: str, name: str = "page.html.j2") -> Path:

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from report_parts import pictures, statements, tables
 from sweep_cases import SWEEP, written
 from test_sweep_run import swept
 
-from designer.report.blocks import Picture, Report, Statement, Table
+from designer.report.blocks import Report
 from designer.report.sweep import NOT_EVALUATED, pareto_front, sweep_report
 from designer.sweep.store import read_store
 
@@ -30,9 +31,9 @@ def page_of(
     return sweep_report(found, "few", datetime.now().astimezone())
 
 
-def best_of(page: Report[None]) -> list[tuple[object, ...]]:
-    tables = [one for one in page.section("answer").blocks if isinstance(one, Table)]
-    return [row.cells for table in tables for group in table.groups for row in group.rows]
+def best_of(page: Report[None]) -> list[tuple[str, ...]]:
+    best = [table for table in tables(page) if table.caption.startswith("The best point")]
+    return [row.cells for table in best for group in table.groups for row in group.rows]
 
 
 def test_the_best_of_a_goal_that_is_maximised_is_its_largest() -> None:
@@ -68,11 +69,8 @@ def test_numbers_and_texts_have_their_place(tmp_path: Path) -> None:
     swept(written(tmp_path, sweep), tmp_path / "out.zarr")
     page = sweep_report(read_store(tmp_path / "out.zarr"), "masses", datetime.now().astimezone())
     assert [section.id for section in page.sections] == ["answer", "fields", "reasons"]
-    head = page.section("answer").blocks[0]
-    assert isinstance(head, Statement)
-    assert head.title == "66.7\N{NO-BREAK SPACE}% of the studies are solved"
-    assert NOT_EVALUATED in str(head.text)
-    picture = page.section("fields").blocks[0]
-    assert isinstance(picture, Picture)
+    head = statements(page)["66.7\N{NO-BREAK SPACE}% of the studies are solved"]
+    assert NOT_EVALUATED in head.text
+    picture = pictures(page)[0]
     assert "5 m" in picture.svg
     assert "robot.platform.mass" in picture.svg.replace("\n", "")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
+from designer.report import format as fmt
 from designer.report.figures import canvas, palette
 
 if TYPE_CHECKING:
@@ -48,6 +49,11 @@ class Axis:
             return cls(title, np.where(np.isfinite(values), values, np.nan))
         labels, places = np.unique([str(value) for value in values.tolist()], return_inverse=True)
         return cls(title, places.astype(float), tuple(map(str, labels)))
+
+    def text(self, point: int) -> str:
+        """Return the value at a point as a cell of a table has it."""
+        value = float(self.values[point])
+        return self.labels[int(value)] if self.labels else fmt.trimmed(value, 5)
 
     def tick(self, axes: Axes) -> None:
         """Write the labels of texts below a diagram; of many, some."""
