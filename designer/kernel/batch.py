@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from designer.arrays import FloatArray, VerdictArray, require_shape
 from designer.kernel import answer
 from designer.kernel.branches import rate_range
-from designer.kernel.calling import CableFigures, Situation, plain, share_out
+from designer.kernel.calling import CableFigures, Situation, plain, share_out, share_out_runs
 from designer.kernel.cone import refuse_range
 from designer.kernel.least_pull import least_pulls
 from designer.kernel.redundant import solve_massless_range, solve_redundant_range
@@ -65,7 +67,7 @@ def solve_batch(
     kappa_per_m: FloatArray,
     relative_weights: FloatArray,
     strength_m: FloatArray,
-    inverse_weight_m_per_N: float | None,
+    inverse_weight_m_per_N: float | FloatArray | None,
     *,
     sag_max: float | None = None,
     is_thorough: bool = False,
@@ -77,9 +79,10 @@ def solve_batch(
     ----------
     robot, situation
         With at least as many cables as degrees of freedom, and its poses.
-    kappa_per_m, relative_weights, strength_m : array (n_cables,)
+    kappa_per_m, relative_weights, strength_m : array (n_cables,) or (n_poses, n_cables)
         Weight over axial stiffness [1/m], weight relative to w, allowable tension over weight [m].
-    inverse_weight_m_per_N : float or None
+        Poses with the same cables are solved fastest where they follow one another.
+    inverse_weight_m_per_N : float, array (n_poses,) or None
         1 / w, zero for the infinite section; None sizes each pose for the lightest cable that the
         strength allows.
     sag_max : float or None
@@ -97,34 +100,40 @@ def solve_batch(
     n, count = robot.n_cables, len(situation.positions)
     if n < robot.degrees_of_freedom:
         raise ValueError(f"{n} cables cannot hold {robot.degrees_of_freedom} degrees of freedom")
-    require_shape("kappa_per_m", kappa_per_m, n)
-    require_shape("relative_weights", relative_weights, n)
-    require_shape("strength_m", strength_m, n)
+    for name, values in (
+        ("kappa_per_m", kappa_per_m),
+        ("relative_weights", relative_weights),
+        ("strength_m", strength_m),
+    ):
+        require_shape(name, values, *([count] if values.ndim == 2 else []), n)
+    sizing = inverse_weight_m_per_N is None
+    inverse_weight = np.asarray(-1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N)
     least_N = robot.tension_min_N if robot.is_redundant else 0.0
-    figures = CableFigures(
-        plain(kappa_per_m),
-        plain(relative_weights),
-        plain(strength_m),
-        least_N,
-        least_pulls(sag_max if robot.is_redundant else None),
-    )
+    pulls = least_pulls(sag_max if robot.is_redundant else None)
+    runs = [
+        (
+            *span,
+            CableFigures(plain(kappa), plain(weights), plain(strength), least_N, pulls),
+            float(goal[0]),
+        )
+        for span, (kappa, weights, strength, goal) in _runs(
+            count, kappa_per_m, relative_weights, strength_m, inverse_weight[..., None]
+        )
+    ]
     out = answer.Answers(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
-    sizing = inverse_weight_m_per_N is None
-    inverse_weight = -1.0 if inverse_weight_m_per_N is None else inverse_weight_m_per_N
-    arguments = situation, figures, inverse_weight, out
-    share_out(
-        solve_redundant_range if robot.is_redundant else solve_range, count, _SHARE, *arguments
-    )
+    asked = [(*span, situation, figures, goal, out) for *span, figures, goal in runs]
+    share_out_runs(solve_redundant_range if robot.is_redundant else solve_range, _SHARE, asked)
     potential = np.zeros(count)
-    if inverse_weight != 0.0:  # at infinite section nothing is chosen
+    if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
-            share_out(search_range, count, _SHARE, *arguments)
+            share_out_runs(search_range, _SHARE, asked)
         if rates_branches and not robot.has_one_branch:
-            share_out(rate_range, count, _SHARE, situation, figures, sizing, out, potential)
+            rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
+            share_out_runs(rate_range, _SHARE, rated)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
-        out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[:, None]
+        out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[..., None]
     return Solution(
         verdict=out.verdict,
         weight_N_per_m=out.poses[:, answer.WEIGHT],
@@ -137,6 +146,20 @@ def solve_batch(
         massless_tension_N=out.poses[:, answer.MASSLESS_TENSION],
         potential=potential,
     )
+
+
+def _runs(count: int, *figures: FloatArray) -> Iterator[tuple[tuple[int, int], list[FloatArray]]]:
+    """Yield the first and last of each run of poses with the same figures, and these.
+
+    ``figures`` have a row each (n_poses, n), or one for all poses (n,).
+    """
+    differs = np.zeros(max(count - 1, 0), dtype=np.bool_)
+    for values in figures:
+        if values.ndim == 2:
+            differs |= (values[1:] != values[:-1]).any(axis=1)
+    edges = [0, *(np.flatnonzero(differs) + 1).tolist(), count] if count else []
+    for first, last in pairwise(edges):
+        yield (first, last), [values[first] if values.ndim == 2 else values for values in figures]
 
 
 def solve_massless_batch(

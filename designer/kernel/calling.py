@@ -6,7 +6,7 @@ Importing this imports no Numba.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, NamedTuple
@@ -147,16 +147,27 @@ def plain(values: ArrayLike) -> FloatArray:
     return array
 
 
-def share_out(solve: Callable[..., None], count: int, share: int, *arguments: Any) -> None:
+def share_out(
+    solve: Callable[..., None], count: int, share: int, *arguments: Any, first: int = 0
+) -> None:
     """Call ``solve(first, last, …)`` for all of ``count``, on all processors where there are many.
 
-    Each call gets as many as a ``share``.
+    Each call gets as many as a ``share``, the first of them number ``first``.
     """
-    shares = [(at, min(at + share, count)) for at in range(0, count, share)]
-    if len(shares) == 1:
-        solve(0, count, *arguments)
+    share_out_runs(solve, share, [(first, first + count, *arguments)])
+
+
+def share_out_runs(solve: Callable[..., None], share: int, runs: Iterable[tuple[Any, ...]]) -> None:
+    """Do the same for several runs, each with its own arguments: ``(first, last, …)``."""
+    calls = [
+        (at, min(at + share, last), *arguments)
+        for first, last, *arguments in runs
+        for at in range(first, last, share)
+    ]
+    if len(calls) == 1:
+        solve(*calls[0])
     else:
-        for future in [_pool().submit(solve, *part, *arguments) for part in shares]:
+        for future in [_pool().submit(solve, *call) for call in calls]:
             future.result()
 
 

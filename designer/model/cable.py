@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from designer.arrays import FloatArray, frozen_array, require_number
+import numpy as np
+
+from designer.arrays import FloatArray, IntArray, frozen_array, require_number
 
 STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
@@ -126,6 +129,76 @@ class Cables:
     def allowable_tension_N(self) -> FloatArray:
         """Largest tension the design may use (n_cables,) [N]."""
         return frozen_array([cable.allowable_tension_N for cable in self.each])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CablesByPose:
+    """Cables that differ from pose to pose.
+
+    Its figures have the names of those of a `Cable`, as arrays (n_poses, 1).
+
+    Parameters
+    ----------
+    each : sequence of Cable
+        The cables.
+    of_pose : array (n_poses,)
+        Which of them is on all winches in each pose.
+    """
+
+    each: Sequence[Cable]
+    of_pose: IntArray
+
+    @property
+    def weight_N_per_m(self) -> FloatArray:
+        """Weight per unstrained length (n_poses, 1) [N/m]."""
+        return _by_pose(self, "weight_N_per_m")[:, None]
+
+    @property
+    def axial_stiffness_N(self) -> FloatArray:
+        """EA (n_poses, 1) [N]."""
+        return _by_pose(self, "axial_stiffness_N")[:, None]
+
+    @property
+    def allowable_tension_N(self) -> FloatArray:
+        """Largest tension the design may use (n_poses, 1) [N]."""
+        return _by_pose(self, "allowable_tension_N")[:, None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MaterialsByPose:
+    """Families of cables that differ from pose to pose, as `CablesByPose`; arrays (n_poses,)."""
+
+    each: Sequence[Material]
+    of_pose: IntArray
+
+    @property
+    def density_kg_per_m3(self) -> FloatArray:
+        """Mass per length over the area of the nominal circle (n_poses,) [kg/m³]."""
+        return _by_pose(self, "density_kg_per_m3")
+
+    @property
+    def youngs_modulus_Pa(self) -> FloatArray:
+        """EA over that area (n_poses,) [Pa]."""
+        return _by_pose(self, "youngs_modulus_Pa")
+
+    @property
+    def allowable_stress_Pa(self) -> FloatArray:
+        """Allowable tension over that area (n_poses,) [Pa]."""
+        return _by_pose(self, "allowable_stress_Pa")
+
+    @property
+    def elastic_compliance_per_m(self) -> FloatArray:
+        """Weight per length over EA (n_poses,) [1/m]."""
+        return _by_pose(self, "elastic_compliance_per_m")
+
+    @property
+    def strength_length_m(self) -> FloatArray:
+        """Length whose own weight reaches the allowable stress (n_poses,) [m]."""
+        return _by_pose(self, "strength_length_m")
+
+
+def _by_pose(items: CablesByPose | MaterialsByPose, name: str) -> FloatArray:
+    return np.array([getattr(item, name) for item in items.each])[items.of_pose]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ samples it is searched in the direction in which a case asks for most, and in th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -24,7 +25,7 @@ from designer.model.workspace import HangsBelow, Workspace
 from designer.progress import Advance
 from designer.selection.samples import over_kept_lengths, over_samples, sampled_at_tension
 from designer.selection.stiffening import StiffnessSearch
-from designer.selection.verify import Sampled, Verification, refined
+from designer.selection.verify import Sampled, Verification, refined, refined_each
 from designer.statics.cable_loss import CableLoss
 from designer.statics.inverse import Statics, solve_sagging
 from designer.statics.sizes import is_quick
@@ -219,11 +220,11 @@ class Cases:
 def resettled(result: CaseResult) -> CaseResult:
     """Return a case, after another worst pose, with the stiffness at the tension there."""
 
-    def search(result: CaseResult) -> CaseResult:
-        is_searched = result.verification.is_refined
-        return result if is_searched else _search_once(result, is_light=False)
+    def search(results: Sequence[CaseResult]) -> Sequence[CaseResult]:
+        is_refined = all(result.verification.is_refined for result in results)
+        return results if is_refined else _search_once(results, is_light=False)
 
-    return _at_its_tension(result, search)
+    return _at_their_tension([result], search)[0]
 
 
 def as_stiff_as(cable: Cable, result: CaseResult) -> Cable:
@@ -233,23 +234,34 @@ def as_stiff_as(cable: Cable, result: CaseResult) -> Cable:
     return replace(cable, axial_stiffness_N=result.loaded.cable.axial_stiffness_N)
 
 
-def _at_its_tension(result: CaseResult, search: Callable[[CaseResult], CaseResult]) -> CaseResult:
-    """Search until the cable has the stiffness that it has at the largest tension found.
+_SearchAll = Callable[[Sequence[CaseResult]], Sequence[CaseResult]]
+
+
+def _at_their_tension(results: Sequence[CaseResult], search: _SearchAll) -> list[CaseResult]:
+    """Search until each cable has the stiffness that it has at the largest tension found.
 
     With another stiffness all samples are solved again, and the search starts from the worst pose
     found before as well.
     """
-    stiffness, result = StiffnessSearch(), search(result)
+    searched, stiffnesses = list(search(results)), [StiffnessSearch() for _ in results]
+    pending = list(range(len(searched)))
     while True:
-        worst = result.verification
-        loaded = stiffness.next_of(result.loaded, worst.max_tension_N)
-        if loaded is None:
-            return result
-        (sampled,) = over_samples([loaded], result.workspace)
-        places = np.concatenate([worst.worst_place[None], sampled.worst_places])
-        verification = sampled.verification(loaded.cable)
-        sampled = replace(sampled, worst_places=places)
-        result = search(CaseResult(result.workspace, loaded, sampled, verification))
+        again = {}
+        for k in pending:
+            result = searched[k]
+            worst = result.verification
+            loaded = stiffnesses[k].next_of(result.loaded, worst.max_tension_N)
+            if loaded is not None:
+                (sampled,) = over_samples([loaded], result.workspace)
+                places = np.concatenate([worst.worst_place[None], sampled.worst_places])
+                verification = sampled.verification(loaded.cable)
+                sampled = replace(sampled, worst_places=places)
+                again[k] = CaseResult(result.workspace, loaded, sampled, verification)
+        if not again:
+            return searched
+        for k, result in zip(again, search(list(again.values())), strict=True):
+            searched[k] = result
+        pending = list(again)
 
 
 def governing(results: Sequence[CaseResult]) -> CaseResult:
@@ -270,12 +282,17 @@ def together(results: Sequence[CaseResult]) -> Verification:
     return replace(governing(results).verification, longest_m=longest, shortest_m=shortest)
 
 
-def searched(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
-    """Search between the samples: what governs in full, other cases near it lightly."""
-    results = _with(results, {id(r): r.whole() for r in _close(worst_of_each(results))})
-    worst = governing(results)
-    close = _close(worst_of_each(results))
-    return _with(results, {id(r): _search(r, is_light=r is not worst) for r in close})
+def searched(
+    candidates: Sequence[Sequence[CaseResult]],
+) -> list[tuple[CaseResult, ...]]:
+    """Search several candidates between the samples: what governs in full, cases near it lightly.
+
+    All of them in one batch.
+    """
+    whole = [_with(c, {id(r): r.whole() for r in _close(worst_of_each(c))}) for c in candidates]
+    close = [(worst_of_each(results), governing(results)) for results in whole]
+    replaced = _search([(r, r is not worst) for each, worst in close for r in _close(each)])
+    return [_with(results, replaced) for results in whole]
 
 
 def _close(results: Sequence[CaseResult]) -> list[CaseResult]:
@@ -295,7 +312,7 @@ def searched_all(results: Sequence[CaseResult]) -> tuple[CaseResult, ...]:
     replaced: dict[int, CaseResult] = {}
     for worst in worst_of_each(results):
         close = _close([result for result in results if result.case is worst.case])
-        replaced |= {id(r): _search(r, is_light=r is not worst) for r in close}
+        replaced |= _search([(result, result is not worst) for result in close])
     return tuple(_turned(result) for result in _with(results, replaced))
 
 
@@ -303,20 +320,47 @@ def _with(results: Sequence[CaseResult], replaced: dict[int, CaseResult]) -> tup
     return tuple(replaced.get(id(result), result) for result in results)
 
 
-def _search(result: CaseResult, *, is_light: bool) -> CaseResult:
-    return _at_its_tension(result, partial(_search_once, is_light=is_light))
+def _search(results: Sequence[tuple[CaseResult, bool]]) -> dict[int, CaseResult]:
+    """Search some results, each lightly or not; what they become, by their `id`."""
+    replaced: dict[int, CaseResult] = {}
+    for is_light in (False, True):
+        of_effort = [result for result, light in results if light is is_light]
+        search = partial(_search_once, is_light=is_light)
+        replaced |= zip(map(id, of_effort), _at_their_tension(of_effort, search), strict=True)
+    return replaced
 
 
-def _search_once(result: CaseResult, *, is_light: bool) -> CaseResult:
-    loaded, workspace = result.loaded, result.workspace
-    if not np.isfinite(result.utilisation) or result.is_full:
-        return result
-    if not loaded.keeps_lengths:
+def _search_once(results: Sequence[CaseResult], *, is_light: bool) -> list[CaseResult]:
+    """Search results, those on the same robot under the same load in one batch."""
+    searched, batches = list(results), defaultdict(list)
+    for k, result in enumerate(results):
+        if np.isfinite(result.utilisation) and not result.is_full:
+            if not result.loaded.keeps_lengths:
+                batches[_load_of(result.loaded)].append(k)
+            elif not is_light:
+                searched[k] = _search_settled(result)
+    for rows in batches.values():
+        of_load = [results[k] for k in rows]
+        robot, workspace = of_load[0].loaded.robot, of_load[0].workspace
+        cables, sampled = [r.loaded.cable for r in of_load], [r.sampled for r in of_load]
         effort = LIGHT if is_light else None
-        verification = refined(loaded.robot, workspace, loaded.cable, result.sampled, effort)
-        return replace(result, verification=verification, is_full=not is_light)
-    if is_light:
-        return result
+        refined = refined_each(robot, workspace, cables, sampled, effort)
+        for k, verification in zip(rows, refined, strict=True):
+            searched[k] = replace(results[k], verification=verification, is_full=not is_light)
+    return searched
+
+
+def _load_of(loaded: Loaded) -> Hashable:
+    """Return what is the same for cables that meet the same load on the same robot."""
+    if loaded.case.changes_robot:
+        return id(loaded)
+    directions = (None if d is None else d.tobytes() for d in (loaded.wind, loaded.inertia))
+    return id(loaded.case), *directions
+
+
+def _search_settled(result: CaseResult) -> CaseResult:
+    """Search for the worst pose of a platform that settles on the lengths that it has."""
+    loaded, workspace = result.loaded, result.workspace
     sampled = over_kept_lengths(loaded, workspace, _MOST_SAMPLES)
     demand_with = partial(settled_demand, loaded, workspace.hangs_below)
     starts = np.concatenate([result.sampled.worst_places, sampled.worst_places])
@@ -336,12 +380,12 @@ def _turned(result: CaseResult) -> CaseResult:
     """Turn wind and inertia force to where they are worst, with the pose that goes with them."""
     if not result.loaded.is_turned or not result.verification.is_refined:
         return result
-    return _at_its_tension(result, _turned_once)
+    return _at_their_tension([result], lambda results: list(map(_turned_once, results)))[0]
 
 
 def _turned_once(result: CaseResult) -> CaseResult:
     if not result.verification.is_refined:  # with another stiffness than before
-        result = _search_once(result, is_light=True)
+        (result,) = _search_once([result], is_light=True)
     for _ in range(_MOST_ROUNDS):
         before = result.utilisation
         steeper = _steepest(result)

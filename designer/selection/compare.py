@@ -16,8 +16,8 @@ from designer.selection.objectives import MEANINGS
 from designer.selection.verify import Verification
 from designer.study import Objective
 
-Search = Callable[[Candidate], Verification]
-"""Searches between the samples."""
+Search = Callable[[Sequence[Candidate]], Sequence[Verification]]
+"""Searches several candidates between the samples."""
 
 NEAR_LIMIT = 0.9
 """Utilisation over the samples from where a search between them may well pass the limit."""
@@ -37,23 +37,22 @@ def settle(
         holding = [c for c in candidates if may_win(c, objectives)]
         front = [holding[k] for k in np.flatnonzero(is_undominated(burdens(holding, objectives)))]
         pending = _search_all(front, search)
-    for grade in dict.fromkeys(candidate.grade for candidate in candidates):
-        best_of([c for c in candidates if c.grade is grade], objectives, search)
+    of_grades = [
+        [candidate for candidate in candidates if candidate.grade is grade]
+        for grade in dict.fromkeys(candidate.grade for candidate in candidates)
+    ]
+    while _search_all([b for c in of_grades if (b := best_of(c, objectives))], search):
+        pass
     holding = [c for c in candidates if c.verification.holds]
     near_limit = [c for c in holding if c.verification.utilisation > NEAR_LIMIT]
     _search_all(near_limit, search)
     return sorted(front, key=lambda candidate: candidate.key(objectives))
 
 
-def best_of(
-    candidates: Sequence[Candidate], objectives: Sequence[Objective], search: Search
-) -> Candidate | None:
-    """Return the best candidate that holds between the samples as well."""
-    while True:
-        holding = [c for c in candidates if may_win(c, objectives)]
-        best = min(holding, key=lambda candidate: candidate.key(objectives), default=None)
-        if best is None or not _search_all([best], search):
-            return best
+def best_of(candidates: Sequence[Candidate], objectives: Sequence[Objective]) -> Candidate | None:
+    """Return the best candidate that holds, as far as each was searched."""
+    holding = [c for c in candidates if may_win(c, objectives)]
+    return min(holding, key=lambda candidate: candidate.key(objectives), default=None)
 
 
 def burdens(candidates: Sequence[Candidate], objectives: Sequence[Objective]) -> FloatArray:
@@ -136,9 +135,9 @@ def may_win(candidate: Candidate, objectives: Sequence[Objective]) -> bool:
 def _search_all(candidates: Sequence[Candidate], search: Search) -> bool:
     """Search for all that were not searched for yet; tell whether there were any."""
     fresh = [c for c in candidates if not c.verification.is_refined]
-    for candidate in fresh:
+    for candidate, met in zip(fresh, search(fresh) if fresh else (), strict=True):
         before_m = candidate.verification.longest_m.sum()
-        candidate.verification = met = search(candidate)
+        candidate.verification = met
         longer = met.longest_m.sum() / before_m
         candidate.figures = replace(
             candidate.figures,

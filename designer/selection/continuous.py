@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -18,8 +18,8 @@ from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
-from designer.workspace.demand import diameter_demand
-from designer.workspace.refine import Worst, worst_over_samples
+from designer.workspace.demand import diameter_demand, diameter_demands
+from designer.workspace.refine import Worst, worst_over_samples_of_each
 from designer.workspace.section import FamilyAt, thinnest
 
 _MOST_TURNS = 20
@@ -47,23 +47,54 @@ class ContinuousOptimum:
     verdict: Verdict | None = None
 
 
-def continuous_optimum(
+_Search = Generator[Material, Worst, ContinuousOptimum]
+"""Yields a family, is sent the worst pose for it, and returns the optimum in the end."""
+
+
+def continuous_optima(
     workspace: Workspace,
-    grade: Grade,
+    grades: Sequence[Grade],
     allowance: Allowance,
     built: AsBuilt,
-    *,
     doubtful: Sequence[FloatArray],
-) -> ContinuousOptimum:
-    """Return the thinnest member of a grade's family that holds everywhere.
+) -> list[ContinuousOptimum]:
+    """Return of each grade the thinnest member of its family that holds everywhere.
 
     With a sheave the strength of the family depends on the diameter, so the thinnest member is a
     fixed point. The need falls steeply with the diameter: a few turns reach it, most of them at
     the worst pose alone. With an effect that adds to a cable all figures depend on the diameter,
-    and its member is sought as in `designer.workspace.section`. ``doubtful`` are places
-    (n, n_coordinates) of the workspace at which members may fail: they are tried first.
+    and its member is sought as in `designer.workspace.section`. ``doubtful`` are, of each grade,
+    places (n, n_coordinates) of the workspace at which members may fail: they are tried first.
+
+    The worst poses of all families are sought in one batch.
     """
-    built = built.of_products
+    built, hangs_below = built.of_products, workspace.hangs_below
+    searches: list[_Search] = [_optimum(grade, allowance, built) for grade in grades]
+    optima: dict[int, ContinuousOptimum] = {}
+    families = {k: next(search) for k, search in enumerate(searches)}
+    while families:
+        worsts = {}
+        for k, family in families.items():
+            if np.isposinf(diameter_demand(built.robot, family, hangs_below)(doubtful[k])).any():
+                worsts[k] = Worst(doubtful[k][0], math.inf)
+        unsettled = [k for k in families if k not in worsts]
+        materials = [families[k] for k in unsettled]
+        demand_with = partial(diameter_demands, built.robot, materials, hangs_below)
+        extremes = worst_over_samples_of_each(workspace, demand_with, len(materials))
+        for k, (worst,) in zip(unsettled, extremes, strict=True):
+            # Where every pose is left out, nothing is served.
+            left_out = worst.demand == -math.inf
+            worsts[k] = Worst(worst.place, math.inf) if left_out else worst
+        families = {}
+        for k, worst in worsts.items():
+            try:
+                families[k] = searches[k].send(worst)
+            except StopIteration as end:
+                optima[k] = end.value
+    return [optima[k] for k in range(len(grades))]
+
+
+def _optimum(grade: Grade, allowance: Allowance, built: AsBuilt) -> _Search:
     unbent = replace(allowance, sheave_diameter_m=None)
 
     def family_at(diameter_m: float) -> Material:
@@ -71,36 +102,21 @@ def continuous_optimum(
         family = (allowance if is_allowed else unbent).family(grade, diameter_m)
         return built.material(family, diameter_m)
 
-    def worst_with(family: Material) -> Worst:
-        demand_with = partial(diameter_demand, built.robot, family, workspace.hangs_below)
-        for places in doubtful:
-            if np.isposinf(demand_with()(places)).any():
-                return Worst(places[0], math.inf)
-        (worst,) = worst_over_samples(workspace, demand_with)
-        # Where every pose is left out, nothing is served.
-        return Worst(worst.place, math.inf) if worst.demand == -math.inf else worst
-
     if built.is_family(unbent.family(grade, grade.thickest.diameter_m)):
-        best = _member(grade, allowance, built, family_at, worst_with)
+        best = yield from _member(grade, allowance, built, family_at)
     else:
-        diameter = thinnest(built.robot, family_at, worst_with)
+        diameter = yield from thinnest(built.robot, family_at)
         shown_m = diameter if math.isfinite(diameter) else grade.thickest.diameter_m
         best = ContinuousOptimum(family_at(shown_m), diameter)
     is_allowed = not math.isnan(allowance.efficiency(grade, best.diameter_m))
     return best if is_allowed else replace(best, diameter_m=math.nan)
 
 
-def _member(
-    grade: Grade,
-    allowance: Allowance,
-    built: AsBuilt,
-    family_at: FamilyAt,
-    worst_with: Callable[[Material], Worst],
-) -> ContinuousOptimum:
+def _member(grade: Grade, allowance: Allowance, built: AsBuilt, family_at: FamilyAt) -> _Search:
     diameter = grade.sizes[0].diameter_m
     for _ in range(_MOST_TURNS):
         family = family_at(diameter)
-        worst = worst_with(family)
+        worst = yield family
         if not math.isfinite(worst.demand):
             return ContinuousOptimum(family, math.nan, _verdict_at(built, family, worst.place))
         if allowance.sheave_diameter_m is None or _is_still(worst.demand, diameter):

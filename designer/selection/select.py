@@ -39,7 +39,7 @@ from designer.selection.cases import (
     worst_of_each,
 )
 from designer.selection.compare import best_of, may_win, settle, standing_of
-from designer.selection.continuous import ContinuousOptimum, continuous_optimum
+from designer.selection.continuous import ContinuousOptimum, continuous_optima
 from designer.selection.criteria import criteria_of
 from designer.selection.efficiency import Allowance
 from designer.selection.objectives import MEANINGS, CandidateFigures
@@ -174,16 +174,41 @@ class _SelectionRun:
             NotTried(g, size, why) for g in grades for size in g.sizes if id(size) not in solved
         ]
         front, allowed = self.choose(candidates)
-        outcomes = []
-        with self.reporter.task("grades", len(grades)) as advance:
-            for grade in grades:
-                of_grade = [c for c in candidates if c.grade is grade]
-                fitting = [c for c in of_grade if id(c) in allowed]
-                its_best = best_of(fitting, self.selection.objectives, _nothing_left)
-                if its_best is not None or (of_grade and not only_fitting):
-                    outcomes.append(self._outcome(grade, of_grade, front, its_best))
+        tried: list[tuple[Grade, list[Candidate], Candidate | None]] = []
+        for grade in grades:
+            of_grade = [c for c in candidates if c.grade is grade]
+            fitting = [c for c in of_grade if id(c) in allowed]
+            its_best = best_of(fitting, self.selection.objectives)
+            if its_best is not None or (of_grade and not only_fitting):
+                tried.append((grade, of_grade, its_best))
+        with self.reporter.task("grades", len(tried)) as advance:
+            optima = self._continuous_optima([(grade, of_grade) for grade, of_grade, _ in tried])
+            outcomes = []
+            for (grade, of_grade, its_best), optimum in zip(tried, optima, strict=True):
+                outcomes.append(self._outcome(grade, of_grade, front, its_best, optimum))
                 advance(1)
         return outcomes, not_tried
+
+    def _continuous_optima(
+        self, grades: Sequence[tuple[Grade, Sequence[Candidate]]]
+    ) -> list[ContinuousOptimum]:
+        """Return the continuous optimum of each grade with candidates."""
+        workspace = self.cases.workspace
+        doubtful = [
+            next(
+                (
+                    case.sampled.worst_places[:1]
+                    for candidate in candidates
+                    for case in candidate.cases
+                    if case.sampled.not_held and case.case.region is None
+                ),
+                np.empty((0, workspace.space.n_coordinates)),
+            )
+            for _, candidates in grades
+        ]
+        allowance = Allowance.of(self.selection)
+        of_grades = [grade for grade, _ in grades]
+        return continuous_optima(workspace, of_grades, allowance, self.built, doubtful)
 
     def choose(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], set[int]]:
         """Return the Pareto set, the best first, and by `id` what it was chosen from.
@@ -195,9 +220,9 @@ class _SelectionRun:
         with self.reporter.task("search", len(candidates)) as advance:
             thorough: set[int] = set()
 
-            def search(candidate: Candidate) -> Verification:
-                advance(1)
-                return self.searched(candidate, in_all=id(candidate) in thorough)
+            def search(candidates: Sequence[Candidate]) -> list[Verification]:
+                advance(len(candidates))
+                return self.searched(candidates, thorough)
 
             while True:
                 meeting = [c for c in candidates if c.rejected_by is None]
@@ -235,16 +260,19 @@ class _SelectionRun:
         candidate.figures = replace(candidate.figures, max_tension_N=tension_N)
         return proof.proof.worst is not None
 
-    def searched(self, candidate: Candidate, *, in_all: bool = False) -> Verification:
-        """Search for the extremes of a candidate between the samples.
+    def searched(self, candidates: Sequence[Candidate], thorough: set[int]) -> list[Verification]:
+        """Search for the extremes of candidates between the samples.
 
-        Where it governs and near there, or in every load case.
+        Where each governs and near there; of those with an `id` in ``thorough`` in every load case.
         """
-        candidate.cases = searched_all(candidate.cases) if in_all else searched(candidate.cases)
-        candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
-        if "stiffness" in self.selection.objectives:
-            self._add_stiffness(candidate, searched=True)
-        return together(candidate.cases)
+        in_batch = [c for c in candidates if id(c) not in thorough]
+        cases = dict(zip(map(id, in_batch), searched([c.cases for c in in_batch]), strict=True))
+        for candidate in candidates:
+            candidate.cases = cases.get(id(candidate)) or searched_all(candidate.cases)
+            candidate.cable = as_stiff_as(candidate.cable, governing(candidate.cases))
+            if "stiffness" in self.selection.objectives:
+                self._add_stiffness(candidate, searched=True)
+        return [together(candidate.cases) for candidate in candidates]
 
     def sampled(self, grades: Sequence[Grade]) -> list[Candidate]:
         """Solve all samples with all sizes that the sheave allows."""
@@ -296,21 +324,9 @@ class _SelectionRun:
         candidates: Sequence[Candidate],
         front: Sequence[Candidate],
         best: Candidate | None,
+        optimum: ContinuousOptimum,
     ) -> GradeOutcome:
         """Return what became of a grade, and of each of its sizes."""
-        not_held = [
-            case.sampled.worst_places[:1]
-            for candidate in candidates
-            for case in candidate.cases
-            if case.sampled.not_held and case.case.region is None
-        ]
-        optimum = continuous_optimum(
-            self.cases.workspace,
-            grade,
-            Allowance.of(self.selection),
-            self.built,
-            doubtful=not_held[:1],
-        )
         for candidate in candidates:
             standing, reason = standing_of(candidate, front, self.selection.objectives)
             candidate.standing, candidate.reason = standing, reason
@@ -336,10 +352,6 @@ def _outcome_of(candidates: Sequence[Candidate], optimum: ContinuousOptimum) -> 
         return "too_thin"
     proved = optimum.verdict is not None and optimum.verdict.is_proved
     return "no_finite_cable" if proved else "open"
-
-
-def _nothing_left(candidate: Candidate) -> Verification:
-    raise AssertionError(f"{candidate.label} is the best of its grade and was not searched")
 
 
 def _usable(

@@ -19,8 +19,8 @@ from designer.model.robot import Poses, Robot
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.statics.sizes import add_slowly, is_quick, meet
-from designer.workspace.demand import rope_demand
-from designer.workspace.refine import Effort, Worst, refine_over_branches, worst_over_samples
+from designer.workspace.demand import rope_demand, rope_demands
+from designer.workspace.refine import Effort, Worst, refine_each_over_branches, worst_over_samples
 
 _CELLS_A_SIDE, _TURNS = 6, 8
 _CELLS = _CELLS_A_SIDE**3 * _TURNS
@@ -129,10 +129,25 @@ def refined(
     effort: Effort | None = None,
 ) -> Verification:
     """Search for the extremes of a cable between the samples, from the worst of them."""
-    demand_with = partial(rope_demand, robot, cable, workspace.hangs_below)
-    worst = refine_over_branches(workspace.space, demand_with, sampled.worst_places, effort)
-    verification = _verification(cable, worst)
-    return replace(verification, longest_m=np.maximum(verification.longest_m, sampled.longest_m))
+    return refined_each(robot, workspace, [cable], [sampled], effort)[0]
+
+
+def refined_each(
+    robot: Robot,
+    workspace: Workspace,
+    cables: Sequence[Cable],
+    sampled: Sequence[Sampled],
+    effort: Effort | None = None,
+) -> list[Verification]:
+    """Search for the extremes of several cables in one batch, as `refined`."""
+    demand_with = partial(rope_demands, robot, cables, workspace.hangs_below)
+    starts = [of_cable.worst_places for of_cable in sampled]
+    worsts = refine_each_over_branches(workspace.space, demand_with, starts, effort)
+    verifications = map(_verification, cables, worsts)
+    return [
+        replace(found, longest_m=np.maximum(found.longest_m, of_cable.longest_m))
+        for found, of_cable in zip(verifications, sampled, strict=True)
+    ]
 
 
 def _verification(cable: Cable, worst: list[Worst]) -> Verification:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray
-from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material
+from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Material, MaterialsByPose
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict
 from designer.statics.inverse import Statics, statics_of
@@ -46,7 +46,11 @@ class Sizing:
 
 
 def size_poses(
-    robot: Robot, poses: Poses, material: Material, *, seeks_better: bool = True
+    robot: Robot,
+    poses: Poses,
+    material: Material | MaterialsByPose,
+    *,
+    seeks_better: bool = True,
 ) -> Sizing:
     """Return the thinnest cable of the family for each pose (...).
 
@@ -57,8 +61,8 @@ def size_poses(
     it is not to ``seeks_better`` than what was found first.
     """
     task = Task(
-        material.elastic_compliance_per_m,
-        material.strength_length_m,
+        np.expand_dims(material.elastic_compliance_per_m, -1),
+        np.expand_dims(material.strength_length_m, -1),
         None,
         sag_max=robot.family_sag_max,
     )

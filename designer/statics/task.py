@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -46,14 +46,14 @@ class Task:
 
     Parameters
     ----------
-    kappa_per_m, strength_m : float or array (n_cables,)
+    kappa_per_m, strength_m : float or array (n_cables,) or (n_poses, 1 or n_cables)
         Weight over axial stiffness [1/m], allowable tension over weight [m]; one for all cables, or
-        each its own.
-    inverse_weight_m_per_N : float or None
+        each its own, in all poses or each.
+    inverse_weight_m_per_N : float, array (n_poses,) or None
         1 / w; None asks for the lightest cable.
     force_N : array (..., 3) or None
         Force on the platform beside its weight, base frame [N].
-    relative_weights : float or array (n_cables,)
+    relative_weights : float or array (n_cables,) or (n_poses, 1 or n_cables)
         Weight of the cables relative to w.
     sag_max : float or None
         Largest sag over chord, of more cables than degrees of freedom.
@@ -61,14 +61,22 @@ class Task:
 
     kappa_per_m: float | FloatArray
     strength_m: float | FloatArray
-    inverse_weight_m_per_N: float | None
+    inverse_weight_m_per_N: float | FloatArray | None
     force_N: FloatArray | None = None
     relative_weights: float | FloatArray = 1.0
     sag_max: float | None = None
 
     def part(self, at: IntArray) -> Task:
         """Return the task for some of poses (n_poses,)."""
-        return self if self.force_N is None else replace(self, force_N=self.force_N[at])
+        changed: dict[str, Any] = {}
+        for name in ("kappa_per_m", "strength_m", "relative_weights", "force_N"):
+            values = getattr(self, name)
+            if np.ndim(values) == 2:
+                changed[name] = values[at]
+        inverse = self.inverse_weight_m_per_N
+        if isinstance(inverse, np.ndarray) and inverse.ndim == 1:
+            changed["inverse_weight_m_per_N"] = inverse[at]
+        return replace(self, **changed) if changed else self
 
 
 def flat_poses(poses: Poses) -> Poses:
@@ -199,7 +207,7 @@ def _try_other_branches(
     """
     hard = np.logical_or.reduce([solution.verdict == verdict for verdict in OPEN])
     at = np.flatnonzero(among & (hard | (solution.potential > _WORTH_A_SEARCH)))
-    if len(at) == 0 or task.inverse_weight_m_per_N == 0.0:
+    if len(at) == 0 or np.any(task.inverse_weight_m_per_N == 0.0):
         return
     poses = part_of(flat, at)
     again, its_run = _solve_over_pulleys(

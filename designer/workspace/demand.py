@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
-from designer.model.cable import Cable, Material
+from designer.arrays import BoolArray, FloatArray, IntArray
+from designer.model.cable import Cable, CablesByPose, Material, MaterialsByPose
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
@@ -14,7 +16,7 @@ from designer.model.workspace import HangsBelow, Workspace
 from designer.sizing.newton import Sizing, size_poses
 from designer.statics.cable_loss import CableLoss, settle
 from designer.statics.inverse import Statics, solve_massless, solve_sagging
-from designer.workspace.refine import Demand
+from designer.workspace.refine import Demand, DemandOfEach
 
 
 def is_left_out(statics: Statics, hangs_below: HangsBelow) -> BoolArray:
@@ -59,9 +61,21 @@ def diameter_demand(
     robot: Robot, material: Material, hangs_below: HangsBelow, *, seeks_better: bool = True
 ) -> Demand:
     """Needed diameter [m]; inf where no cable of the family will do."""
+    return _alone(diameter_demands(robot, [material], hangs_below, seeks_better=seeks_better))
 
-    def demand(places: FloatArray) -> FloatArray:
-        sizing = size_poses(robot, Poses.at(places), material, seeks_better=seeks_better)
+
+def diameter_demands(
+    robot: Robot,
+    materials: Sequence[Material],
+    hangs_below: HangsBelow,
+    *,
+    seeks_better: bool = True,
+) -> DemandOfEach:
+    """Needed diameter [m] of each of several families, as `diameter_demand`."""
+
+    def demand(places: FloatArray, search: IntArray) -> FloatArray:
+        families = MaterialsByPose(materials, search)
+        sizing = size_poses(robot, Poses.at(places), families, seeks_better=seeks_better)
         return demand_of(sizing.diameter_m, sizing.statics, hangs_below)
 
     return demand
@@ -74,13 +88,25 @@ def rope_demand(
 
     Lengths are unstrained [m]; the largest of the negated ones is the shortest.
     """
+    return _alone(rope_demands(robot, [cable], hangs_below, seeks_better=seeks_better))
 
-    def demand(places: FloatArray) -> FloatArray:
+
+def rope_demands(
+    robot: Robot, cables: Sequence[Cable], hangs_below: HangsBelow, *, seeks_better: bool = True
+) -> DemandOfEach:
+    """What each of several cables meets, as `rope_demand`."""
+
+    def demand(places: FloatArray, search: IntArray) -> FloatArray:
+        cable = CablesByPose(cables, search)
         statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
         tension = demand_of(statics.largest_tension_N, statics, hangs_below)
         return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])
 
     return demand
+
+
+def _alone(demand: DemandOfEach) -> Demand:
+    return lambda places: demand(places, np.zeros(len(places), dtype=np.int64))
 
 
 def settled_demand(loaded: Loaded, hangs_below: HangsBelow, *, seeks_better: bool = True) -> Demand:

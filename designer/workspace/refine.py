@@ -5,13 +5,16 @@ own. Places that nothing near them exceeds are starts, as many as there are. Fro
 climbs by clouds of trials that shrink. About the highest ends it climbs again, from starts closer
 together, since another maximum may lie beside one. Then a fresh sample, near the best and far from
 it, tries to exceed it; as long as one does, the search goes on from there.
+
+Several searches, such as one for each rope, take each step together: what they ask for is computed
+in one batch. The random places of a step are the same for all, so that no search depends on those
+beside it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -23,8 +26,12 @@ from designer.workspace.pool import CELLS_A_SIDE, Pool, local_maxima
 Demand = Callable[[FloatArray], FloatArray]
 """Maps places (n, n_coordinates) to what they ask for (n,): inf where nothing is enough, -inf where
 the place does not count. For several extremes at once (n, n_extremes)."""
+DemandOfEach = Callable[[FloatArray, IntArray], FloatArray]
+"""The same for several searches at once: maps places and the number of the search of each (n,),
+ascending, to what they ask for."""
 
-_CHUNK = 2**13
+_CHUNK = 2**15
+"""Places whose demand is computed at once, at most: memory stays flat."""
 _APART = 0.025
 """Between starts about the end of a climb, as a share of the space."""
 _CLOSE = 0.01
@@ -85,17 +92,40 @@ LIGHT = Effort(
 def refine(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
-    """Return the largest of each of several demands (n, n_extremes) that one computation yields.
+    """Return the largest of each of several demands (n, n_extremes); see `refine_each`."""
+    return refine_each(space, in_turn([demand]), [starts], effort)[0]
+
+
+def refine_each(
+    space: Space,
+    demand: DemandOfEach,
+    starts: Sequence[FloatArray],
+    effort: Effort | None = None,
+) -> list[list[Worst]]:
+    """Return of each of several searches the largest of each of its demands (n, n_extremes).
 
     It needs no derivative, since demands have kinks wherever another cable becomes the most loaded
     one. Orientations out of a range are searched together with the positions; of a list of
     orientations each start keeps its own. Of a list of points every one is tried, since there is
     nothing between. The result is the largest that was found; that there is none larger is not
-    proved. Ends at the first place where any of the demands is infinite.
+    proved. A search ends at the first place where any of its demands is infinite.
 
-    ``starts`` (n, n_coordinates) are samples of the space that ask for much, such as `Pool.places`.
+    ``starts`` (n, n_coordinates), of each search, are samples of the space that ask for much, such
+    as `Pool.places`.
     """
-    return _PoseSearch(space, demand, effort or Effort()).run(starts)
+    return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
+
+
+def in_turn(demands: Sequence[Demand]) -> DemandOfEach:
+    """Return the demands of several searches that are computed one after another."""
+
+    def demand(places: FloatArray, search: IntArray) -> FloatArray:
+        edges = np.searchsorted(search, np.arange(len(demands) + 1))
+        spans = [(k, slice(*edges[k : k + 2])) for k in range(len(demands))]
+        values = [demands[k](places[span]) for k, span in spans if span.start < span.stop]
+        return np.concatenate(values)
+
+    return demand
 
 
 def refine_over_branches(
@@ -104,130 +134,256 @@ def refine_over_branches(
     starts: FloatArray,
     effort: Effort | None = None,
 ) -> list[Worst]:
-    """Return the largest of each of several demands of solutions that may have better branches.
+    """Return the largest of each of several demands; see `refine_each_over_branches`."""
+
+    def demands(*, seeks_better: bool) -> DemandOfEach:
+        return in_turn([demand_with(seeks_better=seeks_better)])
+
+    return refine_each_over_branches(space, demands, [starts], effort)[0]
+
+
+def refine_each_over_branches(
+    space: Space,
+    demand_with: Callable[..., DemandOfEach],
+    starts: Sequence[FloatArray],
+    effort: Effort | None = None,
+) -> list[list[Worst]]:
+    """Return what `refine_each` does, of solutions that may have better branches.
 
     To look for better branches takes a hundred times as long. Where it changes none of the starts,
-    the search does without, and its results are computed again with it: a better branch asks for
+    a search does without, and its results are computed again with it: a better branch asks for
     less, so that a largest diameter or tension stands if it stands there. If anything has changed,
     the whole search is made again with it. ``demand_with`` takes ``seeks_better``, whether to look
     for them, and returns the demand.
     """
     plain, thorough = demand_with(seeks_better=False), demand_with(seeks_better=True)
 
-    def changes(places: FloatArray) -> bool:
-        return len(places) > 0 and not np.array_equal(plain(places), thorough(places))
+    def changed(places: Sequence[FloatArray], among: IntArray) -> IntArray:
+        """Return which of some searches have other demands at their places with it."""
+        count = [len(of_search) for of_search in places]
+        search = np.repeat(among, count)
+        if not len(search):
+            return search
+        at = np.concatenate(places)
+        differs = plain(at, search) != thorough(at, search)
+        return np.unique(search[differs.reshape(len(at), -1).any(axis=1)])
 
-    if not changes(starts):
-        worsts = refine(space, plain, starts, effort)
-        places = np.array([worst.place for worst in worsts])
-        if not changes(places[np.isfinite(places).all(axis=1)]):
-            return worsts
-    return refine(space, thorough, starts, effort)
+    def searched(demand: DemandOfEach, among: IntArray) -> list[list[Worst]]:
+        """Search anew, numbered from 0, for what has these numbers."""
+        if not len(among):
+            return []
+        own_starts = [starts[k] for k in among]
+        return refine_each(space, lambda at, k: demand(at, among[k]), own_starts, effort)
+
+    every = np.arange(len(starts))
+    hard = changed(starts, every)
+    easy = np.setdiff1d(every, hard)
+    found = dict(zip(easy.tolist(), searched(plain, easy), strict=True))
+    ends = [np.array([worst.place for worst in worsts]) for worsts in found.values()]
+    hard = np.union1d(hard, changed([p[np.isfinite(p).all(axis=1)] for p in ends], easy))
+    found |= zip(hard.tolist(), searched(thorough, hard), strict=True)
+    return [found[k] for k in every.tolist()]
 
 
 def worst_over_samples(workspace: Workspace, demand_with: Callable[..., Demand]) -> list[Worst]:
+    """Return the largest of each of several demands; see `worst_over_samples_of_each`."""
+
+    def demands(*, seeks_better: bool = True) -> DemandOfEach:
+        return in_turn([demand_with(seeks_better=seeks_better)])
+
+    return worst_over_samples_of_each(workspace, demands, 1)[0]
+
+
+def worst_over_samples_of_each(
+    workspace: Workspace, demand_with: Callable[..., DemandOfEach], count: int
+) -> list[list[Worst]]:
     """Return the largest of each demand over all samples, then over the region from the best.
 
-    Starts are the samples that ask for most of the first demand; see `refine_over_branches`.
+    For a ``count`` of searches. Starts are the samples that ask for most of the first demand; see
+    `refine_each_over_branches`.
     """
-    pool, demand = Pool(workspace.space), demand_with()
+    pools = [Pool(workspace.space) for _ in range(count)]
+    demand = demand_with()
     for rows in workspace.places():
-        pool.add(rows, demand(rows).reshape(len(rows), -1)[:, 0])
-    return refine_over_branches(workspace.space, demand_with, pool.places)
+        for first in range(0, count, size := max(_CHUNK // len(rows), 1)):
+            some = range(first, min(first + size, count))
+            search = np.repeat(np.arange(some.start, some.stop), len(rows))
+            values = demand(np.tile(rows, (len(some), 1)), search)
+            for k, of_search in zip(some, values.reshape(len(some), len(rows), -1), strict=True):
+                pools[k].add(rows, of_search[:, 0])
+    starts = [pool.places for pool in pools]
+    return refine_each_over_branches(workspace.space, demand_with, starts)
 
 
-_Climbs = Any
-"""Records of climbs: where each is, its extreme, value, cloud's size and last step."""
+@dataclass(slots=True, eq=False)
+class _Climbs:
+    """Climbs of all searches, those of one search beside each other.
+
+    Parameters
+    ----------
+    search, extreme : array (n_climbs,)
+        Which search, and which of its demands.
+    at : array (n_climbs, n_coordinates)
+        Where it is [m, rad].
+    value, radius : array (n_climbs,)
+        The demand there, and the size of the next cloud, as a share of the space.
+    step : array (n_climbs, n_coordinates)
+        The last step [m, rad].
+    """
+
+    search: IntArray
+    extreme: IntArray
+    at: FloatArray
+    value: FloatArray
+    radius: FloatArray
+    step: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.search)
+
+    @property
+    def kind(self) -> IntArray:
+        """Number of its search and extreme together (n_climbs,)."""
+        return np.asarray(self.search * (self.extreme.max(initial=0) + 1) + self.extreme)
+
+    def part(self, rows: IntArray) -> _Climbs:
+        """Return some of them."""
+        return _Climbs(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    def with_others(self, others: _Climbs) -> _Climbs:
+        """Return these and others."""
+        names = (field.name for field in fields(self))
+        both = (np.concatenate([getattr(self, name), getattr(others, name)]) for name in names)
+        joined = _Climbs(*both)
+        return joined.part(np.argsort(joined.search, kind="stable"))
 
 
 class _PoseSearch:
-    """One search, with all that its steps share."""
+    """Several searches, with all that their steps share."""
 
-    def __init__(self, space: Space, demand: Demand, effort: Effort) -> None:
-        self._space, self._demand, self._effort = space, demand, effort
-        self._rng = np.random.default_rng(0)
+    def __init__(self, space: Space, demand: DemandOfEach, effort: Effort, count: int) -> None:
+        self._space, self._demand, self._effort, self._count = space, demand, effort, count
         self._size = np.ptp(space.bounds, axis=0)
-        self._best: list[Worst] = []
+        self._best = np.empty((count, 0))
+        self._best_places = np.empty((count, 0, len(self._size)))
+        self._phase = 0
 
-    def run(self, starts: FloatArray) -> list[Worst]:
-        space = self._space
+    def run(self, starts: Sequence[FloatArray]) -> list[list[Worst]]:
+        space, every = self._space, np.arange(self._count)
         if space.is_discrete:
-            every = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
-            for at in range(0, len(every), _CHUNK):
-                self._ask(every[at : at + _CHUNK])
-            return self._best
+            points = np.concatenate(list(map(space.places, space.region.samples_m(1, "grid", 0))))
+            self._ask_each([points] * self._count, every)
+            return self._worsts
         marks = space.landmarks()
-        places = np.concatenate([starts, marks, self._scatter()])
-        values = self._ask(places)
-        self._climb_all(places, values, np.arange(len(starts), len(starts) + len(marks)))
-        for _ in range(_MOST_ROUNDS if not self._is_over else 0):
-            before = np.array([worst.demand for worst in self._best])
-            places = np.concatenate([self._scatter(), self._near_the_best()])
-            values = self._ask(places)
-            gain = np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
-            higher = values > before + gain
-            if self._is_over or not higher.any():
+        common = np.concatenate([marks, self._scatter(0)])
+        places = [np.concatenate([of_search, common]) for of_search in starts]
+        values = self._ask_each(places, every)
+        landmarks = [len(of_search) + np.arange(len(marks)) for of_search in starts]
+        self._climb_all(every, places, values, landmarks)
+        for turn in range(1, _MOST_ROUNDS + 1):
+            every = every[~self._is_over[every]]
+            before = self._best[every]
+            scatter, near = self._scatter(turn), self._near_the_best(turn, every)
+            places = [np.concatenate([scatter, of_search]) for of_search in near]
+            values = self._ask_each(places, every) if len(every) else []
+            threshold = before + np.where(np.isneginf(before), 0.0, 1e-10 * np.abs(before))
+            higher = [of_search > least for of_search, least in zip(values, threshold, strict=True)]
+            is_over = self._is_over[every]
+            rising = [k for k, mask in enumerate(higher) if mask.any() and not is_over[k]]
+            if not rising:
                 break
-            self._climb_all(places, np.where(higher, values, -np.inf), np.empty(0, dtype=np.int64))
-        return self._best
+            every, none = every[rising], np.empty(0, dtype=np.int64)
+            values = [np.where(higher[k], values[k], -np.inf) for k in rising]
+            self._climb_all(every, [places[k] for k in rising], values, [none] * len(rising))
+        return self._worsts
 
     @property
-    def _is_over(self) -> bool:
-        return any(np.isposinf(worst.demand) for worst in self._best)
+    def _worsts(self) -> list[list[Worst]]:
+        return [
+            [Worst(place, float(demand)) for place, demand in zip(*of_search, strict=True)]
+            for of_search in zip(self._best_places, self._best, strict=True)
+        ]
 
-    def _scatter(self) -> FloatArray:
+    @property
+    def _is_over(self) -> BoolArray:
+        return np.asarray(np.isposinf(self._best).any(axis=1))
+
+    def _scatter(self, turn: int) -> FloatArray:
         counts = self._effort.per_edge, self._effort.per_face, self._effort.inside
-        return self._space.scattered(self._rng, *counts)
+        return self._space.scattered(np.random.default_rng([0, turn]), *counts)
 
-    def _near_the_best(self) -> FloatArray:
-        """Return places about each of the best, at all distances."""
-        places = np.array([worst.place for worst in self._best])
-        places = places[np.isfinite(places).all(axis=1)]
-        of_each = (len(_NEAR_SCALES), 24, len(self._size))
-        cloud = self._rng.uniform(-1.0, 1.0, of_each)
-        cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, len(self._size))
-        return self._space.nearest((places[:, None] + cloud).reshape(-1, len(self._size)))
+    def _near_the_best(self, turn: int, among: IntArray) -> list[FloatArray]:
+        """Return places about each of the best of some searches, at all distances."""
+        n = len(self._size)
+        cloud = np.random.default_rng([1, turn]).uniform(-1.0, 1.0, (len(_NEAR_SCALES), 24, n))
+        cloud = (cloud * _NEAR_SCALES[:, None, None] * self._size).reshape(-1, n)
+        near = []
+        for best in self._best_places[among]:
+            known = best[np.isfinite(best).all(axis=1)]
+            near.append(self._space.nearest((known[:, None] + cloud).reshape(-1, n)))
+        return near
 
-    def _ask(self, places: FloatArray) -> FloatArray:
-        """Return what places ask for (n, n_extremes), and remember the largest."""
-        values = self._demand(places)
-        values = values[:, None] if values.ndim == 1 else values
-        if not self._best:
-            nowhere = np.full(len(self._size), np.nan)
-            self._best = [Worst(nowhere, -np.inf)] * values.shape[1]
-        at = values.argmax(axis=0) if len(values) else []
-        for k, row in enumerate(at):
-            if values[row, k] > self._best[k].demand:
-                self._best[k] = Worst(places[row].copy(), float(values[row, k]))
+    def _ask_each(self, places: Sequence[FloatArray], among: IntArray) -> list[FloatArray]:
+        """Return what places (n, n_coordinates) of some searches ask for (n, n_extremes)."""
+        counts = [len(of_search) for of_search in places]
+        values = self._ask(np.concatenate(places), np.repeat(among, counts))
+        return np.split(values, np.cumsum(counts)[:-1])
+
+    def _ask(self, places: FloatArray, search: IntArray) -> FloatArray:
+        """Return what places ask for (n, n_extremes), and remember the largest of each search."""
+        parts = [slice(at, at + _CHUNK) for at in range(0, max(len(places), 1), _CHUNK)]
+        values = np.concatenate([self._demand(places[part], search[part]) for part in parts])
+        values = values.reshape(len(places), -1) if len(places) else values.reshape(0, 0)
+        if not self._best.size:
+            self._best = np.full((self._count, values.shape[1]), -np.inf)
+            self._best_places = np.full((*self._best.shape, len(self._size)), np.nan)
+        if not len(places):
+            return values
+        first = np.flatnonzero(np.diff(search, prepend=-1))
+        highest, owner = np.maximum.reduceat(values, first, axis=0), search[first]
+        last = np.append(first[1:], len(search))
+        for run, extreme in np.argwhere(highest > self._best[owner]).tolist():
+            row = first[run] + values[first[run] : last[run], extreme].argmax()
+            self._best[owner[run], extreme] = values[row, extreme]
+            self._best_places[owner[run], extreme] = places[row]
         return values
 
-    def _climb_all(self, places: FloatArray, values: FloatArray, marks: IntArray) -> None:
+    def _climb_all(
+        self,
+        among: IntArray,
+        places: Sequence[FloatArray],
+        values: Sequence[FloatArray],
+        landmarks: Sequence[IntArray],
+    ) -> None:
         """Climb from the places that nothing near them exceeds, then on with the best of these."""
-        if self._is_over:
+        effort, kinds, at, value = self._effort, [], [], []
+        is_over = self._is_over
+        for k, of_search, demand, marks in zip(among, places, values, landmarks, strict=True):
+            for extreme in range(0 if is_over[k] else demand.shape[1]):
+                own_demand = demand[:, extreme]
+                rows = local_maxima(self._space, of_search, own_demand, effort.starts)
+                if effort.from_landmarks and demand.shape[1] == 1:
+                    highest = marks[np.argsort(-own_demand[marks])][: effort.starts]
+                    rows = np.union1d(rows, highest[~np.isneginf(own_demand[highest])])
+                kinds.append(np.full((len(rows), 2), (k, extreme)))
+                at.append(of_search[rows])
+                value.append(own_demand[rows])
+        if not kinds:
             return
-        effort, rows, extremes = self._effort, [], []
-        for k in range(values.shape[1]):
-            some = local_maxima(self._space, places, values[:, k], effort.starts)
-            if effort.from_landmarks and values.shape[1] == 1:
-                also = marks[np.argsort(-values[marks, k])][: effort.starts]
-                some = np.union1d(some, also[~np.isneginf(values[also, k])])
-            rows.append(some)
-            extremes.append(np.full(len(some), k))
-        row, extreme = np.concatenate(rows), np.concatenate(extremes)
-        n = len(self._size)
-        kinds = [("at", "f8", n), ("extreme", "i8"), ("value", "f8"), ("radius", "f8")]
-        climbs = np.zeros(len(row), dtype=[*kinds, ("step", "f8", n)]).view(np.recarray)
-        climbs.at, climbs.extreme, climbs.value = places[row], extreme, values[row, extreme]
-        climbs.radius = 0.5 / CELLS_A_SIDE
+        climbs = self._climbs(*np.concatenate(kinds).T, *map(np.concatenate, (at, value)))
+        climbs.radius[:] = 0.5 / CELLS_A_SIDE
         self._climb(climbs, 1e-3)
         climbs = self._finalists(climbs)
         self._climb(climbs, effort.tolerance, slides=True)
-        if self._is_over:
-            return
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
-        finalists = self._finalists(np.concatenate([climbs, beside]).view(np.recarray))
+        finalists = self._finalists(climbs.with_others(beside))
         self._climb(finalists, effort.tolerance, slides=True)  # those at their end stay there
+
+    @staticmethod
+    def _climbs(search: IntArray, extreme: IntArray, at: FloatArray, value: FloatArray) -> _Climbs:
+        """Return climbs that have not moved yet, beside maxima that are known."""
+        return _Climbs(search, extreme, at, value, np.full(len(at), _APART), np.zeros_like(at))
 
     def _beside(self, climbs: _Climbs) -> _Climbs:
         """Return starts about the ends of climbs, closer together than the parts of the space.
@@ -235,76 +391,91 @@ class _PoseSearch:
         Two maxima lie that near each other where different cables are the most loaded.
         """
         n, effort = len(self._size), self._effort
-        tops = climbs[self._are_close_to_best(climbs)]
-        if not len(tops):
-            return tops
+        ends = climbs.part(np.flatnonzero(self._are_close_to_best(climbs)))
+        if not len(ends):
+            return ends
         reach = 1.5 / CELLS_A_SIDE
-        offsets = self._rng.uniform(-reach, reach, (len(tops), effort.tried_beside, n))
-        trials = self._space.nearest(tops.at[:, None] + offsets * self._size)
-        demand = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], len(self._best))
-        out = []
-        for top, places, values in zip(tops, trials, demand, strict=True):
-            own_demand = values[:, top.extreme]
-            used = [top.at]
-            for k in np.argsort(-own_demand, kind="stable"):
-                if np.isneginf(own_demand[k]) or len(used) > effort.beside:
-                    break
-                if (np.abs(np.array(used) - places[k]) > _APART * self._size).any(axis=1).all():
-                    used.append(places[k])
-                    out.append((places[k], top.extreme, own_demand[k], _APART, 0.0))
-        return np.array(out, dtype=climbs.dtype).view(np.recarray)
+        offsets = self._rng(_MOST_TURNS).uniform(-reach, reach, (effort.tried_beside, n))
+        places = self._space.nearest(ends.at[:, None] + offsets * self._size)
+        demand = self._ask_about(ends, places)
+        rows, chosen = np.arange(len(ends)), []
+        is_apart = self._is_apart(places, ends.at) & ~np.isneginf(demand)
+        for _ in range(effort.beside):
+            highest = np.where(is_apart, demand, -np.inf).argmax(axis=1)
+            left = np.flatnonzero(is_apart[rows, highest])
+            at = places[rows, highest]
+            of_ends = ends.search[left], ends.extreme[left]
+            chosen.append(self._climbs(*of_ends, at[left], demand[rows, highest][left]))
+            is_apart &= self._is_apart(places, at)
+        beside = chosen[0]
+        for others in chosen[1:]:
+            beside = beside.with_others(others)
+        return beside
+
+    def _is_apart(self, places: FloatArray, at: FloatArray) -> BoolArray:
+        """Tell which places (n, n_places, n_coordinates) are far enough from others (n, …)."""
+        return np.asarray((np.abs(places - at[:, None]) > _APART * self._size).any(axis=2))
 
     def _are_close_to_best(self, climbs: _Climbs) -> BoolArray:
         """Tell which are among the highest of their extreme, and hardly below the best."""
-        rivals = climbs.extreme[:, None] == climbs.extreme
-        rank = (rivals & (climbs.value[:, None] < climbs.value)).sum(axis=1)
-        best = np.array([worst.demand for worst in self._best])[climbs.extreme]
+        order, kind = np.lexsort((-climbs.value, climbs.kind)), climbs.kind
+        rank = np.empty(len(order), dtype=np.int64)
+        rank[order] = np.arange(len(order)) - np.searchsorted(kind[order], kind[order])
+        best = self._best[climbs.search, climbs.extreme]
         is_close = climbs.value > best - _CLOSE * np.abs(best)
         return np.asarray(is_close & (rank < self._effort.revisited))
 
     def _finalists(self, climbs: _Climbs) -> _Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
-        order = np.argsort(-climbs.value, kind="stable")
         size = np.where(self._size > 0.0, self._size, 1e-300)
-        chosen: list[int] = []
-        for k in order:
-            rivals = [j for j in chosen if climbs.extreme[j] == climbs.extreme[k]]
-            apart = np.abs(climbs.at[rivals] - climbs.at[k]) / size
-            if len(rivals) < self._effort.finalists and not (apart < 3e-3).all(axis=1).any():
-                chosen.append(int(k))
-        return climbs[np.array(chosen, dtype=np.int64)]
+        left, kind = np.argsort(-climbs.value, kind="stable"), climbs.kind
+        highest = np.zeros(kind.max(initial=0) + 1, dtype=np.int64)  # climb, of each kind
+        chosen = [np.empty(0, dtype=np.int64)]
+        for _ in range(self._effort.finalists):
+            first = left[np.unique(kind[left], return_index=True)[1]]
+            highest[kind[first]] = first
+            chosen.append(first)
+            apart = np.abs(climbs.at[left] - climbs.at[highest[kind[left]]]) / size
+            left = left[~(apart < 3e-3).all(axis=1)]
+        return climbs.part(np.sort(np.concatenate(chosen)))
 
     def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:
         """Climb until the clouds are smaller than the tolerance, along what does not count."""
-        n = len(self._size)
-        for _ in range(_MOST_TURNS):
-            active = np.flatnonzero(climbs.radius > tolerance)
-            if not len(active) or self._is_over:
+        self._phase += 1
+        for turn in range(_MOST_TURNS):
+            active = np.flatnonzero((climbs.radius > tolerance) & ~self._is_over[climbs.search])
+            if not len(active):
                 break
-            climb = climbs[active]
+            climb, rng = climbs.part(active), self._rng(turn)
             reach = climb.radius[:, None, None] * self._size
-            trials = self._space.nearest(climb.at[:, None] + self._directions(len(active)) * reach)
+            trials = self._space.nearest(climb.at[:, None] + self._directions(rng) * reach)
             onward = self._space.nearest(climb.at + 2.0 * climb.step)[:, None]
             trials = np.concatenate([trials, onward], axis=1)
-            demand = self._ask(trials.reshape(-1, n)).reshape(*trials.shape[:2], -1)
-            own_demand = np.take_along_axis(demand, climb.extreme[:, None, None], axis=2)[..., 0]
-            rises = own_demand.max(axis=1) > climb.value
-            outside = np.isneginf(own_demand)
+            demand = self._ask_about(climb, trials)
+            rises = demand.max(axis=1) > climb.value
+            outside = np.isneginf(demand)
             on_border = np.flatnonzero(slides & ~rises & outside.any(axis=1) & ~outside.all(axis=1))
             if len(on_border):
-                slid = self._slide(climb[on_border], trials[on_border], own_demand[on_border])
-                trials[on_border, -1], own_demand[on_border, -1] = slid
-            best = own_demand.argmax(axis=1)
+                slid = self._slide(climb.part(on_border), trials[on_border], demand[on_border], rng)
+                trials[on_border, -1], demand[on_border, -1] = slid
+            highest = demand.argmax(axis=1)
             rows = np.arange(len(active))
-            better = own_demand[rows, best] > climb.value
-            to = np.where(better[:, None], trials[rows, best], climb.at)
+            better = demand[rows, highest] > climb.value
+            to = np.where(better[:, None], trials[rows, highest], climb.at)
             climbs.step[active] = to - climb.at
             climbs.at[active] = to
-            climbs.value[active] = np.where(better, own_demand[rows, best], climb.value)
+            climbs.value[active] = np.where(better, demand[rows, highest], climb.value)
             climbs.radius[active] = climb.radius * np.where(better, 1.1, 0.5)
 
+    def _ask_about(self, climbs: _Climbs, places: FloatArray) -> FloatArray:
+        """Return each climb's own demand (n_climbs, …) at places (n_climbs, …, n_coordinates)."""
+        flat = places.reshape(len(climbs), -1, len(self._size))
+        search, extreme = (np.repeat(k, flat.shape[1]) for k in (climbs.search, climbs.extreme))
+        demand = self._ask(flat.reshape(-1, len(self._size)), search)
+        return demand[np.arange(len(search)), extreme].reshape(places.shape[:-1])
+
     def _slide(
-        self, climbs: _Climbs, trials: FloatArray, values: FloatArray
+        self, climbs: _Climbs, trials: FloatArray, values: FloatArray, rng: np.random.Generator
     ) -> tuple[FloatArray, FloatArray]:
         """Return the best place (n, n_coordinates) on the border of what counts, and its value.
 
@@ -312,14 +483,14 @@ class _PoseSearch:
         inside become few. The border's normal is the difference between the trials on either side
         of it; moves across the normal are brought to the border along it, by search in eight parts.
         """
-        n, size = len(self._size), np.where(self._size > 0.0, self._size, 1.0)
+        size = np.where(self._size > 0.0, self._size, 1.0)
         reach = climbs.radius[:, None, None]
         offsets = (trials - climbs.at[:, None]) / size
         outside = np.isneginf(values)[..., None]
         normal = np.where(outside, 0.0, offsets).sum(axis=1) / (~outside).sum(axis=1)
         normal -= np.where(outside, offsets, 0.0).sum(axis=1) / outside.sum(axis=1)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        some = offsets[:, self._rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
+        some = offsets[:, rng.permutation(offsets.shape[1])[:10]]  # ten slides are tried
         across = some - np.einsum("rtk,rk->rt", some, normal)[..., None] * normal[:, None]
         low, part = np.full((*across.shape[:2], 1), -1.0), 2.0
 
@@ -328,29 +499,29 @@ class _PoseSearch:
                 across[:, :, None] + (share[..., None] * reach[..., None]) * normal[:, None, None]
             )
             places = self._space.nearest(climbs.at[:, None, None] + steps * size)
-            asked = self._ask(places.reshape(-1, n)).reshape(*places.shape[:3], -1)
-            own_demand = np.take_along_axis(asked, climbs.extreme[:, None, None, None], axis=3)
-            return places, own_demand[..., 0]
+            return places, self._ask_about(climbs, places)
 
         for _ in range(4):
             outside_there = np.isneginf(at(low + part * np.arange(1, 8) / 8.0)[1])
             low = low + part / 8.0 * outside_there.sum(axis=2, keepdims=True)
             part /= 8.0
         places, demand = (values[:, :, 0] for values in at(low + part))
-        best = demand.argmax(axis=1)
+        highest = demand.argmax(axis=1)
         rows = np.arange(len(places))
-        return places[rows, best], demand[rows, best]
+        return places[rows, highest], demand[rows, highest]
 
-    def _directions(self, count: int) -> FloatArray:
-        """Return directions (count, n_trials, n_coordinates) along the axes, and random ones.
+    def _rng(self, turn: int) -> np.random.Generator:
+        """Return the same random numbers for all searches, new ones in each turn."""
+        return np.random.default_rng([2, self._phase, turn])
+
+    def _directions(self, rng: np.random.Generator) -> FloatArray:
+        """Return directions (n_trials, n_coordinates) along the axes, and random ones.
 
         Random lengths span a factor of 30, so that one turn tries several scales.
         """
         free = self._size > 0.0
-        n = int(free.sum())
-        random = self._rng.uniform(-1.0, 1.0, (count, self._effort.trials, n))
-        random *= 30.0 ** -self._rng.random((count, self._effort.trials, 1))
-        axes = np.broadcast_to(np.concatenate([np.eye(n), -np.eye(n)]), (count, 2 * n, n))
-        out = np.zeros((count, 2 * n + self._effort.trials, len(free)))
-        out[..., free] = np.concatenate([axes, random], axis=1)
-        return out
+        n, trials = int(free.sum()), self._effort.trials
+        random = rng.uniform(-1.0, 1.0, (trials, n)) * 30.0 ** -rng.random((trials, 1))
+        directions = np.zeros((2 * n + trials, len(free)))
+        directions[:, free] = np.concatenate([np.eye(n), -np.eye(n), random])
+        return directions

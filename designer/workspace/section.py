@@ -13,7 +13,7 @@ them; the worst pose, and that its cable serves all others, is right.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 import numpy as np
 
@@ -57,12 +57,12 @@ def section_at(robot: Robot, pose: Poses, family_at: FamilyAt) -> float:
     return thinnest_that(lambda d: float(size_poses(robot, pose, family_at(d)).diameter_m) <= d)
 
 
-def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], Worst]) -> float:
+def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, float]:
     """Return the thinnest diameter that serves all poses with its own figures [m].
 
     The worst pose at one section tells the next section, until no pose asks for more. NaN where a
-    pose cannot be served. ``worst_of`` returns the pose that needs the thickest member of a family,
-    and that diameter [m], inf where no member serves it.
+    pose cannot be served. Yields a family, and is sent the pose that needs the thickest member of
+    it and that diameter [m], inf where no member serves it.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def thinnest(robot: Robot, family_at: FamilyAt, worst_of: Callable[[Material], W
     """
     section, trial = 0.0, FIRST_TRIED_M
     for _ in range(_MOST_TURNS):
-        worst = worst_of(family_at(trial))
+        worst = yield family_at(trial)
         if not np.isfinite(worst.place).all():  # every pose is left out
             return math.nan
         if worst.demand <= section * (1.0 + _STILL):
@@ -109,5 +109,10 @@ def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Materia
         pose = workspace_map.infeasible_pose
         return Worst(np.full(6, np.nan) if pose is None else pose.place, math.inf)
 
-    found = thinnest(built.robot, lambda d: built.material(material, d), worst_of)
-    return _THICKEST_M if math.isnan(found) else found
+    search = thinnest(built.robot, lambda d: built.material(material, d))
+    family = next(search)
+    try:
+        while True:
+            family = search.send(worst_of(family))
+    except StopIteration as end:
+        return _THICKEST_M if math.isnan(end.value) else float(end.value)
