@@ -7,15 +7,17 @@ stop. It stays for the next such work, since starting takes a second or two.
 
 from __future__ import annotations
 
-import pickle
-import subprocess
-import sys
 import threading
 from collections.abc import Callable
-from contextlib import suppress
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from pickle import UnpicklingError
 from typing import Any
 
+from designer.explore.process import work
 from designer.explore.requests import Kind, Message, Request, failure_text
+from designer.io.process import SPAWN
 
 _GRACE_S = 3.0
 """How long a process may take to clear away what it has half-written."""
@@ -39,7 +41,8 @@ class Helper:
         self._changed = threading.Condition()
         self._waiting: list[Request] = []
         self._running: Request | None = None
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: SpawnProcess | None = None
+        self._connection: Connection | None = None
         self._thread: threading.Thread | None = None
         self._closing = False
 
@@ -100,7 +103,7 @@ class Helper:
         """Have the process do it; where that ends without a word, it was cancelled or it broke."""
         try:
             end = self._exchange(request)
-        except (OSError, EOFError, pickle.UnpicklingError):
+        except (OSError, EOFError, UnpicklingError):
             end = None
         except Exception as error:
             end = Message(request, "failed", text=failure_text(error))
@@ -116,9 +119,7 @@ class Helper:
         return Message(request, "failed", text=failure)
 
     def _exchange(self, request: Request) -> Message:
-        process = self._started()
-        assert process.stdin is not None
-        assert process.stdout is not None
+        connection = self._started()
         question = request.question
         task = {
             "kind": request.kind,
@@ -129,42 +130,36 @@ class Helper:
             "with_plugins": question.plugins.with_others,
             "options": dict(request.options),
         }
-        pickle.dump(task, process.stdin)
-        process.stdin.flush()
+        connection.send(task)
         while True:
-            message = Message(request, **pickle.load(process.stdout))
+            message = Message(request, **connection.recv())
             if message.is_end:
                 return message
             self._deliver(message)
 
-    def _started(self) -> subprocess.Popen[bytes]:
+    def _started(self) -> Connection:
         with self._changed:
             if self._closing or self._waiting:
                 raise EOFError  # given up before it began
-            if self._process is None or self._process.poll() is not None:
-                self._process = subprocess.Popen(
-                    [sys.executable, "-P", "-m", "designer.explore.process"],
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-                )
-            return self._process
+            if self._process is None or self._connection is None or not self._process.is_alive():
+                self._connection, theirs = Pipe()
+                process = SPAWN.Process(target=work, args=(theirs,), daemon=True)
+                process.start()
+                theirs.close()
+                self._process = process
+            return self._connection
 
     def _end(self) -> int | None:
         """End the process, by force where it does not; return its status."""
         process, self._process = self._process, None
         if process is None:
             return None
-        with suppress(OSError):
-            process.terminate()
-        for stream in (process.stdin, process.stdout):
-            with suppress(OSError):
-                stream.close()  # type: ignore[union-attr]
-        try:
-            return process.wait(_GRACE_S)
-        except subprocess.TimeoutExpired:
+        process.terminate()
+        process.join(_GRACE_S)
+        if process.exitcode is None:
             process.kill()
-            return process.wait()
+            process.join()
+        return process.exitcode
 
 
 _NOTHING: Any = object()

@@ -18,6 +18,8 @@ from designer.errors import OutputError
 
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", None))  # Windows has no quota
 """What the system says where a file cannot grow: the disk is full, or a limit is reached."""
+SPAWN = multiprocessing.get_context("spawn")
+"""Makes the processes that work for this one: none shares its threads, which a fork would."""
 CLOSED_PIPE = 128 + 13
 """Exit status of a program whose reader went away, as the shell gives it after a SIGPIPE."""
 

@@ -8,11 +8,11 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from logging import CRITICAL, getLogger
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children
 from typing import Any
 
 from designer.errors import DesignerError, OutputError, described
-from designer.io.process import children_are_deaf, end_with_parent
+from designer.io.process import SPAWN, children_are_deaf, end_with_parent
 from designer.progress import SILENT, Reporter
 from designer.sweep.plan import SweepPlan
 from designer.sweep.point import Base, solve_points
@@ -30,9 +30,8 @@ MakeExecutor = Callable[[], Executor]
 
 
 def processes(workers: int) -> MakeExecutor:
-    """Return what makes pools of processes here; spawned, so that none shares threads."""
-    context = get_context("spawn")
-    return lambda: ProcessPoolExecutor(workers, context, initializer=end_with_parent)
+    """Return what makes pools of processes here."""
+    return lambda: ProcessPoolExecutor(workers, SPAWN, initializer=end_with_parent)
 
 
 def run(
@@ -76,24 +75,24 @@ def _run_until_death(
 ) -> None:
     """Work through what waits; ends early, with the rest waiting, where a worker dies."""
     running: dict[Future[Solved], range] = {}
-    executor = make_executor()
     try:
-        while waiting or running:
-            if stop():
-                for process in active_children():
-                    process.terminate()
-                return
-            while waiting and len(running) < _at_once(workers, waiting, running, deaths):
-                changes = [plan.changes(point) for point in waiting[0]]
-                with children_are_deaf():
-                    running[executor.submit(solve_points, base, changes)] = waiting[0]
-                waiting.popleft()
-            for future in wait(running, _ASKS_S, FIRST_COMPLETED).done:
-                result = _result(future)
-                points = running.pop(future)
-                deaths.pop(points, None)
-                store.write(points, result)
-                advance(len(points))
+        with make_executor() as executor, _cancelled_at_end(running):
+            while waiting or running:
+                if stop():
+                    for process in active_children():
+                        process.terminate()
+                    return
+                while waiting and len(running) < _at_once(workers, waiting, running, deaths):
+                    changes = [plan.changes(point) for point in waiting[0]]
+                    with children_are_deaf():
+                        running[executor.submit(solve_points, base, changes)] = waiting[0]
+                    waiting.popleft()
+                for future in wait(running, _ASKS_S, FIRST_COMPLETED).done:
+                    result = _result(future)
+                    points = running.pop(future)
+                    deaths.pop(points, None)
+                    store.write(points, result)
+                    advance(len(points))
     except BrokenProcessPool:
         for points in reversed(running.values()):
             deaths[points] += 1

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import os
 import pkgutil
-import subprocess
-import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from designer import kernel
+from designer.explore import helper as helper_module
 from designer.explore import worker as worker_module
 from designer.explore.helper import Helper
 from designer.explore.here import Here
@@ -295,16 +296,19 @@ def test_a_failure_in_a_process_is_told(asker: Any, yard: Session, tmp_path: Pat
     assert "ends in .vtu" in end.text
 
 
+def breaks(_: object) -> None:
+    os._exit(7)
+
+
+def goes_on(_: object) -> None:
+    time.sleep(600.0)
+
+
 def helper_with(
-    command: str, monkeypatch: pytest.MonkeyPatch
+    work: Callable[[object], None], monkeypatch: pytest.MonkeyPatch
 ) -> tuple[Helper, list[Any], threading.Event]:
-    """A helper whose process runs a line of Python, what it delivers, and when it has."""
-    real = subprocess.Popen
-
-    def popen(_: Any, **how: Any) -> Any:
-        return real([sys.executable, "-c", command], **how)
-
-    monkeypatch.setattr(subprocess, "Popen", popen)
+    """A helper whose process does this, what it delivers, and when it has."""
+    monkeypatch.setattr(helper_module, "work", work)
     got: list[Any] = []
     told = threading.Event()
 
@@ -316,7 +320,7 @@ def helper_with(
 
 
 def test_a_process_that_breaks_is_told(yard: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    helper, got, told = helper_with("import os; os._exit(7)", monkeypatch)
+    helper, got, told = helper_with(breaks, monkeypatch)
     helper.ask(Request(1, "select", question_of(yard)))
     assert told.wait(30.0)
     helper.close()
@@ -328,7 +332,7 @@ def test_a_process_that_breaks_is_told(yard: Session, monkeypatch: pytest.Monkey
 def test_a_process_at_work_ends_at_once(
     ends: str, yard: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    helper, got, told = helper_with("import time; time.sleep(600)", monkeypatch)
+    helper, got, told = helper_with(goes_on, monkeypatch)
     helper.ask(Request(1, "select", question_of(yard)))
     while helper._process is None:
         time.sleep(0.01)
@@ -340,5 +344,6 @@ def test_a_process_at_work_ends_at_once(
     assert told.wait(30.0)
     assert [one.status for one in got[:1]] == ["cancelled"]
     assert got[0].number == 1
-    assert process.wait(10.0) != 0
+    process.join(10.0)
+    assert process.exitcode not in (None, 0)
     helper.close()

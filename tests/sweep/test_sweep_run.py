@@ -241,6 +241,19 @@ def test_a_sweep_goes_on_after_what_is_stored(tmp_path: Path) -> None:
     assert same(tmp_path / "alone.zarr", target)
 
 
+def test_no_pool_is_left_behind(tmp_path: Path) -> None:
+    pools: list[ThreadPoolExecutor] = []
+
+    def make() -> ThreadPoolExecutor:
+        pools.append(in_threads())
+        return pools[-1]
+
+    swept(written(tmp_path), tmp_path / "out.zarr", make)
+    (pool,) = pools
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        pool.submit(print)
+
+
 def test_the_store_of_another_sweep_is_left_alone(tmp_path: Path) -> None:
     target = tmp_path / "out.zarr"
     swept(written(tmp_path), target)

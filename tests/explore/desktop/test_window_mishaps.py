@@ -99,7 +99,8 @@ def test_closing_in_the_middle_of_long_work_loses_nothing(
     assert "not saved" in told[1]
     assert not window.isVisible()
     assert time.monotonic() - start < 20.0
-    assert process.wait(20.0) is not None
+    process.join(20.0)
+    assert process.exitcode is not None
     assert "mass: 190 kg" in file.read_text(encoding="utf-8")
     assert not (tmp_path / "r").exists() or not list((tmp_path / "r").iterdir())
 
