@@ -22,6 +22,8 @@ from designer.model.robot import Robot
 
 _SHARE = 32 * LANES
 """Poses that one thread takes at a time."""
+_SLOW_SHARE, _SEARCH_SHARE = 32, 2
+"""The same where a pose takes a hundred times as long, and where branches are searched."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,14 +126,17 @@ def solve_batch(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
     asked = [(*span, situation, figures, goal, out) for *span, figures, goal in runs]
-    share_out_runs(solve_redundant_range if robot.is_redundant else solve_range, _SHARE, asked)
+    if robot.is_redundant:
+        share_out_runs(solve_redundant_range, _SLOW_SHARE, asked)
+    else:
+        share_out_runs(solve_range, _SHARE, asked)
     potential = np.zeros(count)
     if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
-            share_out_runs(search_range, _SHARE, asked)
+            share_out_runs(search_range, _SEARCH_SHARE, asked)
         if rates_branches and not robot.has_one_branch:
             rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
-            share_out_runs(rate_range, _SHARE, rated)
+            share_out_runs(rate_range, _SLOW_SHARE, rated)
     if np.any(relative_weights != 1.0):  # the kernel's forces are those of cables of weight w
         out.cables[..., [answer.FORCE_X, answer.FORCE_Z]] *= relative_weights[..., None]
     return Solution(
