@@ -552,12 +552,17 @@ def hang(
     return equations.state(found.x) if is_closed else None
 
 
-def settle(problem: Problem, start: Pose, total_m: np.ndarray) -> State | None:
-    """Return the pose near another in which cables of given lengths hold the platform."""
+def settle(
+    problem: Problem, start: Pose, total_m: np.ndarray, near: State | None = None
+) -> State | None:
+    """Return the pose near another in which cables of given lengths hold the platform.
+
+    ``near`` are cables of these lengths in the other pose, where they are known.
+    """
     n, dof = problem.n, len(problem.freedoms)
     size = float(np.linalg.norm(np.ptp(problem.exits_m, axis=0)))
     first = Equations.of(problem, start)
-    near = hang(problem, start, total_m)
+    near = near or hang(problem, start, total_m)
     if near is None:
         return None
 
@@ -595,7 +600,7 @@ def compliance(state: State, step: float = 1e-6) -> np.ndarray | None:
         ends = []
         for sign in (1.0, -1.0):
             pushed = replace(problem, force_N=problem.force_N + sign * force * axis)
-            moved = settle(pushed, state.pose, state.total_m)
+            moved = settle(pushed, state.pose, state.total_m, near=state)
             if moved is None:
                 return None
             ends.append(moved.pose.position_m)
