@@ -12,15 +12,13 @@ from designer.documents.document import Document
 from designer.effects.registry import KnownEffects
 from designer.errors import InputError
 from designer.io.config.effects import read_effects
-from designer.io.config.load_cases import RegionSection, load_case
+from designer.io.config.load_cases import load_case
 from designer.io.config.orientation import rotation_vector_rad
+from designer.io.config.regions import RegionSection
 from designer.io.config.schema import (
-    BoxSection,
     CableSection,
     MeasurementsSection,
-    PointsSection,
     PoseSection,
-    RectangleSection,
     RobotSection,
     SelectionSection,
     StudySection,
@@ -31,9 +29,6 @@ from designer.model.cable import Material
 from designer.model.limits import RopeLimits
 from designer.model.machine import Surroundings
 from designer.model.measurements import LogColumn, Measurements
-from designer.model.point_list import PointList
-from designer.model.prism import Prism
-from designer.model.rectangle import Rectangle
 from designer.model.region import Region
 from designer.model.robot import Platform, Poses, Robot
 from designer.model.space import Orientations
@@ -165,7 +160,7 @@ def _workspace(section: WorkspaceSection | None, robot: Robot) -> Workspace | No
     if section is None:
         return None
     return Workspace(
-        region=_region(section.region, robot),
+        region=section.region.over(robot.exit_points_m),
         samples=section.samples,
         sampling=section.sampling,
         seed=section.seed,
@@ -192,22 +187,10 @@ def _orientations(section: WorkspaceSection) -> Orientations:
     )
 
 
-def _region(section: RegionSection, robot: Robot) -> Region:
-    if isinstance(section, BoxSection):
-        return Prism.box(*section.box)
-    if isinstance(section, PointsSection):
-        return PointList(frozen_array(section.points))
-    if isinstance(section, RectangleSection):
-        over = robot.exit_points_m if section.rectangle == "anchors" else section.rectangle
-        return Rectangle.over(over, section.inset, section.z)
-    corners = robot.exit_points_m if section.prism == "anchors" else section.prism
-    return Prism.over(corners, section.inset, section.z)
-
-
 def _case_region(document: Document, index: int, robot: Robot, section: RegionSection) -> Region:
     """Return the region of a load case; a fault where nothing is left of it."""
     try:
-        return _region(section, robot)
+        return section.over(robot.exit_points_m)
     except ValueError as error:  # QhullError is one
         place = ("load_cases", index, "region")
         raise InputError([document.fault(place, str(error), "a region that has a size")]) from None

@@ -7,19 +7,15 @@ from collections.abc import Callable, Iterator, Mapping
 from designer.arrays import frozen_array
 from designer.errors import Fault
 from designer.io.config.parts import Parts
+from designer.io.config.regions import RegionSection
 from designer.io.config.schema import (
-    BoxSection,
     CableSection,
     GradeCableSection,
     LoadCaseSection,
-    PointsSection,
-    PrismSection,
-    RectangleSection,
 )
 from designer.model.load_case import Ice, LoadCase, Wind
 from designer.model.region import Region
 
-RegionSection = PrismSection | BoxSection | PointsSection | RectangleSection
 _CASES = "load_cases"
 
 

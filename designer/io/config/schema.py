@@ -6,7 +6,6 @@ in ``effects`` in `designer.io.config.effects`.
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import Annotated, Literal
 
 from pydantic import (
@@ -51,6 +50,7 @@ from designer.io.config.orientation import (
     Quaternion,
     only_one_of,
 )
+from designer.io.config.regions import AnyRegion, Box, word_or_list
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import Reading
 from designer.model.region import Sampling
@@ -59,22 +59,10 @@ from designer.study import Objective
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
-_ENDS = "'anchors' or two corners [[x, y], [x, y]]"
-_CORNERS = "'anchors' or a list of at least 3 corners [x, y]"
-
 _points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
 
 Anchors = Annotated[tuple[fields.Point, ...], _points]
 Attachments = Annotated[tuple[fields.Point, ...], _points]
-Corners = Annotated[tuple[fields.Corner, ...], list_of(3, 1000, _CORNERS)]
-Ends = Annotated[tuple[fields.Corner, fields.Corner], list_of(2, 2, _ENDS)]
-Positions = Annotated[
-    tuple[fields.Point, ...], list_of(1, 50_000, "1 to 50000 positions [x, y, z]")
-]
-Box = Annotated[
-    tuple[fields.Interval, fields.Interval, fields.Interval],
-    list_of(3, 3, "[[xmin, xmax], [ymin, ymax], [zmin, zmax]]"),
-]
 Objectives = Annotated[
     tuple[Objective, ...],
     list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -93,29 +81,15 @@ CableNumbers = Annotated[
 Groups = Annotated[dict[Text, CableNumbers], BeforeValidator(mapping), AfterValidator(not_empty)]
 
 
-def _word_or_list(value: object) -> str:
-    return "a word" if isinstance(value, str) else "a list"
-
-
 ORIENTATION_KINDS = ("orientation", "orientations", "orientation_range")
 TurnList = Annotated[
     tuple[OrientationSection, ...],
     list_of(1, 100, "1 to 100 orientations such as [0, 0, 10 deg]"),
 ]
-PrismBase = Annotated[
-    Annotated[Literal["anchors"], only_word("anchors", _CORNERS), Tag("a word")]
-    | Annotated[Corners, Tag("a list")],
-    Discriminator(_word_or_list),
-]
-RectangleBase = Annotated[
-    Annotated[Literal["anchors"], only_word("anchors", _ENDS), Tag("a word")]
-    | Annotated[Ends, Tag("a list")],
-    Discriminator(_word_or_list),
-]
 GradeIds = Annotated[
     Annotated[Literal["all"], only_word("all", _GRADES), Tag("a word")]
     | Annotated[tuple[Text, ...], list_of(1, 1000, _GRADES), Tag("a list")],
-    Discriminator(_word_or_list),
+    Discriminator(word_or_list),
 ]
 
 
@@ -194,74 +168,10 @@ class PoseSection(Section):
         return {"position": given} if isinstance(given, list) else only_one_of(given)
 
 
-class PrismSection(Section):
-    """An upright prism over the anchors or over corners of one's own."""
-
-    prism: PrismBase = Field(description=_CORNERS)
-    inset: fields.Distance = 0.0
-    z: fields.Interval = Field(description="[lower, upper]")
-
-
-class BoxSection(Section):
-    """An axis-parallel box."""
-
-    box: Box = Field(description="[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
-
-
-class PointsSection(Section):
-    """A list of positions."""
-
-    points: Positions = Field(description="a list of positions [x, y, z]")
-
-
-class RectangleSection(Section):
-    """An upright rectangle over the line between two corners, or over anchors on a line."""
-
-    rectangle: RectangleBase = Field(description=_ENDS)
-    inset: fields.Distance = 0.0
-    z: fields.Interval = Field(description="[lower, upper]")
-
-
-REGION_KINDS: dict[str, type[Section]] = {
-    "prism": PrismSection,
-    "box": BoxSection,
-    "points": PointsSection,
-    "rectangle": RectangleSection,
-}
-_KINDS = "prism, box, points and rectangle"
-
-
-def _kinds_named(region: dict[str, object]) -> list[str]:
-    """Return the kinds of region that the fields stand for, misspelt ones if there is no other."""
-    names = [name for name, value in region.items() if value is not None]
-    nearest = [kind for name in names for kind in get_close_matches(name, REGION_KINDS, n=1)]
-    return [kind for kind in REGION_KINDS if kind in names] or nearest
-
-
-def _of_one_kind(value: object) -> object:
-    if not isinstance(value, dict):
-        raise refusal(f"{describe(value)} is not a mapping", f"one of {_KINDS} in it")
-    kinds = _kinds_named(value)
-    if len(kinds) != 1:
-        kinds_text = " and ".join(kinds) or "none of the kinds"
-        raise refusal(f"the region has {kinds_text}", f"exactly one of {_KINDS}")
-    return value
-
-
-Region = Annotated[
-    Annotated[PrismSection, Tag("prism region")]
-    | Annotated[BoxSection, Tag("box region")]
-    | Annotated[PointsSection, Tag("points region")]
-    | Annotated[RectangleSection, Tag("rectangle region")],
-    Discriminator(lambda given: f"{_kinds_named(given)[0]} region"),
-    BeforeValidator(_of_one_kind),
-]
-
-
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: Region = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
+    region: AnyRegion = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
     samples: Annotated[int, WholeNumber(1, MOST_SAMPLES)] = 20_000
     sampling: Sampling = "low_discrepancy"
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
@@ -315,7 +225,7 @@ class LoadCaseSection(Section):
     temperature_change: fields.TemperatureChange | None = None
     safety_factor: fields.SafetyFactor | None = None
     termination_efficiency: fields.Efficiency | None = None
-    region: Region | None = None
+    region: AnyRegion | None = None
 
 
 class MeasuredCableSection(Section):
