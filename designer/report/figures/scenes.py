@@ -337,8 +337,8 @@ def edges_m(maps: WorkspaceMaps) -> list[FloatArray]:
     if "wall" not in maps.shell:
         return [maps.section.position_m[-1]]
     wall = maps.shell["wall"].position_m
-    cuts = [maps.shell[name].position_m for name in ("cut", "other_cut")]
-    lines = [wall[0], wall[-1], cuts[0][:, 0]]
+    cuts = [maps.shell[name].position_m for name in ("cut", "other_cut") if name in maps.shell]
+    lines = [wall[0], wall[-1], *(cut[:, 0] for cut in cuts[:1])]
     for cut in cuts:
         lines += [cut[0], cut[-1], cut[:, -1]]
     for corner in maps.region.outline_m([0, 1]):
