@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from designer.arrays import frozen_array
 from designer.kernel.batch import solve_batch
 from designer.kernel.calling import situation_of
 from designer.model.cable import Cable, Cables, Material
+from designer.model.load_case import LoadCase
 from designer.model.measurements import Measurements
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
@@ -152,3 +154,22 @@ def test_lists_are_taken_and_what_is_right_stays_as_it_is() -> None:
     assert np.isnan(Poses.at([nan, 0.0, 0.0]).position_m[0])
     assert Poses([1, 2, 3], np.eye(3).tolist()).shape == ()  # type: ignore[arg-type]
     assert Poses(ONE.position_m, ONE.rotation).position_m is ONE.position_m
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"mass_kg": 0.0},
+        {"dynamic_factor": 0.99},
+        {"acceleration_m_per_s2": -0.1},
+        {"safety_factor": 0.99},
+        {"termination_efficiency": 0.0},
+        {"termination_efficiency": 1.01},
+        {"cable_lost": 0},
+        {"cable_lost": "all"},
+    ],
+)
+def test_a_load_case_refuses_what_cannot_be(wrong: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        LoadCase("case", **wrong)
+    LoadCase("case", 1.0, dynamic_factor=1.0, safety_factor=1.0, termination_efficiency=1.0)

@@ -13,3 +13,8 @@ def test_every_verdict_has_its_part_of_the_bar() -> None:
     assert sum(part.count for part in found) == met.samples
     assert {part.label for part in found} >= {v.reason for v in Verdict} - {Verdict.SOLVED.reason}
     assert len({(part.colour, part.hatch) for part in found}) == len(found)
+
+
+def test_every_verdict_but_solved_says_what_to_do() -> None:
+    for verdict in set(Verdict) - {Verdict.SOLVED}:
+        assert verdict.advice.startswith("Move the configured pose")

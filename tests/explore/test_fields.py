@@ -11,6 +11,7 @@ import pytest
 
 from designer.explore.fields import Field, keys_of
 from designer.explore.session import Session
+from designer.explore.sliders import count_slider
 from designer.plugins.find import Plugins
 from designer.resources import example_names
 from designer.units import read_quantity
@@ -127,3 +128,14 @@ def test_the_largest_sag_is_a_field_that_can_be_lifted(yard: Session) -> None:
     assert yard.edit("workspace.sag", "none") == ()
     assert yard.study.workspace.sag_max is None
     assert yard.differing == {"workspace.sag"}
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "ends"),
+    [(7, 1, 30, (1, 12)), (20, 1, 30, (1, 20)), (50, 1, 10**6, (50, 200_000)),
+     (10**6, 1, 10**6, (100, 10**6))],
+)  # fmt: skip
+def test_a_slider_of_a_count_reaches_its_value(value: int, low: int, high: int, ends) -> None:
+    slider = count_slider(value, low, high, "workspace.samples")
+    assert (slider["low"], slider["high"]) == ends
+    assert slider["is_log"] == (high > 1000)

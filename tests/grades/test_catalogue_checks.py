@@ -172,6 +172,7 @@ def test_a_grade_made_in_python_is_checked_alike():
         ),
         ({"modulus": None, "stiffness": _relative((140.0,))}, "stiffness", "GPa on the metallic"),
         ({"material": "wood"}, "material", "'wood' is not known"),
+        *(({"product": text}, "product", "empty, too long") for text in (" ", "x" * 1001, "a\tb")),
         ({"currency": "euro"}, "currency", "no currency"),
         ({"limits": Limits("a sheet")}, "limits", "sets no limit"),
         ({"limits": Limits("a sheet", temperature_C=(80.0, -40.0))}, "limits", "is 80 to -40"),

@@ -12,8 +12,9 @@ from twins.robots import FAST3, HALL6, TwinRobot
 
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
-from designer.model.cable import Cable, Cables
+from designer.model.cable import Cable, Cables, CablesByPose, Material, MaterialsByPose
 from designer.model.robot import Platform, Poses, Robot
+from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
 
 PULLEYS_M = [0.0, 0.4]
@@ -140,3 +141,24 @@ def test_the_machine_as_built_changes_each_cable() -> None:
     assert np.allclose(changed.linear_density_kg_per_m, expected, rtol=1e-15)
     assert np.allclose(changed.axial_stiffness_N, 0.5 * cables.axial_stiffness_N, rtol=1e-15)
     assert np.array_equal(changed.allowable_tension_N, cables.allowable_tension_N)
+
+
+@pytest.mark.parametrize("pulley_radius_m", PULLEYS_M)
+@pytest.mark.parametrize("twin", MACHINES, ids=lambda twin: twin.name)
+def test_cables_that_differ_from_pose_to_pose_are_each_solved_with_their_own(
+    twin: TwinRobot, pulley_radius_m: float
+) -> None:
+    robot, (_, at) = ours(twin, pulley_radius_m), poses(twin, 30)
+    ropes = mixed(twin).each
+    of_pose = np.random.default_rng(1).integers(len(ropes), size=30)
+    together = solve_sagging(robot, at, CablesByPose(ropes, of_pose))
+    families = [Material(7000.0 + 500.0 * k, 1e11 / (1 + k), 3e8) for k in range(len(ropes))]
+    sized = size_poses(robot, at, MaterialsByPose(families, of_pose))
+    for k, (rope, family) in enumerate(zip(ropes, families, strict=True)):
+        own = of_pose == k
+        alone, diameter_m = solve_sagging(robot, at, rope), size_poses(robot, at, family).diameter_m
+        assert (together.verdict[own] == alone.verdict[own]).all()
+        assert together.length_m[own] == pytest.approx(alone.length_m[own], rel=1e-12, nan_ok=True)
+        tension_N = together.exit_tension_N[own]
+        assert tension_N == pytest.approx(alone.exit_tension_N[own], rel=1e-9, nan_ok=True)
+        assert sized.diameter_m[own] == pytest.approx(diameter_m[own], rel=1e-12, nan_ok=True)

@@ -16,7 +16,7 @@ from designer.model.space import Orientations, Space
 from designer.model.workspace import Workspace
 from designer.sizing.newton import size_poses
 from designer.workspace.pool import Pool
-from designer.workspace.refine import Worst, refine
+from designer.workspace.refine import Worst, refine, refine_each
 from designer.workspace.store import open_sweep
 from designer.workspace.sweep import map_workspace
 
@@ -157,6 +157,35 @@ def test_several_extremes_are_found_in_one_search() -> None:
 
     found = refine(box, nearness, np.empty((0, 3)))
     assert np.array([one.place for one in found]) == pytest.approx(peaks, abs=1e-6)
+
+
+def test_a_search_finds_the_same_alone_and_beside_others() -> None:
+    box = Space(Prism.box((0, 10), (0, 8), (0, 3)), Orientations())
+    peaks = np.array([[3.21, 7.654, 1.5], [0, 0, 0], [10, 4.4, 2.9]])
+
+    def nearness(x, search):
+        distance = np.linalg.norm(x - peaks[search], axis=1)
+        return np.column_stack([-distance, np.minimum(distance, 4.0 + search)])
+
+    starts = [np.full((k, 3), 1.0 + k) for k in range(3)]
+    together = refine_each(box, nearness, starts)
+    for k, found in enumerate(together):
+        (alone,) = refine_each(box, lambda x, _, k=k: nearness(x, np.full(len(x), k)), [starts[k]])
+        for ours, theirs in zip(found, alone, strict=True):
+            assert (ours.place == theirs.place).all() and ours.demand == theirs.demand
+        assert found[0].place == pytest.approx(peaks[k], abs=1e-6)
+        assert found[1].demand == pytest.approx(4.0 + k)
+
+
+def test_a_search_that_meets_what_nothing_holds_ends_without_the_others() -> None:
+    box = Space(Prism.box((0, 10), (0, 8), (0, 3)), Orientations())
+
+    def demand(x, search):
+        return np.where((search == 1) & (x[:, 0] > 9.0), np.inf, x[:, 0] - (x[:, 1] - 2.0) ** 2)
+
+    (first,), (second,), (third,) = refine_each(box, demand, [np.empty((0, 3))] * 3)
+    assert np.isposinf(second.demand)
+    assert first.demand == third.demand == pytest.approx(10.0)
 
 
 @pytest.mark.cases_by_default(2)
