@@ -147,14 +147,12 @@ def plain(values: ArrayLike) -> FloatArray:
     return array
 
 
-def share_out(
-    solve: Callable[..., None], count: int, share: int, *arguments: Any, first: int = 0
-) -> None:
+def share_out(solve: Callable[..., None], count: int, share: int, *arguments: Any) -> None:
     """Call ``solve(first, last, …)`` for all of ``count``, on all processors where there are many.
 
-    Each call gets as many as a ``share``, the first of them number ``first``.
+    Each call gets as many as a ``share``.
     """
-    share_out_runs(solve, share, [(first, first + count, *arguments)])
+    share_out_runs(solve, share, [(0, count, *arguments)])
 
 
 def share_out_runs(solve: Callable[..., None], share: int, runs: Iterable[tuple[Any, ...]]) -> None:

@@ -169,7 +169,9 @@ class Optimum:
     def at_bounds(self) -> list[tuple[Variable, str]]:
         """The variables that stand at a bound, each with which one."""
         pairs = zip(self.plan.variables, self.best.values, strict=True)
-        return [(one, bound) for one, value in pairs if (bound := one.bound_at(value))]
+        return [
+            (variable, bound) for variable, value in pairs if (bound := variable.bound_at(value))
+        ]
 
     @property
     def reasons(self) -> list[tuple[str, int]]:

@@ -344,8 +344,8 @@ def _search_once(results: Sequence[CaseResult], *, is_light: bool) -> list[CaseR
         robot, workspace = of_load[0].loaded.robot, of_load[0].workspace
         cables, sampled = [r.loaded.cable for r in of_load], [r.sampled for r in of_load]
         effort = LIGHT if is_light else None
-        refined = refined_each(robot, workspace, cables, sampled, effort)
-        for k, verification in zip(rows, refined, strict=True):
+        verifications = refined_each(robot, workspace, cables, sampled, effort)
+        for k, verification in zip(rows, verifications, strict=True):
             searched[k] = replace(results[k], verification=verification, is_full=not is_light)
     return searched
 

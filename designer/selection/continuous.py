@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -20,7 +20,7 @@ from designer.selection.efficiency import Allowance
 from designer.sizing.newton import size_poses
 from designer.workspace.demand import diameter_demand, diameter_demands
 from designer.workspace.refine import Worst, worst_over_samples_of_each
-from designer.workspace.section import FamilyAt, thinnest
+from designer.workspace.section import FamilyAt, in_lockstep, thinnest
 
 _MOST_TURNS = 20
 """Of the fixed point, so that it ends: the need falls steeply, so a few turns reach it."""
@@ -69,10 +69,8 @@ def continuous_optima(
     The worst poses of all families are sought in one batch.
     """
     built, hangs_below = built.of_products, workspace.hangs_below
-    searches: list[_Search] = [_optimum(grade, allowance, built) for grade in grades]
-    optima: dict[int, ContinuousOptimum] = {}
-    families = {k: next(search) for k, search in enumerate(searches)}
-    while families:
+
+    def worsts_of(families: Mapping[int, Material]) -> Mapping[int, Worst]:
         worsts = {}
         for k, family in families.items():
             if np.isposinf(diameter_demand(built.robot, family, hangs_below)(doubtful[k])).any():
@@ -85,13 +83,9 @@ def continuous_optima(
             # Where every pose is left out, nothing is served.
             left_out = worst.demand == -math.inf
             worsts[k] = Worst(worst.place, math.inf) if left_out else worst
-        families = {}
-        for k, worst in worsts.items():
-            try:
-                families[k] = searches[k].send(worst)
-            except StopIteration as end:
-                optima[k] = end.value
-    return [optima[k] for k in range(len(grades))]
+        return worsts
+
+    return in_lockstep([_optimum(grade, allowance, built) for grade in grades], worsts_of)
 
 
 def _optimum(grade: Grade, allowance: Allowance, built: AsBuilt) -> _Search:

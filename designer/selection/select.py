@@ -221,8 +221,9 @@ class _SelectionRun:
             thorough: set[int] = set()
 
             def search(candidates: Sequence[Candidate]) -> list[Verification]:
+                verifications = self.searched(candidates, thorough)
                 advance(len(candidates))
-                return self.searched(candidates, thorough)
+                return verifications
 
             while True:
                 meeting = [c for c in candidates if c.rejected_by is None]

@@ -145,8 +145,8 @@ def refined_each(
     worsts = refine_each_over_branches(workspace.space, demand_with, starts, effort)
     verifications = map(_verification, cables, worsts)
     return [
-        replace(found, longest_m=np.maximum(found.longest_m, of_cable.longest_m))
-        for found, of_cable in zip(verifications, sampled, strict=True)
+        replace(verification, longest_m=np.maximum(verification.longest_m, of_cable.longest_m))
+        for verification, of_cable in zip(verifications, sampled, strict=True)
     ]
 
 

@@ -93,7 +93,7 @@ def refine(
     space: Space, demand: Demand, starts: FloatArray, effort: Effort | None = None
 ) -> list[Worst]:
     """Return the largest of each of several demands (n, n_extremes); see `refine_each`."""
-    return refine_each(space, in_turn([demand]), [starts], effort)[0]
+    return refine_each(space, _alone(demand), [starts], effort)[0]
 
 
 def refine_each(
@@ -116,16 +116,9 @@ def refine_each(
     return _PoseSearch(space, demand, effort or Effort(), len(starts)).run(starts)
 
 
-def in_turn(demands: Sequence[Demand]) -> DemandOfEach:
-    """Return the demands of several searches that are computed one after another."""
-
-    def demand(places: FloatArray, search: IntArray) -> FloatArray:
-        edges = np.searchsorted(search, np.arange(len(demands) + 1))
-        spans = [(k, slice(*edges[k : k + 2])) for k in range(len(demands))]
-        values = [demands[k](places[span]) for k, span in spans if span.start < span.stop]
-        return np.concatenate(values)
-
-    return demand
+def _alone(demand: Demand) -> DemandOfEach:
+    """Return the demand of a search that has none beside it."""
+    return lambda places, _: demand(places)
 
 
 def refine_over_branches(
@@ -137,7 +130,7 @@ def refine_over_branches(
     """Return the largest of each of several demands; see `refine_each_over_branches`."""
 
     def demands(*, seeks_better: bool) -> DemandOfEach:
-        return in_turn([demand_with(seeks_better=seeks_better)])
+        return _alone(demand_with(seeks_better=seeks_better))
 
     return refine_each_over_branches(space, demands, [starts], effort)[0]
 
@@ -178,18 +171,18 @@ def refine_each_over_branches(
     every = np.arange(len(starts))
     hard = changed(starts, every)
     easy = np.setdiff1d(every, hard)
-    found = dict(zip(easy.tolist(), searched(plain, easy), strict=True))
-    ends = [np.array([worst.place for worst in worsts]) for worsts in found.values()]
+    extremes = dict(zip(easy.tolist(), searched(plain, easy), strict=True))
+    ends = [np.array([worst.place for worst in worsts]) for worsts in extremes.values()]
     hard = np.union1d(hard, changed([p[np.isfinite(p).all(axis=1)] for p in ends], easy))
-    found |= zip(hard.tolist(), searched(thorough, hard), strict=True)
-    return [found[k] for k in every.tolist()]
+    extremes |= zip(hard.tolist(), searched(thorough, hard), strict=True)
+    return [extremes[k] for k in every.tolist()]
 
 
 def worst_over_samples(workspace: Workspace, demand_with: Callable[..., Demand]) -> list[Worst]:
     """Return the largest of each of several demands; see `worst_over_samples_of_each`."""
 
     def demands(*, seeks_better: bool = True) -> DemandOfEach:
-        return in_turn([demand_with(seeks_better=seeks_better)])
+        return _alone(demand_with(seeks_better=seeks_better))
 
     return worst_over_samples_of_each(workspace, demands, 1)[0]
 
@@ -206,10 +199,9 @@ def worst_over_samples_of_each(
     demand = demand_with()
     for rows in workspace.places():
         for first in range(0, count, size := max(_CHUNK // len(rows), 1)):
-            some = range(first, min(first + size, count))
-            search = np.repeat(np.arange(some.start, some.stop), len(rows))
-            values = demand(np.tile(rows, (len(some), 1)), search)
-            for k, of_search in zip(some, values.reshape(len(some), len(rows), -1), strict=True):
+            batch = np.arange(first, min(first + size, count))
+            values = demand(np.tile(rows, (len(batch), 1)), np.repeat(batch, len(rows)))
+            for k, of_search in zip(batch, values.reshape(len(batch), len(rows), -1), strict=True):
                 pools[k].add(rows, of_search[:, 0])
     starts = [pool.places for pool in pools]
     return refine_each_over_branches(workspace.space, demand_with, starts)
@@ -250,12 +242,19 @@ class _Climbs:
         """Return some of them."""
         return _Climbs(*(getattr(self, field.name)[rows] for field in fields(self)))
 
-    def with_others(self, others: _Climbs) -> _Climbs:
-        """Return these and others."""
-        names = (field.name for field in fields(self))
-        both = (np.concatenate([getattr(self, name), getattr(others, name)]) for name in names)
-        joined = _Climbs(*both)
-        return joined.part(np.argsort(joined.search, kind="stable"))
+    @classmethod
+    def beginning(
+        cls, search: IntArray, extreme: IntArray, at: FloatArray, value: FloatArray, radius: float
+    ) -> _Climbs:
+        """Return climbs that have not moved yet."""
+        return cls(search, extreme, at, value, np.full(len(at), radius), np.zeros_like(at))
+
+    @classmethod
+    def joined(cls, parts: Sequence[_Climbs]) -> _Climbs:
+        """Return the climbs of several parts as one."""
+        names = (field.name for field in fields(cls))
+        climbs = cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        return climbs.part(np.argsort(climbs.search, kind="stable"))
 
 
 class _PoseSearch:
@@ -331,14 +330,12 @@ class _PoseSearch:
 
     def _ask(self, places: FloatArray, search: IntArray) -> FloatArray:
         """Return what places ask for (n, n_extremes), and remember the largest of each search."""
-        parts = [slice(at, at + _CHUNK) for at in range(0, max(len(places), 1), _CHUNK)]
+        parts = [slice(at, at + _CHUNK) for at in range(0, len(places), _CHUNK)]
         values = np.concatenate([self._demand(places[part], search[part]) for part in parts])
-        values = values.reshape(len(places), -1) if len(places) else values.reshape(0, 0)
+        values = values.reshape(len(places), -1)
         if not self._best.size:
             self._best = np.full((self._count, values.shape[1]), -np.inf)
             self._best_places = np.full((*self._best.shape, len(self._size)), np.nan)
-        if not len(places):
-            return values
         first = np.flatnonzero(np.diff(search, prepend=-1))
         highest, owner = np.maximum.reduceat(values, first, axis=0), search[first]
         last = np.append(first[1:], len(search))
@@ -356,7 +353,7 @@ class _PoseSearch:
         landmarks: Sequence[IntArray],
     ) -> None:
         """Climb from the places that nothing near them exceeds, then on with the best of these."""
-        effort, kinds, at, value = self._effort, [], [], []
+        effort, kinds, starts, demands = self._effort, [], [], []
         is_over = self._is_over
         for k, of_search, demand, marks in zip(among, places, values, landmarks, strict=True):
             for extreme in range(0 if is_over[k] else demand.shape[1]):
@@ -366,24 +363,20 @@ class _PoseSearch:
                     highest = marks[np.argsort(-own_demand[marks])][: effort.starts]
                     rows = np.union1d(rows, highest[~np.isneginf(own_demand[highest])])
                 kinds.append(np.full((len(rows), 2), (k, extreme)))
-                at.append(of_search[rows])
-                value.append(own_demand[rows])
+                starts.append(of_search[rows])
+                demands.append(own_demand[rows])
         if not kinds:
             return
-        climbs = self._climbs(*np.concatenate(kinds).T, *map(np.concatenate, (at, value)))
-        climbs.radius[:] = 0.5 / CELLS_A_SIDE
+        search, extreme = np.concatenate(kinds).T
+        at, value = np.concatenate(starts), np.concatenate(demands)
+        climbs = _Climbs.beginning(search, extreme, at, value, 0.5 / CELLS_A_SIDE)
         self._climb(climbs, 1e-3)
         climbs = self._finalists(climbs)
         self._climb(climbs, effort.tolerance, slides=True)
         beside = self._beside(climbs)
         self._climb(beside, 1e-3)
-        finalists = self._finalists(climbs.with_others(beside))
+        finalists = self._finalists(_Climbs.joined([climbs, beside]))
         self._climb(finalists, effort.tolerance, slides=True)  # those at their end stay there
-
-    @staticmethod
-    def _climbs(search: IntArray, extreme: IntArray, at: FloatArray, value: FloatArray) -> _Climbs:
-        """Return climbs that have not moved yet, beside maxima that are known."""
-        return _Climbs(search, extreme, at, value, np.full(len(at), _APART), np.zeros_like(at))
 
     def _beside(self, climbs: _Climbs) -> _Climbs:
         """Return starts about the ends of climbs, closer together than the parts of the space.
@@ -402,15 +395,11 @@ class _PoseSearch:
         is_apart = self._is_apart(places, ends.at) & ~np.isneginf(demand)
         for _ in range(effort.beside):
             highest = np.where(is_apart, demand, -np.inf).argmax(axis=1)
-            left = np.flatnonzero(is_apart[rows, highest])
-            at = places[rows, highest]
-            of_ends = ends.search[left], ends.extreme[left]
-            chosen.append(self._climbs(*of_ends, at[left], demand[rows, highest][left]))
+            at, value = places[rows, highest], demand[rows, highest]
+            starts = _Climbs.beginning(ends.search, ends.extreme, at, value, _APART)
+            chosen.append(starts.part(np.flatnonzero(is_apart[rows, highest])))
             is_apart &= self._is_apart(places, at)
-        beside = chosen[0]
-        for others in chosen[1:]:
-            beside = beside.with_others(others)
-        return beside
+        return _Climbs.joined(chosen)
 
     def _is_apart(self, places: FloatArray, at: FloatArray) -> BoolArray:
         """Tell which places (n, n_places, n_coordinates) are far enough from others (n, …)."""
@@ -428,15 +417,15 @@ class _PoseSearch:
     def _finalists(self, climbs: _Climbs) -> _Climbs:
         """Leave out climbs that have come to the same place as a better one, or stay far behind."""
         size = np.where(self._size > 0.0, self._size, 1e-300)
-        left, kind = np.argsort(-climbs.value, kind="stable"), climbs.kind
+        remaining, kind = np.argsort(-climbs.value, kind="stable"), climbs.kind
         highest = np.zeros(kind.max(initial=0) + 1, dtype=np.int64)  # climb, of each kind
         chosen = [np.empty(0, dtype=np.int64)]
         for _ in range(self._effort.finalists):
-            first = left[np.unique(kind[left], return_index=True)[1]]
+            first = remaining[np.unique(kind[remaining], return_index=True)[1]]
             highest[kind[first]] = first
             chosen.append(first)
-            apart = np.abs(climbs.at[left] - climbs.at[highest[kind[left]]]) / size
-            left = left[~(apart < 3e-3).all(axis=1)]
+            apart = np.abs(climbs.at[remaining] - climbs.at[highest[kind[remaining]]]) / size
+            remaining = remaining[~(apart < 3e-3).all(axis=1)]
         return climbs.part(np.sort(np.concatenate(chosen)))
 
     def _climb(self, climbs: _Climbs, tolerance: float, *, slides: bool = False) -> None:

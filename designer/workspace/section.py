@@ -13,7 +13,8 @@ them; the worst pose, and that its cable serves all others, is right.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from designer.sizing.newton import size_poses
 from designer.workspace.refine import Worst
 from designer.workspace.sweep import map_workspace
 
+Asked = TypeVar("Asked")
+Told = TypeVar("Told")
+Result = TypeVar("Result")
 FamilyAt = Callable[[float], Material]
 """From a diameter [m] to the family whose member of that diameter is right."""
 _THICKEST_M = 1.0
@@ -86,6 +90,26 @@ def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, fl
     )
 
 
+def in_lockstep(
+    searches: Sequence[Generator[Asked, Told, Result]],
+    told: Callable[[Mapping[int, Asked]], Mapping[int, Told]],
+) -> list[Result]:
+    """Return the results of searches that yield what they ask for, and are sent what they are told.
+
+    ``told`` answers what all searches ask for that have not ended, by their numbers, in one batch.
+    """
+    results: dict[int, Result] = {}
+    asked = {k: next(search) for k, search in enumerate(searches)}
+    while asked:
+        answers, asked = told(asked), {}
+        for k, answer in answers.items():
+            try:
+                asked[k] = searches[k].send(answer)
+            except StopIteration as end:
+                results[k] = end.value
+    return [results[k] for k in range(len(searches))]
+
+
 def section_of_pose(built: AsBuilt, pose: Poses, material: Material) -> float | None:
     """Return the section for one pose [m]; None where the effects leave the family one.
 
@@ -109,10 +133,9 @@ def section_of_workspace(built: AsBuilt, workspace: Workspace, material: Materia
         pose = workspace_map.infeasible_pose
         return Worst(np.full(6, np.nan) if pose is None else pose.place, math.inf)
 
+    def worsts_of(families: Mapping[int, Material]) -> Mapping[int, Worst]:
+        return {k: worst_of(family) for k, family in families.items()}
+
     search = thinnest(built.robot, lambda d: built.material(material, d))
-    family = next(search)
-    try:
-        while True:
-            family = search.send(worst_of(family))
-    except StopIteration as end:
-        return _THICKEST_M if math.isnan(end.value) else float(end.value)
+    (section_m,) = in_lockstep([search], worsts_of)
+    return _THICKEST_M if math.isnan(section_m) else section_m
