@@ -157,7 +157,7 @@ def _wrapped(title: str) -> str:
     """Return a path on several lines, broken at its dots, so that neighbours stand apart."""
     lines = [""]
     for part in title.replace(".", ".\n").split("\n"):
-        if len(lines[-1]) + len(part) > 22 and lines[-1]:
+        if len(lines[-1]) + len(part) > 18 and lines[-1]:
             lines.append("")
         lines[-1] += part
     return "\n".join(lines)
