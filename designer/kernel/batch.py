@@ -125,15 +125,15 @@ def solve_batch(
     out = answer.Answers(
         np.empty((count, n, 3)), np.empty((count, 5)), np.empty(count, dtype=np.int8)
     )
-    asked = [(*span, situation, figures, goal, out) for *span, figures, goal in runs]
+    solves = [(*span, situation, figures, goal, out) for *span, figures, goal in runs]
     if robot.is_redundant:
-        share_out_runs(solve_redundant_range, _SLOW_SHARE, asked)
+        share_out_runs(solve_redundant_range, _SLOW_SHARE, solves)
     else:
-        share_out_runs(solve_range, _SHARE, asked)
+        share_out_runs(solve_range, _SHARE, solves)
     potential = np.zeros(count)
     if (inverse_weight != 0.0).all():  # at infinite section nothing is chosen
         if is_thorough:
-            share_out_runs(search_range, _SEARCH_SHARE, asked)
+            share_out_runs(search_range, _SEARCH_SHARE, solves)
         if rates_branches and not robot.has_one_branch:
             rated = [(*s, situation, figures, sizing, out, potential) for *s, figures, _ in runs]
             share_out_runs(rate_range, _SLOW_SHARE, rated)

@@ -27,9 +27,9 @@ from designer.sizing.newton import size_poses
 from designer.workspace.refine import Worst
 from designer.workspace.sweep import map_workspace
 
-Asked = TypeVar("Asked")
-Told = TypeVar("Told")
-Result = TypeVar("Result")
+Yielded = TypeVar("Yielded")
+Sent = TypeVar("Sent")
+Returned = TypeVar("Returned")
 FamilyAt = Callable[[float], Material]
 """From a diameter [m] to the family whose member of that diameter is right."""
 _THICKEST_M = 1.0
@@ -91,20 +91,20 @@ def thinnest(robot: Robot, family_at: FamilyAt) -> Generator[Material, Worst, fl
 
 
 def in_lockstep(
-    searches: Sequence[Generator[Asked, Told, Result]],
-    told: Callable[[Mapping[int, Asked]], Mapping[int, Told]],
-) -> list[Result]:
-    """Return the results of searches that yield what they ask for, and are sent what they are told.
+    searches: Sequence[Generator[Yielded, Sent, Returned]],
+    answered: Callable[[Mapping[int, Yielded]], Mapping[int, Sent]],
+) -> list[Returned]:
+    """Return the results of searches that yield questions and are sent the answers.
 
-    ``told`` answers what all searches ask for that have not ended, by their numbers, in one batch.
+    ``answered`` answers, at once, all searches that have not ended, by their numbers.
     """
-    results: dict[int, Result] = {}
-    asked = {k: next(search) for k, search in enumerate(searches)}
-    while asked:
-        answers, asked = told(asked), {}
+    results: dict[int, Returned] = {}
+    questions = {k: next(search) for k, search in enumerate(searches)}
+    while questions:
+        answers, questions = answered(questions), {}
         for k, answer in answers.items():
             try:
-                asked[k] = searches[k].send(answer)
+                questions[k] = searches[k].send(answer)
             except StopIteration as end:
                 results[k] = end.value
     return [results[k] for k in range(len(searches))]
