@@ -1,15 +1,16 @@
 """Random changes of the code, one at a time: which of them does no quick test see?
 
     python tests/benchmarks/mutants.py [--count 200] [--seed 0] [--jobs 2] [--rooms ROOM ...]
-        [--most 60] [--seconds 300] [--log mutants.jsonl] [--again mutants.jsonl --tests FILE ...]
+        [--most 60] [--seconds 300] [--log mutants.jsonl] [--again mutants.jsonl [--tests FILE ...]]
+        [--slow]
 
 A mutant is the code with one comparison, sign, operation, bound, constant, quantifier or connective
 changed. Places are drawn by seed from all rooms alike. First the quick tests run once, on a copy of
 the checkout that notes which test reaches which place; then each mutant gets a copy, where the
 tests that reach it run, those of its room first, until one fails. For compiled code, where nothing
 can be noted, those are the tests in `COMPILED`. A survivor is printed with its line, to be killed
-by a test or understood as equivalent; ``--again`` tries the survivors of a log on other tests. Ends
-with status 1 if any survives.
+by a test or understood as equivalent; ``--again`` tries the survivors of a log on other tests,
+``--slow`` on the slow ones too. Ends with status 1 if any survives.
 
 Left alone is what no result follows from: texts, errors' messages, annotations, decorators,
 assertions, sizes in pictures; and tolerances (below 1e-4). So is the window, whose tests need a
@@ -46,9 +47,11 @@ WINDOW = "designer/explore/desktop/"
 PICTURES = "designer/report/figures/"
 COMPILED = {
     "designer/physics/": ("tests/physics", "tests/statics"),
-    "designer/kernel/": ("tests/kernel", "tests/physics", "tests/statics", "tests/sizing"),
+    "designer/kernel/": (
+        "tests/kernel", "tests/physics", "tests/statics", "tests/sizing", "tests/workspace",
+    ),
     "designer/proof/enclosure/": ("tests/proof",),
-}
+}  # fmt: skip
 """Folders of compiled code and what it is compiled again for, and their tests."""
 SMALLEST = 1e-4
 MEMORY = 8 * 2**30
@@ -251,7 +254,7 @@ def with_notes(source: bytes, places: dict[int, int]) -> bytes:
     return b"".join(lines)
 
 
-def reached(chosen: list[Mutant], jobs: int, most: int) -> list[list[str]]:
+def reached(chosen: list[Mutant], jobs: int, most: int, marked: str) -> list[list[str]]:
     """Return of each mutant the tests that reach it, the likeliest to see it first."""
     tests: list[set[str]] = [set() for _ in chosen]
     with tempfile.TemporaryDirectory(prefix="reached-") as name:
@@ -260,7 +263,7 @@ def reached(chosen: list[Mutant], jobs: int, most: int) -> list[list[str]]:
         for file in {each.file for each in chosen if not each.compiled}:
             places = {k: each.start for k, each in enumerate(chosen) if each.file == file}
             (folder / file).write_bytes(with_notes((ROOT / file).read_bytes(), places))
-        run_tests(folder, ["-n", str(jobs), "tests"], 3600.0)
+        run_tests(folder, ["-n", str(jobs), "-m", marked, "tests"], 3600.0)
         for row in (folder / "reached.txt").read_text(encoding="utf-8").splitlines():
             number, test = row.split(" ", 1)
             test, phase = test.rsplit(" ", 1)
@@ -287,14 +290,14 @@ class Outcome:
     elapsed_s: float
 
 
-def tried(mutant: Mutant, tests: list[str], seconds: float) -> Outcome:
-    """Run tests on a copy of the checkout with the mutant in it."""
+def tried(mutant: Mutant, tests: list[str], seconds: float, marked: str) -> Outcome:
+    """Run the tests of these marks on a copy of the checkout with the mutant in it."""
     if not tests:
         return Outcome(mutant, "survived", "reached by no test", 0.0)
     folder = copied(Path(tempfile.gettempdir()) / f"mutants-{os.getpid()}" / current_thread().name)
     mutant.put_into(folder)
     began = time.monotonic()
-    status, said = run_tests(folder, ["-x", "-n0", "--tb=no", *tests], seconds)
+    status, said = run_tests(folder, ["-x", "-n0", "--tb=no", "-m", marked, *tests], seconds)
     elapsed_s = round(time.monotonic() - began, 1)
     if status == 4 and "conftest" not in said:
         raise RuntimeError(f"{mutant}: {said}")
@@ -363,13 +366,16 @@ def main() -> int:
     parser.add_argument("--log", type=Path, default=Path("mutants.jsonl"))
     parser.add_argument("--again", type=Path)
     parser.add_argument("--tests", nargs="*", default=[])
+    parser.add_argument("--slow", action="store_true", help="slow tests too")
     asked = parser.parse_args()
     chosen = survivors(asked.again) if asked.again else drawn(asked.count, asked.seed, asked.rooms)
     given = [asked.tests] * len(chosen) if asked.tests else None
-    tests = given or reached(chosen, asked.jobs, asked.most)
+    marked = "" if asked.slow else "not slow"
+    tests = given or reached(chosen, asked.jobs, asked.most, marked)
     tally: Counter[str] = Counter()
+    one_tried = partial(tried, seconds=asked.seconds, marked=marked)
     with ThreadPoolExecutor(asked.jobs) as pool, asked.log.open("a", encoding="utf-8") as log:
-        for outcome in pool.map(partial(tried, seconds=asked.seconds), chosen, tests):
+        for outcome in pool.map(one_tried, chosen, tests):
             tally[outcome.ended] += 1
             log.write(json.dumps(asdict(outcome)) + "\n")
             log.flush()
