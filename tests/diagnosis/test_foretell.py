@@ -6,17 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from twins.dataset import make
 from twins.robots import HALL6, HALL8, YARD3
 
 from designer.diagnosis.case import case_of
-from designer.diagnosis.errors_of import foretell, with_sound_lengths
+from designer.diagnosis.errors_of import _turn_rad, foretell, with_sound_lengths
 from designer.diagnosis.problem import Predictor, Problem
 from designer.diagnosis.statistics import heldout_rows
 from designer.effects.effect import Setting
 from designer.io.config import read_study
 from designer.measured.read import read_measured
 from designer.model.measured_data import Noise
+from designer.model.robot import Poses
 
 
 def problem_and_case(robot, effects, folder, **how):
@@ -71,3 +73,12 @@ def test_without_lengths_there_is_nothing_to_foretell(tmp_path) -> None:
     sound = with_sound_lengths(problem, ())
     assert not sound.any()
     assert foretell(problem, (), sound) is None
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 1e-4, 30.0, 120.0, 179.0])
+def test_the_turn_between_poses_is_told_at_any_angle(turn_deg: float) -> None:
+    axis = np.array([1.0, -2.0, 2.0]) / 3.0
+    target = Rotation.from_euler("xyz", [10.0, 20.0, -30.0], degrees=True)
+    turned = target * Rotation.from_rotvec(turn_deg * axis, degrees=True)
+    poses, targets = (Poses(np.zeros((1, 3)), r.as_matrix()[None]) for r in (turned, target))
+    assert np.degrees(_turn_rad(poses, targets)) == pytest.approx([turn_deg], rel=1e-7, abs=1e-9)

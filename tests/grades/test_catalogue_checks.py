@@ -226,6 +226,8 @@ def test_a_strand_may_be_stiffer_than_a_rope():
         ("nylon", 56.0, False),
         ("polyester", 12.0, True),
         ("polyester", 60.0, False),
+        ("polypropylene", 9.5, True),
+        ("polypropylene", 35.0, False),
         ("other", 300.0, True),
     ],
 )

@@ -10,6 +10,7 @@ from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, plan_of, written
 from designer.errors import InputError
 from designer.optimum.optimise import optimised_text
 from designer.optimum.plan import read_optimisation
+from designer.optimum.variables import demand_sense
 from designer.resources import example_file, example_names
 
 WINDY = YARD.replace("galvanised]", "galvanised], safety_factor: 5")
@@ -22,6 +23,24 @@ def lines(path: Path) -> list[str]:
     with pytest.raises(InputError) as caught:
         read_optimisation(path, with_plugins=False)
     return [str(fault).replace(f"{path}:", "") for fault in caught.value.faults]
+
+
+@pytest.mark.parametrize(
+    ("field", "sense"),
+    [
+        ("selection.safety_factor", 1),
+        ("workspace.inset", -1),
+        ("workspace.interference.clearance", 1),
+        ("selection.limits.sag", -1),
+        ("selection.limits.drum_capacity", -1),
+        ("robot.platform.mass", 1),
+        ("selection.sheave_diameter", None),
+        ("workspace.height", 0),
+        ("robot.pulley_radius", None),
+    ],
+)
+def test_what_asks_for_more_is_known(field: str, sense: int | None) -> None:
+    assert demand_sense(tuple(field.split("."))) == sense
 
 
 def test_fields_go_with_their_variable_and_keep_their_units(tmp_path: Path) -> None:

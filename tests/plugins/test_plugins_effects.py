@@ -17,6 +17,7 @@ from designer.cli.commands import main
 from designer.cli.schema import schema
 from designer.diagnosis.check import check
 from designer.diagnosis.diagnose import diagnose_study
+from designer.effects.effect import Readings
 from designer.effects.load import load_effects
 from designer.effects.registry import EFFECTS, SHIPPED, KnownEffects
 from designer.errors import EffectError, InputError
@@ -405,3 +406,20 @@ def test_readings_reach_a_plugin_as_arrays_that_it_cannot_spoil(site, tmp_path) 
     found = diagnose_study(study, study.measurements, measured)
     assert np.array_equal(measured.temperature_C, before)
     assert "read-only" in found.study.known_effects.problems[0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ("readings.length_m.tolist()", "its length_m is no array"),
+        ("readings.length_m[:, :1]", "its length_m is no array"),
+        ("readings.length_m.astype(int)", "its length_m is no array"),
+        ("readings.length_m / 0.0", "its length_m is infinite"),
+    ],
+)
+def test_readings_of_another_kind_are_refused(site, changed: str, said: str) -> None:
+    law = f"on_readings=lambda readings, *_: replace(readings, length_m={changed}))"
+    install_plugin(site, "acme-drift", plugin(DRIFT, f"replace(EFFECT, {law}"))
+    effect = known().by_id["load_cell_drift"]
+    with np.errstate(divide="ignore"), pytest.raises(EffectError, match=said):
+        effect.on_readings(Readings(np.ones((2, 3)), np.ones((2, 3))), effect.neutral, None)

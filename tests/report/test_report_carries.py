@@ -84,6 +84,10 @@ def test_first_failures_are_failures_and_no_nearer_than_the_reserve(found: Analy
     one = of(found)
     assert one.region is not None
     level = [f for f in one.failures if f.name not in ("up", "down")]
+    signs = {"+": 1.0, "-": -1.0}
+    for failure in level:
+        ways = [signs[way[0]] * np.eye(3)["xyz".index(way[1])] for way in failure.name.split()]
+        assert failure.direction == pytest.approx(np.sum(ways, axis=0) / np.sqrt(len(ways)))
     assert min(f.distance_m for f in level) == pytest.approx(one.region.value, rel=0.05)
     for failure in one.failures:
         if np.isfinite(failure.distance_m):
