@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from designer.effects.effect import Effect, Readings
+from designer.effects.effect import Effect, Readings, frame_size_m
 from designer.effects.registry import SHIPPED
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.machine import Machine
@@ -210,3 +210,9 @@ def test_sizes_follow_the_machine(machine):
         assert large.typical == pytest.approx(2.0**power * small.typical, rel=1e-12), name
         assert small.plausible[1] <= small.bounds[1], name
         assert small.typical < max(map(abs, small.plausible)), name
+
+
+def test_no_drum_grows_to_the_end_of_what_it_pays_out(machine):
+    """Within the frame a turn pays out more than nothing at the largest gain that a fit may try."""
+    (gain,) = (p for p in effect_of(machine, "drum_layering").parameters if "gain" in p.name)
+    assert 0.0 < gain.bounds[1] * frame_size_m(machine) < 1.0

@@ -68,6 +68,9 @@ def test_a_point_and_a_plane(tmp_path) -> None:
     robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=level)), cables()))
     assert robot.position_m == (1.0, 2.0, 0.0)
     assert robot.limits_m == ((-1.0, 1.0), (1.0, 3.0), (0.0, 0.0))
+    side = 'type="PLANAR_YZ" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=side)), cables()))
+    assert robot.position_m == (0.0, 1.0, 2.0)
 
 
 def test_angles_are_taken_where_they_are_understood(tmp_path) -> None:

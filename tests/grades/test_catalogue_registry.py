@@ -82,3 +82,13 @@ def test_an_unknown_grade_is_answered_with_its_nearest_names():
 def test_a_grade_like_no_other_is_answered_with_the_command_that_lists_them():
     with pytest.raises(InputError, match="designer catalog list"):
         load_catalogue().grade("!")
+
+
+def test_grades_of_a_construction_are_named_and_those_beyond_a_dozen_counted():
+    catalogue = load_catalogue()
+    _, few = catalogue.explain_unknown("7x19")
+    assert "unirope-7x19-galvanised" in few and "more" not in few
+    _, many = catalogue.explain_unknown("iwrc")
+    count = sum("iwrc" in f"{g.construction}|{g.id}".casefold() for g in catalogue.grades)
+    assert count > 12
+    assert many.count(", ") == 11 and f"or one of {count - 12} more" in many

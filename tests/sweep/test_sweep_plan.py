@@ -37,6 +37,12 @@ def test_random_points_stay_in_their_range() -> None:
     assert set(grade.stored) == {"a", "b"}
 
 
+def test_a_value_without_a_unit_is_a_number_and_with_one_a_text() -> None:
+    factor = Range(("cable", "safety_factor"), 3.0, 5.0, "", 3)
+    assert factor.node(3.5).data() == 3.5
+    assert MASS.node(150.0).data() == "150.0 kg"
+
+
 @pytest.mark.parametrize("text", ["robot.anchors[2][0]", "robot.anchors.2.0"])
 def test_a_path_may_name_an_item_in_two_ways(text: str) -> None:
     assert path_text(path_keys(text)) == "robot.anchors[2][0]"
