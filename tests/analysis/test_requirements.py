@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from typer.testing import CliRunner
 
 from designer.analysis.analyse import Analysis
 from designer.cli.commands import app
+from designer.cli.tables import _summary_of_requirements
 from designer.grades.registry import load_catalogue
 from designer.io.config import read_study
 from designer.model.requirement import Answer, Requirement, State, answer_of
@@ -174,3 +177,18 @@ def test_loads_are_turned_to_where_a_requirement_is_nearest_to_failing(solve: So
         least.append(float(statics.least_tension_N.min()))
     assert min(least) >= slack.capacity * (1.0 - 1e-9)
     assert min(least) == pytest.approx(slack.capacity, rel=0.02)
+
+
+def test_the_terminal_names_what_fails_its_cable_and_its_place() -> None:
+    failing = Requirement(
+        "floor", "Floor", "", "", State.FAILS, "ice", 8.0, 2.0, "m", 4.0, 3,
+        np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3]),
+    )  # fmt: skip
+    analysis = SimpleNamespace(
+        qualities=None, answer=Answer.NO, requirements=[requirement(State.HOLDS), failing],
+        unmet=[failing],
+    )  # fmt: skip
+    answer, told = _summary_of_requirements(cast(Analysis, analysis))
+    assert answer[1].endswith("1 of 2 hold")
+    assert told[0].strip() == "floor"
+    assert "'ice', cable 3, at (1, 2, 3) m" in told[1]

@@ -6,14 +6,17 @@ import json
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from optimum_cases import OF_POSE, OF_YARD, STUDY, YARD, optimum, written
 from report_parts import pictures
 
 import designer
+from designer.analysis.comparison import ComparisonLine
 from designer.cli.commands import main
 from designer.errors import DesignerError
+from designer.optimum.result import Optimum
 from designer.report.optimum import headline, optimum_report, trust_lines, write_optimum
 
 
@@ -137,3 +140,22 @@ def test_the_command_writes_all_or_nothing(tmp_path: Path, monkeypatch, capsys) 
     assert ended.value.code == 2
     assert "masts.yaml:2: objective: 'rope' is not known" in capsys.readouterr().err
     assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize(
+    ("path", "before", "after", "is_worse"),
+    [
+        ("workspace.stiffness.largest_displacement_m_per_N", 1e-5, 2e-5, True),
+        ("workspace.stiffness.largest_displacement_m_per_N", 2e-5, 1e-5, False),
+        ("workspace.interference.min_distance_m", 0.4, 0.2, True),
+        ("workspace.interference.min_distance_m", 0.2, 0.4, False),
+        ("workspace.interference.min_distance_m", 0.4, 0.39, False),
+        ("selection.chosen.total_mass_kg", 4.0, 8.0, False),
+    ],
+)
+def test_what_gets_worse_unasked_is_named(
+    path: str, before: float, after: float, is_worse: bool
+) -> None:
+    line = ComparisonLine(path, "", before, after)
+    only_compared = SimpleNamespace(comparison=SimpleNamespace(answers=[line]))
+    assert Optimum.worsened.fget(only_compared) == ([line] if is_worse else [])  # type: ignore[attr-defined]
