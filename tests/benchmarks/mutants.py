@@ -48,10 +48,14 @@ PICTURES = "designer/report/figures/"
 COMPILED = {
     "designer/physics/": ("tests/physics", "tests/statics"),
     "designer/kernel/": (
-        "tests/kernel", "tests/physics", "tests/statics", "tests/sizing", "tests/workspace",
+        "tests/kernel",
+        "tests/physics",
+        "tests/statics",
+        "tests/sizing",
+        "tests/workspace",
     ),
     "designer/proof/enclosure/": ("tests/proof",),
-}  # fmt: skip
+}
 """Folders of compiled code and what it is compiled again for, and their tests."""
 SMALLEST = 1e-4
 MEMORY = 8 * 2**30
@@ -373,9 +377,9 @@ def main() -> int:
     marked = "" if asked.slow else "not slow"
     tests = given or reached(chosen, asked.jobs, asked.most, marked)
     tally: Counter[str] = Counter()
-    one_tried = partial(tried, seconds=asked.seconds, marked=marked)
+    attempt = partial(tried, seconds=asked.seconds, marked=marked)
     with ThreadPoolExecutor(asked.jobs) as pool, asked.log.open("a", encoding="utf-8") as log:
-        for outcome in pool.map(one_tried, chosen, tests):
+        for outcome in pool.map(attempt, chosen, tests):
             tally[outcome.ended] += 1
             log.write(json.dumps(asdict(outcome)) + "\n")
             log.flush()

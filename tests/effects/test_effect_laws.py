@@ -212,7 +212,7 @@ def test_sizes_follow_the_machine(machine):
         assert small.typical < max(map(abs, small.plausible)), name
 
 
-def test_no_drum_grows_to_the_end_of_what_it_pays_out(machine):
-    """Within the frame a turn pays out more than nothing at the largest gain that a fit may try."""
+def test_a_turn_pays_out_cable_at_the_largest_gain_of_a_drum(machine):
+    """A fit tries no gain at which a turn would pay out nothing within the frame."""
     (gain,) = (p for p in effect_of(machine, "drum_layering").parameters if "gain" in p.name)
     assert 0.0 < gain.bounds[1] * frame_size_m(machine) < 1.0

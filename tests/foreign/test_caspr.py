@@ -53,24 +53,28 @@ def test_the_joint_stands_where_its_parent_has_it(tmp_path) -> None:
     assert np.array_equal(robot.exit_points_m, EXITS)
 
 
-def test_a_point_and_a_plane(tmp_path) -> None:
+def test_a_point(tmp_path) -> None:
     joint = 'type="T_XYZ" q_initial="0 0 2"'
     at_one = cables(EXITS[:4], [(0, 0, 0.5)] * 4)
     robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=joint)), at_one))
     assert robot.attachments_m is None
     assert robot.position_m == (0.0, 0.0, 2.5)
-    flat = 'type="PLANAR_XZ" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
-    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=flat)), cables()))
-    assert robot.plane_normal == (0.0, 1.0, 0.0)
-    assert robot.position_m == (1.0, 0.0, 2.0)
-    assert robot.limits_m == ((-1.0, 1.0), (0.0, 0.0), (1.0, 3.0))
-    level = 'type="PLANAR_XY" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
-    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=level)), cables()))
-    assert robot.position_m == (1.0, 2.0, 0.0)
-    assert robot.limits_m == ((-1.0, 1.0), (1.0, 3.0), (0.0, 0.0))
-    side = 'type="PLANAR_YZ" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
-    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=side)), cables()))
-    assert robot.position_m == (0.0, 1.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("plane", "normal", "position_m", "limits_m"),
+    [
+        ("XY", (0.0, 0.0, 1.0), (1.0, 2.0, 0.0), ((-1.0, 1.0), (1.0, 3.0), (0.0, 0.0))),
+        ("XZ", (0.0, 1.0, 0.0), (1.0, 0.0, 2.0), ((-1.0, 1.0), (0.0, 0.0), (1.0, 3.0))),
+        ("YZ", (1.0, 0.0, 0.0), (0.0, 1.0, 2.0), ((0.0, 0.0), (-1.0, 1.0), (1.0, 3.0))),
+    ],
+)
+def test_a_plane(tmp_path, plane: str, normal, position_m, limits_m) -> None:
+    joint = f'type="PLANAR_{plane}" q_initial="1 2 0" q_min="-1 1 -3" q_max="1 3 3"'
+    robot = read_foreign(write_caspr(tmp_path, bodies(link(joint=joint)), cables()))
+    assert robot.plane_normal == normal
+    assert robot.position_m == position_m
+    assert robot.limits_m == limits_m
 
 
 def test_angles_are_taken_where_they_are_understood(tmp_path) -> None:
