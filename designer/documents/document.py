@@ -180,6 +180,8 @@ class _Composer:
                 getattr(error, "problem", None) or getattr(error, "reason", None) or "unreadable"
             )
             line = None if mark is None else mark.line + 1
+            if "nesting depth" in str(reason):  # libyaml's own limit, which newer ones have
+                self._refuse_nesting(line)
             text = "" if line is None else "".join(self._lines[line - 1 : line])
             if "\t" in text[: len(text) - len(text.lstrip())]:
                 _refuse(self._name, line, "a tab indents this line", "blanks, which YAML asks for")
@@ -247,7 +249,7 @@ class _Composer:
             parent.fields[parent.key] = replace(node, line=parent.key_line)
             parent.key = None
 
-    def _refuse_nesting(self, line: int) -> NoReturn:
+    def _refuse_nesting(self, line: int | None) -> NoReturn:
         problem = f"values are nested more than {DEEPEST_NESTING} levels deep"
         _refuse(self._name, line, problem)
 
