@@ -46,6 +46,8 @@ class Bound:
     reason: str
 
 
+MOST_CABLES = 64
+
 MOST_SAMPLES = 10**7
 """Samples of a workspace: more take days, and the search between them finds more than they do."""
 

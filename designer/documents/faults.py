@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Annotated, Any, get_args, get_origin
+from collections.abc import Collection
 
-from pydantic import Tag, ValidationError
-from pydantic.fields import FieldInfo
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from designer.documents.document import Document
-from designer.documents.fields import ReadAs
 from designer.documents.node import Key, printable
-from designer.documents.section import AnySection, FileValue, Section, fields_of
+from designer.documents.section import AnySection, expected_of, known_fields
 from designer.errors import Fault
 from designer.units import describe
 
@@ -39,51 +36,7 @@ def schema_faults(error: ValidationError, document: Document, schema: AnySection
     ]
 
 
-def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldInfo]:
-    """Return the fields that the schema knows at pydantic's path ``loc``."""
-    section = next(_sections_in(kind_at(schema, loc)), None)
-    return fields_of(section) if section else {}
-
-
-def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
-    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
-    kind: Any = schema
-    for key in loc:
-        kind = _step(kind, key)
-    return kind
-
-
-def _step(kind: Any, key: Key) -> Any:
-    """Return what the schema holds one step further; a place in a list keeps its kind."""
-    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
-    if get_origin(plain) is dict:
-        return get_args(plain)[1]
-    branch = _branch(kind, key)
-    if branch is not None:
-        return branch
-    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
-    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
-
-
-def _branch(kind: Any, label: Key) -> Any:
-    """Return the alternative with this label, None where there is none."""
-    parts = get_args(kind)
-    if any(isinstance(part, Tag) and part.tag == label for part in parts):
-        return kind
-    return next((branch for part in parts if (branch := _branch(part, label)) is not None), None)
-
-
-def _sections_in(kind: Any) -> Iterator[AnySection]:
-    if isinstance(kind, ReadAs):
-        yield kind.section
-    elif isinstance(kind, type) and issubclass(kind, Section | FileValue):
-        yield kind
-    else:
-        for part in get_args(kind):
-            yield from _sections_in(part)
-
-
-def _nearest_field(loc: Sequence[Key], schema: AnySection) -> str | None:
+def _nearest_field(loc: tuple[Key, ...], schema: AnySection) -> str | None:
     names = difflib.get_close_matches(str(loc[-1]), known_fields(schema, loc[:-1]), n=1)
     return names[0] if names else None
 
@@ -109,7 +62,7 @@ def _words(detail: ErrorDetails, schema: AnySection) -> tuple[str, str]:
     if detail["type"] == "fault":
         return context["problem"], context["expected"]
     if detail["type"] == "missing":
-        return "is missing", known_fields(schema, loc[:-1])[str(loc[-1])].description or ""
+        return "is missing", expected_of(known_fields(schema, loc[:-1])[str(loc[-1])])
     if detail["type"] in _UNKNOWN:
         nearest = _nearest_field(loc, schema)
         hint = f"; did you mean '{nearest}'?" if nearest else ""

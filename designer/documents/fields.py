@@ -17,7 +17,6 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from designer.documents.bounds import BOUNDS
 from designer.documents.formats import why_unreadable
 from designer.documents.node import printable
-from designer.documents.section import Section
 from designer.units import (
     NUMBER,
     Dimension,
@@ -176,20 +175,6 @@ class FormatOf(Reader):
     def json_schema(self) -> JsonSchema:
         """Return the formats that are read."""
         return {"type": "integer", "minimum": 1, "maximum": self.newest}
-
-
-@dataclass(frozen=True, slots=True)
-class ReadAs:
-    """Annotation of a value that the file gives as a section, whose ``value()`` it is."""
-
-    section: type[Section]
-
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        """Let pydantic read the section and make the value of it."""
-        schema = handler.generate_schema(self.section)
-        return core_schema.no_info_after_validator_function(lambda read: read.value(), schema)
 
 
 @dataclass(frozen=True)

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, ClassVar, get_type_hints
+from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, TypeAdapter, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    Tag,
+    TypeAdapter,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
+
+from designer.documents.node import Key
 
 
 class Section(BaseModel):
-    """A mapping of a file: frozen, without unknown fields."""
+    """A mapping of a file: frozen, without unknown fields, each with a text below it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     @model_validator(mode="before")
     @classmethod
@@ -44,7 +55,47 @@ def reader_of(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class ReadAs:
+    """Annotation of a value that the file gives as a section, whose ``value()`` it is."""
+
+    section: type[Section]
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Let pydantic read the section and make the value of it."""
+        schema = handler.generate_schema(self.section)
+        return core_schema.no_info_after_validator_function(lambda read: read.value(), schema)
+
+
 AnySection = type[Section] | type[FileValue]
+
+
+def config_field(title: str = "", default: object = None, *, expected: str = "") -> Any:
+    """Return the field of a section; the text below it says what it is.
+
+    Messages, editors, the window and the docs take its words from here. Where the section stands
+    in several places, ``{title}`` and ``{meaning}`` are those of the field that holds it.
+
+    Parameters
+    ----------
+    title : str
+        What the window calls it; empty for its name in the file.
+    default : object
+        Its value where a file leaves it out.
+    expected : str
+        Of a field that must be given: what to write, for the message that it is missing.
+    """
+    extra: Any = {"expected": expected} if expected else None
+    return Field(... if expected else default, title=title or None, json_schema_extra=extra)
+
+
+def expected_of(field: FieldInfo) -> str:
+    """Return what to write for a field that is missing; of a `FileValue` its description says."""
+    extra = field.json_schema_extra
+    expected = extra.get("expected") if isinstance(extra, dict) else None
+    return str(expected or field.description or "")
 
 
 def fields_of(section: AnySection) -> Mapping[str, FieldInfo]:
@@ -77,3 +128,64 @@ def _without_empty(section: AnySection, given: object) -> object:
         for key, value in given.items()
         if value is not None or key not in fields or fields[key].is_required()
     }
+
+
+def known_fields(schema: AnySection, loc: Sequence[Key]) -> Mapping[str, FieldInfo]:
+    """Return the fields that the schema knows at pydantic's path ``loc``."""
+    section = next(_sections_in(kind_at(schema, loc)), None)
+    return fields_of(section) if section else {}
+
+
+def kind_at(schema: AnySection, loc: Sequence[Key]) -> Any:
+    """Return what the schema holds at a path, which may have pydantic's labels of alternatives."""
+    kind: Any = schema
+    for key in loc:
+        kind = _step(kind, key)
+    return kind
+
+
+def _step(kind: Any, key: Key) -> Any:
+    """Return what the schema holds one step further; a place in a list keeps its kind."""
+    plain = get_args(kind)[0] if get_origin(kind) is Annotated else kind
+    if get_origin(plain) is dict:
+        return get_args(plain)[1]
+    branch = _branch(kind, key)
+    if branch is not None:
+        return branch
+    infos = (fields_of(section).get(str(key)) for section in _sections_in(kind))
+    return next((info.rebuild_annotation() for info in infos if info is not None), kind)
+
+
+def _branch(kind: Any, label: Key) -> Any:
+    """Return the alternative with this label, None where there is none."""
+    parts = get_args(kind)
+    if any(isinstance(part, Tag) and part.tag == label for part in parts):
+        return kind
+    return next((branch for part in parts if (branch := _branch(part, label)) is not None), None)
+
+
+def _sections_in(kind: Any) -> Iterator[AnySection]:
+    if isinstance(kind, ReadAs):
+        yield kind.section
+    elif isinstance(kind, type) and issubclass(kind, Section | FileValue):
+        yield kind
+    else:
+        for part in get_args(kind):
+            yield from _sections_in(part)
+
+
+@cache
+def words_at(schema: AnySection, path: str) -> tuple[str, str]:
+    """Return title and meaning of a field, by its dotted path without places in lists."""
+    kind: Any = schema
+    title = meaning = ""
+    for name in path.split("."):
+        infos = (fields_of(section).get(name) for section in _sections_in(kind))
+        info = next((info for info in infos if info is not None), None) or FieldInfo()
+        plain_title = name.replace("_", " ").capitalize()
+        title, meaning = (
+            words.replace("{title}", title.lower()).replace("{meaning}", meaning)
+            for words in (info.title or plain_title, " ".join((info.description or "").split()))
+        )
+        kind = info.rebuild_annotation()
+    return title, meaning

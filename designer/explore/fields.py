@@ -14,11 +14,11 @@ from pydantic import BaseModel
 
 from designer.documents.fields import QuantityField, WholeNumber
 from designer.documents.node import Key, Node, path_text
+from designer.documents.section import words_at
 from designer.effects.effect import Effect
 from designer.explore.sliders import Sizes, count_slider, slider
 from designer.io.config.effects import field_of, read_effects
 from designer.io.config.entries import field_node
-from designer.io.config.meanings import words_of
 from designer.io.config.orientation import FORMS
 from designer.io.config.schema import StudySection
 from designer.units import FORCE, MOMENT, NUMBER, Dimension, format_SI, read_quantity
@@ -269,14 +269,14 @@ def _effect_slots(
 
 @lru_cache(maxsize=4096)
 def _field(slot: _Slot, sizes: Sizes) -> Field:
-    title, definition = words_of(slot.plain)
+    title, definition = words_at(StudySection, slot.plain)
     label = _label(title, slot.place)
     if slot.effect is not None:
         label, definition = slot.effect
     given = slot.given or ""
     common: dict[str, Any] = {
         "path": path_text(slot.place),
-        "group": words_of(str(slot.place[0]))[0],
+        "group": words_at(StudySection, str(slot.place[0]))[0],
         "label": label,
         "is_given": slot.given is not None,
         "is_optional": slot.is_optional,

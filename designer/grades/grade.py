@@ -20,9 +20,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from designer.documents.fields import FormatOf, ReadAs, bounded, list_of
+from designer.documents.fields import FormatOf, bounded, list_of
 from designer.documents.formats import GRADE_FORMAT
-from designer.documents.section import FileValue
+from designer.documents.section import FileValue, ReadAs
 from designer.grades.parts import (
     AreaFactor,
     ComputedFigure,

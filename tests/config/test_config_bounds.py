@@ -14,9 +14,9 @@ import pytest
 from benchmarks.damaged_inputs import NUMBERS, no_longer_than, spoilt
 
 from designer.documents.bounds import BOUNDS
-from designer.documents.fields import QuantityField, ReadAs
+from designer.documents.fields import QuantityField
 from designer.documents.plain import finite
-from designer.documents.section import AnySection, FileValue, Section, fields_of
+from designer.documents.section import AnySection, FileValue, ReadAs, Section, fields_of
 from designer.errors import Fault, InputError
 from designer.grades.files import read_grade
 from designer.grades.grade import GradeSheet

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
-from itertools import product
 from pathlib import Path
 
 from designer.arrays import frozen_array
@@ -12,25 +10,22 @@ from designer.documents.document import Document
 from designer.effects.registry import KnownEffects
 from designer.errors import InputError
 from designer.io.config.effects import read_effects
-from designer.io.config.load_cases import load_case
+from designer.io.config.machine import CableSection
 from designer.io.config.orientation import rotation_vector_rad
 from designer.io.config.regions import RegionSection
 from designer.io.config.schema import (
-    CableSection,
     MeasurementsSection,
     PoseSection,
-    RobotSection,
     SelectionSection,
     StudySection,
     WorkspaceSection,
 )
-from designer.io.config.uncertainty import uncertainty
 from designer.model.cable import Material
 from designer.model.limits import RopeLimits
 from designer.model.machine import Surroundings
 from designer.model.measurements import LogColumn, Measurements
 from designer.model.region import Region
-from designer.model.robot import Platform, Poses, Robot
+from designer.model.robot import Poses, Robot
 from designer.model.space import Orientations
 from designer.model.workspace import Workspace
 from designer.plugins.find import Plugins, find_plugins
@@ -58,7 +53,7 @@ def build_study(
         If its cable is of a grade that there is not, or that lacks figures.
     """
     folder = source.path.parent
-    robot = _robot(section.robot)
+    robot = section.robot.robot()
     material, family = _material_and_family(section, document, plugins)
     declared = read_effects(section.effects, robot.n_cables, known.by_id)
     return Study(
@@ -70,12 +65,12 @@ def build_study(
         workspace=_workspace(section.workspace, robot),
         selection=_selection(section.selection),
         load_cases=tuple(
-            load_case(case, section.cable, partial(_case_region, document, k, robot))
-            for k, case in enumerate(section.load_cases)
+            case.load_case(section.cable, _case_region(document, index, robot, case.region))
+            for index, case in enumerate(section.load_cases)
         ),
         catalogues=tuple(folder / name for name in section.catalogues),
         measurements=_measurements(section.measurements, folder),
-        uncertainty=uncertainty(section.uncertainty),
+        uncertainty=None if section.uncertainty is None else section.uncertainty.value(),
         effects=tuple(setting for _, setting in declared.effects),
         known_effects=known,
         surroundings=Surroundings(section.surroundings.temperature),
@@ -127,28 +122,6 @@ def _with_family(
     return tuple(replace(e, value_SI=meaning.get(e.field, e.value_SI)) for e in entries)
 
 
-def _robot(section: RobotSection) -> Robot:
-    body = section.platform
-    attachments = None if body.attachments is None else frozen_array(body.attachments)
-    hull = None if body.hull is None else frozen_array(list(product(*body.hull)))
-    wrench = frozen_array([*body.wrench.force, *body.wrench.moment])
-    platform = Platform(
-        body.mass,
-        attachments,
-        frozen_array(body.centre_of_mass),
-        hull,
-        wrench,
-        drag_area_m2=None if body.drag is None else body.drag.area * body.drag.coefficient,
-    )
-    return Robot(
-        frozen_array(section.anchors),
-        platform,
-        tension_min_N=section.tension_min,
-        gravity_direction=frozen_array(section.gravity),
-        is_planar=section.planar,
-    )
-
-
 def _pose(section: PoseSection | None) -> Poses | None:
     if section is None:
         return None
@@ -187,8 +160,12 @@ def _orientations(section: WorkspaceSection) -> Orientations:
     )
 
 
-def _case_region(document: Document, index: int, robot: Robot, section: RegionSection) -> Region:
+def _case_region(
+    document: Document, index: int, robot: Robot, section: RegionSection | None
+) -> Region | None:
     """Return the region of a load case; a fault where nothing is left of it."""
+    if section is None:
+        return None
     try:
         return section.over(robot.exit_points_m)
     except ValueError as error:  # QhullError is one

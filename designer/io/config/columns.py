@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
 from designer.documents.fields import Text, bounded, mapping, refusal
-from designer.documents.section import Section
+from designer.documents.section import Section, config_field
 from designer.measured.names import COVARIATE, IGNORE, column_hint, dimension_of
 from designer.units import NUMBER, TEMPERATURE, Dimension, QuantityError, describe, read_quantity
 
@@ -28,10 +28,14 @@ class ColumnSection(Section):
     The value is the reading in its unit, or ``scale`` · reading, plus ``offset``.
     """
 
-    to: Annotated[str, BeforeValidator(_target)] = Field(description=_TARGET)
+    to: Annotated[str, BeforeValidator(_target)] = config_field(expected=_TARGET)
+    """Our name, such as length_1_m; ignore; or covariate."""
     unit: Text | None = None
+    """Unit of the readings."""
     scale: Annotated[float, bounded("scale of a column")] | None = None
+    """Factor from the readings to ours; instead of a unit."""
     offset: Any = None
+    """What is added after that, as a quantity."""
 
     @model_validator(mode="before")
     @classmethod

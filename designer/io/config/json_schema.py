@@ -10,12 +10,12 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from designer.documents.bounds import MOST_CABLES
 from designer.documents.fields import JsonSchema, WholeNumber
+from designer.documents.section import words_at
 from designer.effects.effect import Effect
 from designer.io.config.columns import ColumnSection
 from designer.io.config.effects import field_of
-from designer.io.config.loads import MOST_CABLES
-from designer.io.config.meanings import words_of
 from designer.io.config.orientation import OrientationSection
 from designer.io.config.schema import PoseSection, StudySection
 
@@ -38,7 +38,7 @@ def study_schema(effects: Mapping[str, Effect]) -> JsonSchema:
     sections = generated.pop("$defs")
     for section in _SHORTHANDS:
         whole = sections[section.__name__]
-        shorthand = next(iter(whole["properties"].values()))
+        shorthand = _without(next(iter(whole["properties"].values())), "expected")
         sections[section.__name__] = {"anyOf": [shorthand, whole]}
     schema: JsonSchema = _plain(generated, sections)
     schema["properties"]["effects"] = {
@@ -65,6 +65,12 @@ def _plain(node: Any, sections: Mapping[str, Any]) -> Any:
         return node
     if "$ref" in node:
         return _plain(sections[node["$ref"].rpartition("/")[2]] | _without(node, "$ref"), sections)
+    if isinstance(node.get("properties"), dict):
+        fields = {  # `_explain` says what each is
+            name: _without(field, "title", "description", "expected")
+            for name, field in node["properties"].items()
+        }
+        node = node | {"properties": fields}
     plain = {key: _plain(value, sections) for key, value in node.items()}
     if "prefixItems" in plain:  # all of one kind, which older drafts can say as well
         plain["items"] = plain.pop("prefixItems")[0]
@@ -124,7 +130,7 @@ def _explain(node: JsonSchema, path: str) -> None:
         place = f"{path}.{name}".lstrip(".")
         if place.startswith("effects."):
             continue
-        field["title"], field["description"] = words_of(place)
+        field["title"], field["description"] = words_at(StudySection, place)
         _explain(field, place)
     if isinstance(node.get("additionalProperties"), dict):
         _explain(node["additionalProperties"], path)

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation as SpatialRotation
 
 from designer.arrays import FloatArray
 from designer.documents.fields import Rotation, Turn, bounded, list_of, refusal
-from designer.documents.section import Section
+from designer.documents.section import Section, config_field
 from designer.units import describe
 
 FORMS = ("rotation_vector", "quaternion", "euler")
@@ -60,16 +60,31 @@ class EulerSection(Section):
     (extrinsic); the turns are made in the order of the letters.
     """
 
-    convention: Convention = Field(description=_AXES)
-    angles: Rotation = Field(description="three angles, in the order of the axes")
+    convention: Convention = config_field(expected=_AXES)
+    """Order of the axes: XYZ turn with the platform, xyz stay."""
+    angles: Rotation = config_field(
+        "Euler angle", expected="three angles, in the order of the axes"
+    )
+    """Turned about in the order of the convention."""
+
+
+_TURN = "Component of the rotation vector: axis times angle, from the platform's frame to the world"
+_BETWEEN = f"{_TURN}: from where to where."
+ROTATION_VECTOR = Field((0.0, 0.0, 0.0), title="Turn", description=f"{_TURN}.")
+QUATERNION = Field(
+    None,
+    description="Orientation as a unit quaternion [w, x, y, z] from the platform's frame to the "
+    "world.",
+)
+EULER = Field(None, description="Orientation as three turns, one after the other.")
 
 
 class OrientationSection(Section):
     """How the platform is turned, in one of three forms."""
 
-    rotation_vector: Rotation = (0.0, 0.0, 0.0)
-    quaternion: Quaternion | None = None
-    euler: EulerSection | None = None
+    rotation_vector: Rotation = ROTATION_VECTOR
+    quaternion: Quaternion | None = QUATERNION
+    euler: EulerSection | None = EULER
 
     @model_validator(mode="before")
     @classmethod
@@ -89,9 +104,9 @@ class OrientationSection(Section):
 class OrientationRangeSection(Section):
     """Components of the rotation vector between two ends each; zero where left out."""
 
-    rx: Turn | None = None
-    ry: Turn | None = None
-    rz: Turn | None = None
+    rx: Turn | None = Field(None, title="Turn about x", description=_BETWEEN)
+    ry: Turn | None = Field(None, title="Turn about y", description=_BETWEEN)
+    rz: Turn | None = Field(None, title="Turn about z", description=_BETWEEN)
 
     @model_validator(mode="after")
     def _has_a_component(self) -> OrientationRangeSection:

@@ -11,13 +11,13 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from designer.arrays import FloatArray
+from designer.documents.bounds import MOST_CABLES
 from designer.documents.document import Document
-from designer.documents.faults import kind_at
 from designer.documents.node import Data, Key
+from designer.documents.section import kind_at
 from designer.effects.effect import Effect
 from designer.errors import Fault
 from designer.io.config.effects import Found, read_effects
-from designer.io.config.loads import MOST_CABLES
 from designer.io.config.schema import StudySection
 from designer.model.robot import vertical_frame
 

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 from designer.arrays import FloatArray, frozen_array
 from designer.documents import fields
 from designer.documents.fields import list_of, only_word, refusal
-from designer.documents.section import Section
+from designer.documents.section import Section, config_field
 from designer.model.point_list import PointList
 from designer.model.prism import Prism
 from designer.model.rectangle import Rectangle
@@ -52,6 +52,13 @@ RectangleBase = Annotated[
 ]
 
 
+_INSET = Field(
+    0.0,
+    description="How far the outline of the region is moved inward from the outline of the anchors "
+    "or corners.",
+)
+
+
 class RegionSection(Section):
     """A region, by its kind."""
 
@@ -69,9 +76,11 @@ class RegionSection(Section):
 class PrismSection(RegionSection):
     """An upright prism over the anchors or over corners of one's own."""
 
-    prism: PrismBase = Field(description=_CORNERS)
-    inset: fields.Distance = 0.0
-    z: fields.Interval = Field(description="[lower, upper]")
+    prism: PrismBase = config_field("Corner", expected=_CORNERS)
+    """Corner of the region's outline, seen from above."""
+    inset: fields.Distance = _INSET
+    z: fields.Interval = config_field("Height", expected="[lower, upper]")
+    """Lowest and highest z of the region."""
 
     def over(self, exit_points_m: FloatArray) -> Region:
         corners = exit_points_m if self.prism == "anchors" else self.prism
@@ -81,7 +90,8 @@ class PrismSection(RegionSection):
 class BoxSection(RegionSection):
     """An axis-parallel box."""
 
-    box: Box = Field(description="[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+    box: Box = config_field(expected="[[xmin, xmax], [ymin, ymax], [zmin, zmax]]")
+    """From where to where the region reaches along each axis."""
 
     def over(self, exit_points_m: FloatArray) -> Region:
         return Prism.box(*self.box)
@@ -90,7 +100,8 @@ class BoxSection(RegionSection):
 class PointsSection(RegionSection):
     """A list of positions."""
 
-    points: Positions = Field(description="a list of positions [x, y, z]")
+    points: Positions = config_field("Point", expected="a list of positions [x, y, z]")
+    """Position that the platform shall be able to take."""
 
     def over(self, exit_points_m: FloatArray) -> Region:
         return PointList(frozen_array(self.points))
@@ -99,9 +110,11 @@ class PointsSection(RegionSection):
 class RectangleSection(RegionSection):
     """An upright rectangle over the line between two corners, or over anchors on a line."""
 
-    rectangle: RectangleBase = Field(description=_ENDS)
-    inset: fields.Distance = 0.0
-    z: fields.Interval = Field(description="[lower, upper]")
+    rectangle: RectangleBase = config_field("End", expected=_ENDS)
+    """End of the region's lower edge, seen from above."""
+    inset: fields.Distance = _INSET
+    z: fields.Interval = config_field("Height", expected="[lower, upper]")
+    """Lowest and highest z of the region."""
 
     def over(self, exit_points_m: FloatArray) -> Region:
         ends = exit_points_m if self.rectangle == "anchors" else self.rectangle

@@ -19,7 +19,7 @@ from pydantic import (
 )
 
 from designer.documents import fields
-from designer.documents.bounds import MOST_SAMPLES
+from designer.documents.bounds import MOST_CABLES, MOST_SAMPLES
 from designer.documents.fields import (
     FormatOf,
     Text,
@@ -33,24 +33,21 @@ from designer.documents.fields import (
     refusal,
 )
 from designer.documents.formats import CONFIG_FORMAT
-from designer.documents.section import Section
+from designer.documents.section import Section, config_field
 from designer.io.config.columns import Columns
-from designer.io.config.document_head import DocumentSection
-from designer.io.config.loads import (
-    MOST_CABLES,
-    DragSection,
-    IceSection,
-    LostCable,
-    WindSection,
-)
+from designer.io.config.loads import LoadCaseSection
+from designer.io.config.machine import ConfiguredCable, RobotSection
 from designer.io.config.orientation import (
+    EULER,
+    QUATERNION,
+    ROTATION_VECTOR,
     EulerSection,
     OrientationRangeSection,
     OrientationSection,
     Quaternion,
     only_one_of,
 )
-from designer.io.config.regions import AnyRegion, Box, word_or_list
+from designer.io.config.regions import AnyRegion, word_or_list
 from designer.io.config.uncertainty import UncertaintySection
 from designer.model.measurements import Reading
 from designer.model.region import Sampling
@@ -59,10 +56,6 @@ from designer.study import Objective
 from designer.units import describe
 
 _GRADES = "'all' or a list of grade ids"
-_points = list_of(2, MOST_CABLES, f"3 to {MOST_CABLES} points [x, y, z], 2 in a plane")
-
-Anchors = Annotated[tuple[fields.Point, ...], _points]
-Attachments = Annotated[tuple[fields.Point, ...], _points]
 Objectives = Annotated[
     tuple[Objective, ...],
     list_of(1, 5, "a list of objectives such as [mass, drum_diameter]"),
@@ -93,72 +86,14 @@ GradeIds = Annotated[
 ]
 
 
-class WrenchSection(Section):
-    """Constant load beside gravity, along the axes of the world frame."""
-
-    force: fields.Forces = (0.0, 0.0, 0.0)
-    moment: fields.Moments = (0.0, 0.0, 0.0)
-
-
-class PlatformSection(Section):
-    """What the cables carry."""
-
-    mass: fields.Mass = Field(description="a mass such as '4000 kg'")
-    attachments: Attachments | None = None
-    centre_of_mass: fields.Point = (0.0, 0.0, 0.0)
-    hull: Box | None = None
-    wrench: WrenchSection = WrenchSection()
-    drag: DragSection | None = None
-
-
-class RobotSection(Section):
-    """The machine."""
-
-    anchors: Anchors = Field(description="at least 3 exit points [x, y, z]")
-    platform: PlatformSection = Field(description="a mapping with the platform's mass")
-    gravity: fields.Direction = (0.0, 0.0, -1.0)
-    planar: StrictBool = False
-    tension_min: fields.Tension = 0.0
-
-
-class CableSection(Section):
-    """The continuous family of cables in which the optimum is computed."""
-
-    density: fields.Density = Field(description="a density such as '7800 kg/m^3'")
-    youngs_modulus: fields.Modulus = Field(description="a modulus such as '200 GPa'")
-    allowable_stress: fields.Stress = Field(description="a stress such as '180 MPa'")
-    drag_coefficient: fields.DragCoefficient | None = None
-    thermal_expansion: fields.Expansion | None = None
-
-
-class GradeCableSection(Section):
-    """The continuous family of a rope grade."""
-
-    grade: Text = Field(description="a grade id from `designer catalog list`")
-    safety_factor: fields.SafetyFactor | None = None
-    drag_coefficient: fields.DragCoefficient | None = None
-    thermal_expansion: fields.Expansion | None = None
-
-
-def _cable_tag(value: object) -> str:
-    names_grade = isinstance(value, dict | GradeCableSection) and "grade" in dict(value)
-    return "grade of a cable" if names_grade else "figures of a cable"
-
-
-ConfiguredCable = Annotated[
-    Annotated[CableSection, Tag("figures of a cable")]
-    | Annotated[GradeCableSection, Tag("grade of a cable")],
-    Discriminator(_cable_tag),
-]
-
-
 class PoseSection(Section):
     """One pose of the platform."""
 
-    position: fields.Point = Field(description="three lengths [x, y, z]")
-    rotation_vector: fields.Rotation = (0.0, 0.0, 0.0)
-    quaternion: Quaternion | None = None
-    euler: EulerSection | None = None
+    position: fields.Point = config_field(expected="three lengths [x, y, z]")
+    """Origin of the platform's frame in the world frame."""
+    rotation_vector: fields.Rotation = ROTATION_VECTOR
+    quaternion: Quaternion | None = QUATERNION
+    euler: EulerSection | None = EULER
 
     @model_validator(mode="before")
     @classmethod
@@ -171,18 +106,34 @@ class PoseSection(Section):
 class WorkspaceSection(Section):
     """Which poses the cable must serve."""
 
-    region: AnyRegion = Field(description="one of {prism, z}, {box}, {points} and {rectangle, z}")
+    region: AnyRegion = config_field(
+        expected="one of {prism, z}, {box}, {points} and {rectangle, z}"
+    )
+    """Where the platform works: one of prism, box, points and rectangle."""
     samples: Annotated[int, WholeNumber(1, MOST_SAMPLES)] = 20_000
-    sampling: Sampling = "low_discrepancy"
+    """Number of positions of the region that are tried."""
+    sampling: Sampling = config_field("Kind of samples", "low_discrepancy")
+    """An even random spread (low_discrepancy), or a grid."""
     seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
-    hangs_below: HangsBelow = "include"
+    """Of the random spread; another one tries other positions."""
+    hangs_below: HangsBelow = config_field("Cables that hang below", "include")
+    """Whether poses in which a cable hangs below the platform count."""
     clearance: fields.Clearance | None = None
+    """Least distance that cables shall keep from each other and from the platform."""
     floor: fields.Length | None = None
-    sag: fields.Sag = SAG_MAX
-    proof: fields.ProofTime = 20.0
+    """Height that no cable may hang below."""
+    sag: fields.Sag = config_field("Largest sag", SAG_MAX)
+    """Largest distance of a cable from its chord, over the chord. Of ropes to buy, 20 % unless
+    given; of the configured cable only if given. The word none lifts it."""
+    proof: fields.ProofTime = config_field("Time for the proof", 20.0)
+    """How long to try to prove that the chosen rope holds in all poses; 0 for not at all."""
     orientation: OrientationSection | None = None
+    """How the platform is turned at every position."""
     orientations: TurnList | None = None
+    """Several orientations, all of them asked for at every position."""
     orientation_range: OrientationRangeSection | None = None
+    """All rotation vectors between two ends a component, zero where left out, asked for at
+    every position."""
 
     @model_validator(mode="before")
     @classmethod
@@ -193,74 +144,112 @@ class WorkspaceSection(Section):
 class LimitsSection(Section):
     """What the chosen rope is checked against beyond its strength."""
 
-    stiffness: fields.Stiffness | None = None
+    stiffness: fields.Stiffness | None = config_field("Least stiffness")
+    """Force per displacement of the platform, in any direction, cables of fixed length."""
     excitation: fields.Band | None = None
+    """Band of frequencies in which no cable shall swing as a string."""
     drum_capacity: fields.DrumCapacity | None = None
+    """Rope that a drum takes up, beside its dead turns."""
 
 
 class SelectionSection(Section):
     """How a product is chosen."""
 
     grades: GradeIds = "all"
+    """Grades to choose among: all, or a list of ids from `designer catalog list`."""
     safety_factor: fields.SafetyFactor = 5.0
+    """What is left of the minimum breaking load, over the allowable tension."""
     objectives: Objectives = ("mass", "drum_diameter", "max_tension")
-    termination_efficiency: fields.Efficiency = 1.0
+    """What ropes are compared by; the first decides."""
+    termination_efficiency: fields.Efficiency = config_field("End fittings keep", 1.0)
+    """Share of the breaking load that the end fittings keep: poured socket about 1, swaged
+    0.95, steel ferrule 0.89, clips 0.8, wedge socket 0.75."""
     sheave_diameter: fields.SheaveDiameter | None = None
+    """Diameter that the rope is bent over; a wire rope keeps 1 - 0.5/sqrt(D/d) of its breaking
+    load. Bending is left out where it is not given."""
     groups: Groups | None = None
-    max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = None
+    """Cables that may get a rope of their own: names, each with its cable numbers, counted from
+    1 in the order of the anchors."""
+    max_distinct_products: Annotated[int, WholeNumber(1, MOST_CABLES)] | None = config_field(
+        "Different ropes"
+    )
+    """How many different ropes the groups of cables may have between them."""
     limits: LimitsSection = LimitsSection()
-
-
-class LoadCaseSection(Section):
-    """One load case; what it leaves out is as in the rest of the study."""
-
-    name: Text = Field(description="a name such as 'hoisting'")
-    mass: fields.Mass | None = None
-    wrench: WrenchSection | None = None
-    dynamic_factor: fields.DynamicFactor = 1.0
-    acceleration: fields.Acceleration = 0.0
-    wind: WindSection | None = None
-    ice: IceSection | None = None
-    cable_lost: LostCable | None = None
-    temperature_change: fields.TemperatureChange | None = None
-    safety_factor: fields.SafetyFactor | None = None
-    termination_efficiency: fields.Efficiency | None = None
-    region: AnyRegion | None = None
+    """What else the chosen rope is checked against."""
 
 
 class MeasuredCableSection(Section):
     """The cable that is on the machine."""
 
-    linear_mass: fields.LinearDensity = Field(description="a mass per length such as '0.142 kg/m'")
-    axial_stiffness: fields.AxialStiffness = Field(description="a force such as '3.3 MN'")
-    diameter: fields.RopeDiameter | None = None
-    minimum_breaking_load: fields.BreakingLoad | None = None
+    linear_mass: fields.LinearDensity = config_field(
+        "Mass of the cable on the machine", expected="a mass per length such as '0.142 kg/m'"
+    )
+    """Mass per length of the cable that was on the machine when it was measured."""
+    axial_stiffness: fields.AxialStiffness = config_field(
+        "Stiffness of the cable on the machine", expected="a force such as '3.3 MN'"
+    )
+    """Force per strain of the cable that was on the machine when it was measured."""
+    diameter: fields.RopeDiameter | None = config_field("Diameter of the cable on the machine")
+    """Nominal diameter of the cable that was on the machine, for laws that ask for it."""
+    minimum_breaking_load: fields.BreakingLoad | None = config_field(
+        "Breaking load of the cable on the machine"
+    )
+    """With it the cable is checked as a product would be."""
 
 
 class NoiseSection(Section):
     """Standard deviations of the measured values."""
 
-    length: fields.LengthNoise | None = None
-    tension: fields.TensionNoise | None = None
+    length: fields.LengthNoise | None = config_field("Noise of lengths")
+    """Standard deviation of a measured length."""
+    tension: fields.TensionNoise | None = config_field("Noise of tensions")
+    """Standard deviation of a measured tension."""
     estimated: Readings = ()
+    """Which of them a diagnosis has estimated; it writes this."""
 
 
 class MeasurementsSection(Section):
     """Data measured on the built machine."""
 
-    file: Text = Field(description="the name of a CSV file")
+    file: Text = config_field(expected="the name of a CSV file")
+    """The table, a CSV file, relative to this file."""
     columns: Columns = Field(default_factory=dict)
+    """What the file's columns are, where their names are not ours."""
     settled: StrictBool = True
-    unknown: Names = ()  # checked by designer.io.config.checks
-    cable: MeasuredCableSection = Field(description="{linear_mass: …, axial_stiffness: …}")
+    """Whether each row of the data is a pose at rest; else a sample of a slow motion."""
+    unknown: Names = ()
+    """Effects that are fitted from the start and not counted as a finding; `anchors` for all
+    exit points; `poses` where lengths and tensions have to tell them."""
+    cable: MeasuredCableSection = config_field(expected="{linear_mass: …, axial_stiffness: …}")
+    """The cable that was on the machine."""
     noise: NoiseSection = NoiseSection()
-    search_time: fields.SearchTime = 600.0
+    """Standard deviations of one reading; estimated from the data where left out."""
+    search_time: fields.SearchTime = config_field("Time for the search", 600.0)
+    """How long the diagnosis may search for effects."""
 
 
 class SurroundingsSection(Section):
     """What the laws of effects are given in a design."""
 
     temperature: fields.Temperature = 20.0
+    """What the laws of effects are given in a design; lengths are counted at 20 °C."""
+
+
+class DocumentSection(Section):
+    """What a drawing office writes on the report."""
+
+    number: Text | None = None
+    """Number of the document."""
+    revision: Text | None = None
+    """Its revision."""
+    author: Text | None = None
+    """Who made it."""
+    checker: Text | None = None
+    """Who checked it."""
+    approver: Text | None = None
+    """Who approved it."""
+    logo: Text | None = None
+    """A picture for the head, PNG, JPEG or SVG, relative to this file."""
 
 
 LoadCases = Annotated[
@@ -273,19 +262,39 @@ class StudySection(Section):
     """The whole file."""
 
     name: Text | None = None
-    robot: RobotSection = Field(description="a mapping with anchors and platform")
-    cable: ConfiguredCable = Field(
-        description="{density: …, youngs_modulus: …, allowable_stress: …} or {grade: ID}"
+    """Title of the report."""
+    robot: RobotSection = config_field(
+        "Robot and load", expected="a mapping with anchors and platform"
     )
+    """The machine."""
+    cable: ConfiguredCable = config_field(
+        "Cable family",
+        expected="{density: …, youngs_modulus: …, allowable_stress: …} or {grade: ID}",
+    )
+    """The family of cables in which the optimum is computed: by its figures, or a grade as if
+    it were sold in every diameter."""
     pose: PoseSection | None = None
+    """One pose that the report shows in detail."""
     workspace: WorkspaceSection | None = None
-    selection: SelectionSection | None = None
+    """All poses that the cable has to serve."""
+    selection: SelectionSection | None = config_field("Choice of the rope")
+    """Which rope to buy."""
     load_cases: LoadCases = ()
+    """Load cases, at most 50, in each of which the rope has to hold everywhere; left out, there
+    is one case without wind, ice, motion or loss of a cable."""
     catalogues: Names = ()
-    measurements: MeasurementsSection | None = None
-    # designer.io.config.effects checks what is in it
+    """Rope tables of your own: files or folders, relative to this file."""
+    measurements: MeasurementsSection | None = config_field("Measured data")
+    """What was measured on the built machine, for `designer diagnose`."""
     effects: fields.FreeMapping = Field(default_factory=dict)
+    """What the machine is known to do beside the rest, by the ids of effects; `designer
+    diagnose` writes here what it finds."""
     surroundings: SurroundingsSection = SurroundingsSection()
+    """What the laws of effects are given in a design."""
     document: DocumentSection = DocumentSection()
+    """What a drawing office writes at the head of the report."""
     uncertainty: UncertaintySection | None = None
+    """How surely inputs are known: how likely the chosen rope is enough. What is left out is
+    certain."""
     format: Annotated[int, FormatOf(CONFIG_FORMAT)] = 1
+    """Format of this file, for later versions of the program."""

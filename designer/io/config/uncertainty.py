@@ -7,8 +7,8 @@ from typing import Annotated, ClassVar
 from pydantic import AfterValidator, Discriminator, Tag, model_validator
 
 from designer.documents.fields import WholeNumber, bounded, list_of, refusal
-from designer.documents.section import Section
-from designer.model.uncertainty import Normal, Spread, Uncertainty, Uniform
+from designer.documents.section import Section, config_field
+from designer.model.uncertainty import INPUTS, Normal, Spread, Uncertainty, Uniform
 from designer.units import describe
 
 _ENDS = "a half width or [lowest, highest]"
@@ -49,8 +49,12 @@ class SpreadSection(Section):
     """The distribution of a relative deviation."""
 
     example: ClassVar = "2 %"
-    standard_deviation: Annotated[float, bounded("relative scatter")] | None = None
-    uniform: Width | None = None
+    standard_deviation: Annotated[float, bounded("relative scatter")] | None = config_field(
+        "Scatter of the {title}"
+    )
+    """Standard deviation, of a normal distribution, relative. {meaning}"""
+    uniform: Width | None = config_field("Range of the {title}")
+    """Half width of a uniform distribution, relative, or its two ends. {meaning}"""
 
     @model_validator(mode="before")
     @classmethod
@@ -81,8 +85,12 @@ class PointSpreadSection(SpreadSection):
     """The distribution of each coordinate of each exit point."""
 
     example: ClassVar = "20 mm"
-    standard_deviation: Annotated[float, bounded("scatter of points")] | None = None
-    uniform: WidthOfPoint | None = None
+    standard_deviation: Annotated[float, bounded("scatter of points")] | None = config_field(
+        "Scatter of the {title}"
+    )
+    """Standard deviation, of a normal distribution. {meaning}"""
+    uniform: WidthOfPoint | None = config_field("Range of the {title}")
+    """Half width of a uniform distribution, or its two ends. {meaning}"""
 
 
 class UncertaintySection(Section):
@@ -92,28 +100,26 @@ class UncertaintySection(Section):
     """
 
     payload: SpreadSection | None = None
+    """Of weight, inertia and constant loads of the platform."""
     modulus: SpreadSection | None = None
-    linear_mass: SpreadSection | None = None
+    """Of the rope's modulus; left out, what its grade states."""
+    linear_mass: SpreadSection | None = config_field("Rope's mass")
+    """Of the rope's mass per length, on all cables alike."""
     breaking_load: SpreadSection | None = None
+    """Of the rope's breaking load, on all cables alike."""
     exit_points: PointSpreadSection | None = None
-    samples: Annotated[int, WholeNumber(100, 1_000_000)] = 4096
-    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = 0
+    """Of each coordinate of each exit point, for itself."""
+    samples: Annotated[int, WholeNumber(100, 1_000_000)] = config_field("Draws", 4096)
+    """How often the inputs are drawn."""
+    seed: Annotated[int, WholeNumber(0, 2**32 - 1)] = config_field("Seed of the draws", 0)
+    """Of the random numbers; other seeds, other draws."""
 
-
-def uncertainty(section: UncertaintySection | None) -> Uncertainty | None:
-    """Return how surely the inputs are known; None where a study does not say."""
-    if section is None:
-        return None
-
-    def read(one: SpreadSection | None) -> Spread | None:
-        return None if one is None else one.value()
-
-    return Uncertainty(
-        read(section.payload),
-        read(section.modulus),
-        read(section.linear_mass),
-        read(section.breaking_load),
-        read(section.exit_points),
-        section.samples,
-        section.seed,
-    )
+    def value(self) -> Uncertainty:
+        """Return how surely the inputs are known."""
+        payload, modulus, linear_mass, breaking_load, exit_points = (
+            None if section is None else section.value()
+            for section in (getattr(self, name) for name in INPUTS)
+        )
+        return Uncertainty(
+            payload, modulus, linear_mass, breaking_load, exit_points, self.samples, self.seed
+        )
