@@ -264,8 +264,8 @@ class Analysis:
         workspace, survey = self.study.workspace, self.workspace
         if survey is None or workspace is None or workspace.proof_s == 0.0:
             return None
-        doubtful = (Verdict.OUTSIDE_HULL, Verdict.NOT_FOUND, Verdict.RANK_DEFICIENT)
-        if not any(survey.census.statuses[verdict.label] for verdict in doubtful):
+        counts = survey.census.statuses
+        if not any(counts[v.label] for v in Verdict if v.questions_all_ropes):
             return None
         with self.reporter.task("impossible", 1):
             return servable(self.built.robot, workspace.space, Budget(workspace.proof_s))

@@ -11,7 +11,7 @@ from designer.analysis.field import RegionField, field_at
 from designer.arrays import BoolArray, FloatArray, VerdictArray
 from designer.model import polygon
 from designer.model.prism import Prism
-from designer.model.verdict import OPEN, Verdict
+from designer.model.verdict import Verdict, are_open
 from designer.study import Study
 
 
@@ -52,7 +52,7 @@ class EdgeProfile:
     @property
     def is_proved(self) -> bool:
         """Whether no cable can hold what is not held beyond the limit, instead of none found."""
-        return not np.isin(self._beyond, OPEN).any()
+        return not are_open(self._beyond).any()
 
     @property
     def _beyond(self) -> VerdictArray:

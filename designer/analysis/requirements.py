@@ -25,7 +25,6 @@ from designer.selection.requirements import (
     evaluate,
     extreme_lengths_m,
     sheave_ratio_of,
-    state_of,
 )
 from designer.selection.result import SelectionResult
 from designer.sizing.newton import size_poses
@@ -73,7 +72,7 @@ def _pose(pose: PoseAnalysis) -> Requirement:
         title="Configured pose",
         formula=f"{_FAMILY} the configured pose",
         source="pose",
-        state=state_of(verdict),
+        state=verdict.state,
         load_case=STATIC.name,
         place=statics.poses.place,
         remark="" if statics.is_solved else verdict.clause,
@@ -107,7 +106,7 @@ def _why_not_feasible(study: Study, built: AsBuilt, workspace: WorkspaceMap) -> 
         sizing = size_poses(built.robot, workspace.infeasible_pose, built.material(study.material))
         unserved = [Verdict(int(sizing.statics.verdict))]
     worst = next((v for v in unserved if v.is_proved), unserved[0])
-    return state_of(worst), worst.clause
+    return worst.state, worst.clause
 
 
 def _need(need: CaseNeed) -> Requirement:

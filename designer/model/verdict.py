@@ -7,47 +7,76 @@ from typing import Self
 
 import numpy as np
 
-from designer.arrays import BoolArray, FloatArray
+from designer.arrays import BoolArray, FloatArray, VerdictArray
+from designer.model.requirement import State
 
 
 class Verdict(IntEnum):
     """Outcome of solving one pose; every pose has exactly one.
 
-    Each has a code, its reason in two or three words and in a clause, and what a user can do.
+    Each has a code; whether the pose is held, and ``OPEN`` where the verdict proves nothing and
+    another way may still find a solution; its colour among those of `designer.report.figures` and
+    its hatch in charts; its reason in two or three words and in a clause; and what a user can do.
     """
 
+    state: State
+    colour: str
+    hatch: str
     reason: str
     clause: str
     advice: str
 
-    def __new__(cls, code: int, reason: str = "", clause: str = "", advice: str = "") -> Self:
-        """Return the member of this code with its words."""
+    def __new__(
+        cls,
+        code: int,
+        state: State = State.OPEN,
+        look: tuple[str, str] = ("INK", ""),
+        reason: str = "",
+        clause: str = "",
+        advice: str = "",
+    ) -> Self:
+        """Return the member of this code with its properties."""
         verdict = int.__new__(cls, code)
         verdict._value_ = code
+        verdict.state, (verdict.colour, verdict.hatch) = state, look
         verdict.reason, verdict.clause, verdict.advice = reason, clause, advice
         return verdict
 
-    SOLVED = 0, "solved", "the cables hold the platform; both residuals are within tolerance"
+    SOLVED = (
+        0,
+        State.HOLDS,
+        ("SAG", ""),
+        "solved",
+        "the cables hold the platform; both residuals are within tolerance",
+    )
     OUTSIDE_HULL = (
         1,
+        State.FAILS,
+        ("WARNING", ""),
         "no cables hold it",
         "no cables can hold the platform, straight or sagging, which is proved",
         "Move the configured pose below the exit points and inside their outline.",
     )
     NO_FINITE_CABLE = (
         2,
+        State.FAILS,
+        ("WARNING_PALE", "//////"),
         "no finite cable",
         "no cable of the family is thick enough: its own weight alone exceeds the allowable stress",
         "Move the configured pose away from the edge of the workspace, or lower.",
     )
     NOT_CONVERGED = (
         3,
+        State.OPEN,
+        ("INK", ""),
         "not converged",
         "the solver found no solution and no proof that there is none",
         NO_FINITE_CABLE[-1],
     )
     RANK_DEFICIENT = (
         4,
+        State.FAILS,
+        ("LEFT_OUT", ""),
         "rank deficient",
         "no cables were found that hold the platform; straight ones leave some force or moment, "
         "if not the present load, that no tensions can take up",
@@ -55,6 +84,8 @@ class Verdict(IntEnum):
     )
     NOT_FOUND = (
         5,
+        State.OPEN,
+        ("WARNING_PALE", "......"),
         "none found",
         "straight cables cannot hold the platform; sagging ones might, but none were found",
         OUTSIDE_HULL[-1],
@@ -63,7 +94,12 @@ class Verdict(IntEnum):
     @property
     def is_proved(self) -> bool:
         """Whether it is certain: the pose is solved, or shown to be impossible."""
-        return self not in OPEN
+        return self.state is not State.OPEN
+
+    @property
+    def questions_all_ropes(self) -> bool:
+        """Whether it may be that no rope whatever holds the pose, sized or of the catalogue."""
+        return self not in (Verdict.SOLVED, Verdict.NO_FINITE_CABLE, Verdict.NOT_CONVERGED)
 
     @property
     def label(self) -> str:
@@ -76,8 +112,9 @@ class Verdict(IntEnum):
         return f"{self.clause[0].upper()}{self.clause[1:]}."
 
 
-OPEN = (Verdict.NOT_FOUND, Verdict.NOT_CONVERGED)
-"""Verdicts that prove nothing: another way may still find a solution."""
+def are_open(verdicts: VerdictArray) -> BoolArray:
+    """Tell which verdicts (...) prove nothing."""
+    return np.isin(verdicts, [verdict for verdict in Verdict if not verdict.is_proved])
 
 
 def hanging_cables(force_z_N: FloatArray, drop_m: FloatArray) -> BoolArray:

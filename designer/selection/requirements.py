@@ -21,7 +21,7 @@ from designer.model.cable import Cable
 from designer.model.load_case import LoadCase, Loaded
 from designer.model.requirement import Requirement, State
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import OPEN, Verdict
+from designer.model.verdict import Verdict
 from designer.model.workspace import Workspace
 from designer.progress import Advance
 from designer.selection.cases import CaseResult, steepest, worst_of_each
@@ -322,14 +322,7 @@ def _why_not_held(result: CaseResult) -> tuple[State, str]:
         return State.OPEN, Fate(int(loss.fate[0])).words
     loaded = result.loaded
     verdict = Verdict(int(solve_sagging(loaded.robot, result.pose, loaded.cable).verdict[0]))
-    return state_of(verdict), verdict.clause
-
-
-def state_of(verdict: Verdict) -> State:
-    """Return whether a verdict means that a pose is held, cannot be, or that neither is known."""
-    if verdict is Verdict.SOLVED:
-        return State.HOLDS
-    return State.OPEN if verdict in OPEN else State.FAILS
+    return verdict.state, verdict.clause
 
 
 def sheave_ratio_of(grade: Grade, size: Size, selection: Selection) -> Iterator[Requirement]:

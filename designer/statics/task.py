@@ -10,7 +10,7 @@ import numpy as np
 from designer.arrays import BoolArray, FloatArray, IntArray
 from designer.kernel.calling import Situation, plain
 from designer.model.robot import Poses, Robot
-from designer.model.verdict import OPEN, Verdict
+from designer.model.verdict import Verdict, are_open
 from designer.physics import pulley
 from designer.progress import checkpoint
 from designer.statics.geometry import (
@@ -205,8 +205,9 @@ def _try_other_branches(
 
     Writes what is better into the solution and the run of the cables.
     """
-    hard = np.logical_or.reduce([solution.verdict == verdict for verdict in OPEN])
-    at = np.flatnonzero(among & (hard | (solution.potential > _WORTH_A_SEARCH)))
+    at = np.flatnonzero(
+        among & (are_open(solution.verdict) | (solution.potential > _WORTH_A_SEARCH))
+    )
     if len(at) == 0 or np.any(task.inverse_weight_m_per_N == 0.0):
         return
     poses = part_of(flat, at)
@@ -245,7 +246,7 @@ def _let_hang(
     Where no better branch is sought, before other branches are tried within the limit, which takes
     long and rarely finds one. Tells which poses (n_poses,) these were.
     """
-    hangs = np.isin(solution.verdict, OPEN) & among
+    hangs = are_open(solution.verdict) & among
     at = np.flatnonzero(hangs)
     if len(at) > 0:
         slack = replace(task.part(at), sag_max=None)

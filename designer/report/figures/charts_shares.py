@@ -167,15 +167,12 @@ def parts(census: Census) -> tuple[Part, ...]:
     if census.excluded > 0:
         below += status.pop("no_finite_cable")
         label, colour = "left out: a cable hangs below", palette.LEFT_OUT
-    refused = (
-        (Verdict.NO_FINITE_CABLE, palette.WARNING_PALE, "//////"),
-        (Verdict.OUTSIDE_HULL, palette.WARNING, ""),
-        (Verdict.NOT_FOUND, palette.WARNING_PALE, "......"),
-        (Verdict.RANK_DEFICIENT, palette.LEFT_OUT, ""),
-        (Verdict.NOT_CONVERGED, palette.INK, ""),
-    )
     everything = [Part("held", above, palette.SAG), Part(label, below, colour)]
-    everything += [Part(v.reason, status.get(v.label, 0), *look) for v, *look in refused]
+    everything += [
+        Part(v.reason, status.get(v.label, 0), getattr(palette, v.colour), v.hatch)
+        for v in Verdict
+        if v is not Verdict.SOLVED
+    ]
     return tuple(part for part in everything if part.count > 0)
 
 
