@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -55,39 +54,3 @@ def require_shape(name: str, array: NDArray[Any], *shape: int | None) -> None:
     if not fits:
         expected = ", ".join("n" if size is None else str(size) for size in shape)
         raise ValueError(f"{name} must have the shape ({expected}), not {array.shape}")
-
-
-def require_number(
-    name: str,
-    value: float | None,
-    *,
-    above: float = -np.inf,
-    least: float = -np.inf,
-    most: float = np.inf,
-    finite: bool = True,
-) -> None:
-    """Raise ValueError unless a number is finite, or at least not NaN, and within its range.
-
-    None stands for a number that is not given, and is left alone.
-    """
-    if value is None:
-        return
-    if not value > above and above > -np.inf:
-        raise ValueError(f"{name} must be above {above:g}, not {value:g}")
-    if not value >= least:
-        raise ValueError(f"{name} must not be below {least:g}, and is {value:g}")
-    if value > most:
-        raise ValueError(f"{name} must not be above {most:g}, and is {value:g}")
-    if np.isnan(value) or (finite and not np.isfinite(value)):
-        raise ValueError(f"{name} must be finite, not {value:g}")
-
-
-def require_one_of(name: str, values: Iterable[object], allowed: Sequence[object]) -> None:
-    """Raise ValueError unless everything given is known, and nothing is given twice."""
-    seen: set[object] = set()
-    for value in values:
-        if value not in allowed:
-            raise ValueError(f"{name}: {value!r} is none of {', '.join(map(str, allowed))}")
-        if value in seen:
-            raise ValueError(f"{name}: {value!r} is given twice")
-        seen.add(value)

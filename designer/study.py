@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
-from designer.arrays import require_number, require_one_of
+from designer import checked
 from designer.effects.design import AsBuilt, built_with
 from designer.effects.effect import Setting
 from designer.effects.registry import SHIPPED, KnownEffects
@@ -39,7 +39,7 @@ class CableGroup:
         if not self.cables:
             raise ValueError(f"group '{self.name}' has no cable")
         for cable in self.cables:
-            require_number(f"a cable of group '{self.name}'", cable, least=1)
+            checked.Number(least=1).require(f"a cable of group '{self.name}'", cable)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,22 +67,18 @@ class Selection:
     """
 
     grades: tuple[str, ...] | None = None
-    safety_factor: float = 5.0
+    safety_factor: checked.Factor = 5.0
     objectives: tuple[Objective, ...] = ("mass", "drum_diameter", "max_tension")
-    termination_efficiency: float = 1.0
-    sheave_diameter_m: float | None = None
+    termination_efficiency: checked.Efficiency = 1.0
+    sheave_diameter_m: checked.Positive | None = None
     groups: tuple[CableGroup, ...] = ()
-    max_distinct_products: int | None = None
+    max_distinct_products: checked.Count | None = None
     limits: RopeLimits = field(default_factory=RopeLimits)
 
     def __post_init__(self) -> None:
-        require_number("safety_factor", self.safety_factor, least=1.0)
-        require_number("termination_efficiency", self.termination_efficiency, above=0.0, most=1.0)
-        require_number("sheave_diameter_m", self.sheave_diameter_m, above=0.0)
-        require_number("max_distinct_products", self.max_distinct_products, least=1)
+        checked.check_fields(self)
         if not self.objectives:
             raise ValueError("objectives must name one at least")
-        require_one_of("objectives", self.objectives, get_args(Objective))
         if isinstance(self.grades, str):
             raise ValueError(f"grades must be several ids, not the text {self.grades!r}")
         if self.max_distinct_products is not None and not self.groups:
@@ -104,14 +100,11 @@ class Selection:
 
 
 @dataclass(frozen=True, slots=True)
-class GradeFamily:
+class GradeFamily(checked.Value):
     """The grade whose continuous family the optimum is computed in, and the safety factor in it."""
 
     grade: str
-    safety_factor: float
-
-    def __post_init__(self) -> None:
-        require_number("safety_factor", self.safety_factor, least=1.0)
+    safety_factor: checked.Factor
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,14 +158,14 @@ class DeclaredEffect:
     """An effect that the model of this machine has."""
 
     id: str  # As in `known_effects` of the study
-    cable: int | None  # The one cable that it concerns, from 1; None for all
+    cable: checked.Count | None  # The one cable that it concerns, from 1; None for all
     # All of its parameters, in the units that their names end in
     parameters: Mapping[str, float] = field(hash=False)
 
     def __post_init__(self) -> None:
-        require_number("cable", self.cable, least=1)
+        checked.check_fields(self)
         for name, value in self.parameters.items():
-            require_number(name, value)
+            checked.FINITE.require(name, value)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,8 @@ from designer.model.rectangle import Rectangle
 from designer.model.region import Region
 
 ROOMS = [
-    "__init__", "errors", "arrays", "spelling", "units", "resources", "progress", "model",
-    "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
+    "__init__", "errors", "arrays", "checked", "spelling", "units", "resources", "progress",
+    "model", "physics", "kernel", "statics", "sizing", "plugins", "effects", "study", "documents",
     "grades", "measured", "workspace", "proof", "selection", "diagnosis", "analysis", "io",
     "foreign", "reference", "sweep", "optimum", "report", "api", "explore", "cli", "__main__",
 ]  # fmt: skip

@@ -6,15 +6,19 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
-from designer.arrays import FloatArray, IntArray, frozen_array, require_number
+from designer import checked
+from designer.arrays import FloatArray, IntArray
 
 STANDARD_GRAVITY_M_PER_S2 = 9.81
 """Gravitational acceleration used throughout, as in Riehl et al., ICRA 2010 [m/s²]."""
 STEEL_EXPANSION_PER_K = 12e-6
 """Thermal expansion of steel, EN 1993-1-1:2005, 3.2.6 [1/K]."""
+Unlimited = Annotated[float, checked.Number(above=0.0, finite=False)]
+"""A figure that may be ``inf``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,19 +75,16 @@ class Cable:
     """
 
     diameter_m: float
-    linear_density_kg_per_m: float
-    axial_stiffness_N: float
-    allowable_tension_N: float
-    expansion_per_K: float = STEEL_EXPANSION_PER_K
+    linear_density_kg_per_m: checked.Positive
+    axial_stiffness_N: Unlimited
+    allowable_tension_N: Unlimited
+    expansion_per_K: checked.Finite = STEEL_EXPANSION_PER_K
     stiffening: Stiffening | None = None
 
     def __post_init__(self) -> None:
-        if not math.isnan(self.diameter_m):
-            require_number("diameter_m", self.diameter_m, above=0.0)
-        require_number("linear_density_kg_per_m", self.linear_density_kg_per_m, above=0.0)
-        require_number("axial_stiffness_N", self.axial_stiffness_N, above=0.0, finite=False)
-        require_number("allowable_tension_N", self.allowable_tension_N, above=0.0, finite=False)
-        require_number("expansion_per_K", self.expansion_per_K)
+        checked.check_fields(self)
+        if self.diameter_m <= 0.0:
+            raise ValueError(f"diameter_m must be above 0, not {self.diameter_m:g}")
 
     @property
     def weight_N_per_m(self) -> float:
@@ -97,14 +98,22 @@ class Cable:
         return replace(self, axial_stiffness_N=self.stiffening.at(tension_N))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Cables:
-    """The cables of a robot where they differ; one for each exit point, in that order.
+    """The cables of a robot where they differ: by exit point, or all of them from pose to pose.
 
-    Its figures have the names of those of a `Cable`, as arrays (n_cables,).
+    Its figures have the names of those of a `Cable`, as arrays (n_cables,), or (n_poses, 1).
+
+    Parameters
+    ----------
+    each : sequence of Cable
+        One for each exit point, in that order; or those that ``of_pose`` counts.
+    of_pose : array (n_poses,) or None
+        Which of them is on all winches in each pose.
     """
 
-    each: tuple[Cable, ...]
+    each: Sequence[Cable]
+    of_pose: IntArray | None = None
 
     def __post_init__(self) -> None:
         if not self.each:
@@ -112,61 +121,32 @@ class Cables:
 
     @property
     def linear_density_kg_per_m(self) -> FloatArray:
-        """Mass per unstrained length (n_cables,) [kg/m]."""
-        return frozen_array([cable.linear_density_kg_per_m for cable in self.each])
+        """Mass per unstrained length [kg/m]."""
+        return self._figures("linear_density_kg_per_m")
 
     @property
     def weight_N_per_m(self) -> FloatArray:
-        """Weight per unstrained length (n_cables,) [N/m]."""
-        return frozen_array([cable.weight_N_per_m for cable in self.each])
+        """Weight per unstrained length [N/m]."""
+        return self._figures("weight_N_per_m")
 
     @property
     def axial_stiffness_N(self) -> FloatArray:
-        """EA (n_cables,) [N]."""
-        return frozen_array([cable.axial_stiffness_N for cable in self.each])
+        """EA [N]."""
+        return self._figures("axial_stiffness_N")
 
     @property
     def allowable_tension_N(self) -> FloatArray:
-        """Largest tension the design may use (n_cables,) [N]."""
-        return frozen_array([cable.allowable_tension_N for cable in self.each])
+        """Largest tension the design may use [N]."""
+        return self._figures("allowable_tension_N")
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CablesByPose:
-    """Cables that differ from pose to pose.
-
-    Its figures have the names of those of a `Cable`, as arrays (n_poses, 1).
-
-    Parameters
-    ----------
-    each : sequence of Cable
-        The cables.
-    of_pose : array (n_poses,)
-        Which of them is on all winches in each pose.
-    """
-
-    each: Sequence[Cable]
-    of_pose: IntArray
-
-    @property
-    def weight_N_per_m(self) -> FloatArray:
-        """Weight per unstrained length (n_poses, 1) [N/m]."""
-        return _by_pose(self, "weight_N_per_m")[:, None]
-
-    @property
-    def axial_stiffness_N(self) -> FloatArray:
-        """EA (n_poses, 1) [N]."""
-        return _by_pose(self, "axial_stiffness_N")[:, None]
-
-    @property
-    def allowable_tension_N(self) -> FloatArray:
-        """Largest tension the design may use (n_poses, 1) [N]."""
-        return _by_pose(self, "allowable_tension_N")[:, None]
+    def _figures(self, name: str) -> FloatArray:
+        figures = np.array([getattr(cable, name) for cable in self.each])
+        return figures if self.of_pose is None else figures[self.of_pose][:, None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MaterialsByPose:
-    """Families of cables that differ from pose to pose, as `CablesByPose`; arrays (n_poses,)."""
+    """Families of cables that differ from pose to pose, as `Cables`; arrays (n_poses,)."""
 
     each: Sequence[Material]
     of_pose: IntArray
@@ -174,35 +154,34 @@ class MaterialsByPose:
     @property
     def density_kg_per_m3(self) -> FloatArray:
         """Mass per length over the area of the nominal circle (n_poses,) [kg/m³]."""
-        return _by_pose(self, "density_kg_per_m3")
+        return self._figures("density_kg_per_m3")
 
     @property
     def youngs_modulus_Pa(self) -> FloatArray:
         """EA over that area (n_poses,) [Pa]."""
-        return _by_pose(self, "youngs_modulus_Pa")
+        return self._figures("youngs_modulus_Pa")
 
     @property
     def allowable_stress_Pa(self) -> FloatArray:
         """Allowable tension over that area (n_poses,) [Pa]."""
-        return _by_pose(self, "allowable_stress_Pa")
+        return self._figures("allowable_stress_Pa")
 
     @property
     def elastic_compliance_per_m(self) -> FloatArray:
         """Weight per length over EA (n_poses,) [1/m]."""
-        return _by_pose(self, "elastic_compliance_per_m")
+        return self._figures("elastic_compliance_per_m")
 
     @property
     def strength_length_m(self) -> FloatArray:
         """Length whose own weight reaches the allowable stress (n_poses,) [m]."""
-        return _by_pose(self, "strength_length_m")
+        return self._figures("strength_length_m")
 
-
-def _by_pose(items: CablesByPose | MaterialsByPose, name: str) -> FloatArray:
-    return np.array([getattr(item, name) for item in items.each])[items.of_pose]
+    def _figures(self, name: str) -> FloatArray:
+        return np.array([getattr(family, name) for family in self.each])[self.of_pose]
 
 
 @dataclass(frozen=True, slots=True)
-class Material:
+class Material(checked.Value):
     """A family of cables that differ in section only.
 
     All three figures refer to the circle of the nominal diameter, so that a real rope, which
@@ -218,14 +197,9 @@ class Material:
         Allowable tension over the area of the nominal circle, safety factor included [Pa].
     """
 
-    density_kg_per_m3: float
-    youngs_modulus_Pa: float
-    allowable_stress_Pa: float
-
-    def __post_init__(self) -> None:
-        require_number("density_kg_per_m3", self.density_kg_per_m3, above=0.0)
-        require_number("youngs_modulus_Pa", self.youngs_modulus_Pa, above=0.0, finite=False)
-        require_number("allowable_stress_Pa", self.allowable_stress_Pa, above=0.0)
+    density_kg_per_m3: checked.Positive
+    youngs_modulus_Pa: Unlimited
+    allowable_stress_Pa: checked.Positive
 
     @property
     def elastic_compliance_per_m(self) -> float:

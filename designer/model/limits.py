@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from designer.arrays import require_number
+from designer import checked
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,14 +23,13 @@ class RopeLimits:
         Rope that a drum takes up, beside its dead turns [m].
     """
 
-    stiffness_N_per_m: float | None = None
+    stiffness_N_per_m: checked.Positive | None = None
     excitation_Hz: tuple[float, float] | None = None
-    drum_capacity_m: float | None = None
+    drum_capacity_m: checked.Positive | None = None
 
     def __post_init__(self) -> None:
-        require_number("stiffness_N_per_m", self.stiffness_N_per_m, above=0.0)
-        require_number("drum_capacity_m", self.drum_capacity_m, above=0.0)
+        checked.check_fields(self)
         if self.excitation_Hz is not None:
             low, high = self.excitation_Hz
-            require_number("excitation_Hz", low, above=0.0)
-            require_number("excitation_Hz", high, above=low)
+            checked.Number(above=0.0).require("excitation_Hz", low)
+            checked.Number(above=low).require("excitation_Hz", high)

@@ -21,7 +21,8 @@ from itertools import product
 
 import numpy as np
 
-from designer.arrays import FloatArray, finite_array, require_number
+from designer import checked
+from designer.arrays import FloatArray
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2, Cable
 from designer.model.region import Region
 from designer.model.robot import Platform, Robot
@@ -33,7 +34,7 @@ EACH = "each"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wind:
+class Wind(checked.Value):
     """Wind that blows with one speed everywhere.
 
     Parameters
@@ -49,17 +50,10 @@ class Wind:
         Where it blows to, instead of these; its length does not count.
     """
 
-    speed_m_per_s: float
-    cable_drag_coefficient: float
-    count: int | None = None
-    direction: FloatArray | None = None
-
-    def __post_init__(self) -> None:
-        require_number("speed_m_per_s", self.speed_m_per_s, least=0.0)
-        require_number("cable_drag_coefficient", self.cable_drag_coefficient, least=0.0)
-        require_number("count", self.count, least=1)
-        if self.direction is not None:
-            object.__setattr__(self, "direction", finite_array("direction", self.direction, 3))
+    speed_m_per_s: checked.NotNegative
+    cable_drag_coefficient: checked.NotNegative
+    count: checked.Count | None = None
+    direction: checked.Vector | None = None
 
     @property
     def pressure_Pa(self) -> float:
@@ -82,15 +76,11 @@ class Wind:
 
 
 @dataclass(frozen=True, slots=True)
-class Ice:
+class Ice(checked.Value):
     """Ice all around the cables."""
 
-    thickness_m: float
-    density_kg_per_m3: float = 900.0
-
-    def __post_init__(self) -> None:
-        require_number("thickness_m", self.thickness_m, least=0.0)
-        require_number("density_kg_per_m3", self.density_kg_per_m3, above=0.0)
+    thickness_m: checked.NotNegative
+    density_kg_per_m3: checked.Positive = 900.0
 
     def linear_density_kg_per_m(self, diameter_m: float) -> float:
         """Return its mass per length on a cable [kg/m]."""
@@ -201,33 +191,26 @@ class LoadCase:
     """
 
     name: str
-    mass_kg: float | None = None
-    wrench_N: FloatArray | None = None
-    dynamic_factor: float = 1.0
-    acceleration_m_per_s2: float = 0.0
+    mass_kg: checked.Positive | None = None
+    wrench_N: checked.Wrench | None = None
+    dynamic_factor: checked.Factor = 1.0
+    acceleration_m_per_s2: checked.NotNegative = 0.0
     wind: Wind | None = None
     ice: Ice | None = None
     cable_lost: int | str | None = None
-    temperature_change_K: float | None = None
-    expansion_per_K: float | None = None
-    safety_factor: float | None = None
-    termination_efficiency: float | None = None
+    temperature_change_K: checked.Finite | None = None
+    expansion_per_K: checked.Finite | None = None
+    safety_factor: checked.Factor | None = None
+    termination_efficiency: checked.Efficiency | None = None
     region: Region | None = None
 
     def __post_init__(self) -> None:
-        require_number("mass_kg", self.mass_kg, above=0.0)
-        require_number("dynamic_factor", self.dynamic_factor, least=1.0)
-        require_number("acceleration_m_per_s2", self.acceleration_m_per_s2, least=0.0)
-        require_number("temperature_change_K", self.temperature_change_K)
-        require_number("expansion_per_K", self.expansion_per_K)
-        require_number("safety_factor", self.safety_factor, least=1.0)
-        require_number("termination_efficiency", self.termination_efficiency, above=0.0, most=1.0)
-        if self.wrench_N is not None:
-            object.__setattr__(self, "wrench_N", finite_array("wrench_N", self.wrench_N, 6))
-        if self.cable_lost != EACH:
-            if isinstance(self.cable_lost, str):
-                raise ValueError(f"cable_lost must be a cable or '{EACH}', not '{self.cable_lost}'")
-            require_number("cable_lost", self.cable_lost, least=1)
+        checked.check_fields(self)
+        lost = self.cable_lost
+        if isinstance(lost, str) and lost != EACH:
+            raise ValueError(f"cable_lost must be a cable or '{EACH}', not '{lost}'")
+        if isinstance(lost, int):
+            checked.Number(least=1).require("cable_lost", lost)
 
     @property
     def changes_robot(self) -> bool:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
-from designer.arrays import require_number, require_one_of
+from designer import checked
 
 Reading = Literal["length", "tension"]
 POSES = "poses"
@@ -34,7 +34,7 @@ class LogColumn:
 
 
 @dataclass(frozen=True, slots=True)
-class Measurements:
+class Measurements(checked.Value):
     """Data measured on the built machine, and what is known about it.
 
     Parameters
@@ -66,27 +66,19 @@ class Measurements:
     """
 
     file: Path
-    linear_density_kg_per_m: float
-    axial_stiffness_N: float
+    linear_density_kg_per_m: checked.Positive
+    axial_stiffness_N: checked.Positive
     columns: tuple[LogColumn, ...] = ()
     settled: bool = True
     unknown: tuple[str, ...] = ()
-    length_noise_m: float | None = None
-    tension_noise_N: float | None = None
-    diameter_m: float | None = None
-    minimum_breaking_load_N: float | None = None
+    length_noise_m: checked.Positive | None = None
+    tension_noise_N: checked.Positive | None = None
+    diameter_m: checked.Positive | None = None
+    minimum_breaking_load_N: checked.Positive | None = None
     estimated_noise: tuple[Reading, ...] = ()
-    search_time_s: float = 600.0
+    search_time_s: checked.NotNegative = 600.0
 
     @property
     def has_poses(self) -> bool:
         """Whether poses were measured; else each row's own readings have to tell its pose."""
         return POSES not in self.unknown
-
-    def __post_init__(self) -> None:
-        for name in ("linear_density_kg_per_m", "axial_stiffness_N", "length_noise_m"):
-            require_number(name, getattr(self, name), above=0.0)
-        for name in ("tension_noise_N", "diameter_m", "minimum_breaking_load_N"):
-            require_number(name, getattr(self, name), above=0.0)
-        require_number("search_time_s", self.search_time_s, least=0.0)
-        require_one_of("estimated_noise", self.estimated_noise, get_args(Reading))

@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.spatial import cKDTree
 
-from designer.arrays import BoolArray, FloatArray, finite_array
+from designer import checked
+from designer.arrays import BoolArray, FloatArray
 from designer.model.border import Border
 from designer.model.region import (
     BoxFrame,
@@ -37,10 +38,7 @@ class PointList(Region):
 
     is_discrete: ClassVar[bool] = True
 
-    points_m: FloatArray
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "points_m", finite_array("points_m", self.points_m, None, 3))
+    points_m: checked.Points
 
     @property
     def bounds_m(self) -> FloatArray:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import BoolArray, FloatArray, finite_array, frozen_array
+from designer import checked
+from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model import polygon
 from designer.model.border import Border, ring
 from designer.model.region import (
@@ -60,18 +61,17 @@ class Prism(Region):
 
     has_sides: ClassVar[bool] = True
 
-    polygon_m: FloatArray
+    polygon_m: Annotated[FloatArray, checked.Shape((None, 2))]
     z_m: tuple[float, float]
 
     def __post_init__(self) -> None:
-        corners = finite_array("polygon_m", self.polygon_m, None, 2)
-        object.__setattr__(self, "polygon_m", corners)
+        checked.check_fields(self)
         require_ascending(self.z_m)
-        edge = polygon.edges_m(corners)
+        edge = polygon.edges_m(self.polygon_m)
         after = np.roll(edge, -1, axis=0)
         turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
         flat = _STRAIGHT * float(np.sum(edge**2))
-        if len(corners) < 3 or not self.area_m2 > 0.0 or (turn < -flat).any():
+        if len(edge) < 3 or not self.area_m2 > 0.0 or (turn < -flat).any():
             raise ValueError("polygon_m must be convex, with its corners counter-clockwise")
 
     @classmethod

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import BoolArray, FloatArray, finite_array, frozen_array
+from designer import checked
+from designer.arrays import BoolArray, FloatArray, frozen_array
 from designer.model.border import Border, ring
 from designer.model.region import (
     CHUNK,
@@ -50,11 +51,11 @@ class Rectangle(Region):
     has_sides: ClassVar[bool] = True
     is_upright: ClassVar[bool] = True
 
-    ends_m: FloatArray
+    ends_m: Annotated[FloatArray, checked.Shape((2, 2))]
     z_m: tuple[float, float]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "ends_m", finite_array("ends_m", self.ends_m, 2, 2))
+        checked.check_fields(self)
         require_ascending(self.z_m)
         if not np.ptp(self.ends_m, axis=0).any():
             raise ValueError("the two ends of the rectangle are the same point")

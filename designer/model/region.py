@@ -10,7 +10,8 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from designer.arrays import BoolArray, FloatArray, finite_array, require_number
+from designer import checked
+from designer.arrays import BoolArray, FloatArray, finite_array
 from designer.model.border import Border
 from designer.model.rings import RINGS, SPOKES
 
@@ -26,7 +27,7 @@ ON_A_SIDE = 1e-6
 """Relative to the size of the region: a position that is no farther from a side lies on it."""
 
 
-class Region(ABC):
+class Region(checked.Value, ABC):
     """What every region tells of itself; positions in the world frame, z upward.
 
     A new kind of region is a subclass in a file of its own. Methods with a default here decline:
@@ -173,15 +174,15 @@ class BoxFrame:
 def require_ascending(ends_m: tuple[float, float], axis: str = "z") -> None:
     """Refuse ends that are no ascending numbers [m]."""
     low, high = ends_m
-    require_number(f"the lowest {axis}", low)
-    require_number(f"the highest {axis}", high)
+    checked.FINITE.require(f"the lowest {axis}", low)
+    checked.FINITE.require(f"the highest {axis}", high)
     if low > high:
         raise ValueError(f"the lowest {axis}, {low:g} m, is above the highest, {high:g} m")
 
 
 def in_plan(points_m: ArrayLike, inset_m: float) -> FloatArray:
     """Return points (n, 2 or 3) seen from above (n, 2) [m]."""
-    require_number("inset_m", inset_m)
+    checked.FINITE.require("inset_m", inset_m)
     points = np.asarray(points_m, dtype=np.float64)
     return finite_array("points_m", points[..., :2], None, 2)
 

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from designer.arrays import (
-    FloatArray,
-    IntArray,
-    finite_array,
-    frozen_array,
-    require_number,
-)
+from designer import checked
+from designer.arrays import FloatArray, IntArray, frozen_array
 from designer.model.cable import STANDARD_GRAVITY_M_PER_S2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Platform:
+class Platform(checked.Value):
     """What the cables carry.
 
     Parameters
@@ -45,28 +41,14 @@ class Platform:
         drawing [kg].
     """
 
-    mass_kg: float
-    attachments_m: FloatArray | None = None
-    centre_of_mass_m: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
-    hull_m: FloatArray | None = None
-    wrench_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(6)))
-    centre_force_N: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(3)))
-    drag_area_m2: float | None = None
+    mass_kg: checked.NotNegative
+    attachments_m: checked.Points | None = None
+    centre_of_mass_m: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
+    hull_m: checked.Points | None = None
+    wrench_N: checked.Wrench = field(default_factory=lambda: frozen_array(np.zeros(6)))
+    centre_force_N: checked.Vector = field(default_factory=lambda: frozen_array(np.zeros(3)))
+    drag_area_m2: checked.NotNegative | None = None
     mass_offset_kg: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_number("mass_kg", self.mass_kg, least=0.0)
-        require_number("drag_area_m2", self.drag_area_m2, least=0.0)
-        shapes: dict[str, tuple[int | None, ...]] = {
-            "attachments_m": (None, 3),
-            "centre_of_mass_m": (3,),
-            "hull_m": (None, 3),
-            "wrench_N": (6,),
-            "centre_force_N": (3,),
-        }
-        for name, shape in shapes.items():
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,31 +83,23 @@ class Robot:
         length does not count. None for gravity alone. The upright frame is then built from it.
     """
 
-    exit_points_m: FloatArray
+    exit_points_m: checked.Points
     platform: Platform
-    pulley_radius_m: float = 0.0
-    tilt_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros(2)))
-    tension_min_N: float = 0.0
-    sag_max: float | None = None
-    family_sag_max: float | None = None
-    gravity_direction: FloatArray = field(default_factory=lambda: frozen_array([0.0, 0.0, -1.0]))
+    pulley_radius_m: checked.Finite = 0.0
+    tilt_rad: Annotated[FloatArray, checked.Shape((2,))] = field(
+        default_factory=lambda: frozen_array(np.zeros(2))
+    )
+    tension_min_N: checked.NotNegative = 0.0
+    sag_max: checked.Positive | None = None
+    family_sag_max: checked.Positive | None = None
+    gravity_direction: checked.Vector = field(
+        default_factory=lambda: frozen_array([0.0, 0.0, -1.0])
+    )
     is_planar: bool = False
-    cable_load_direction: FloatArray | None = None
+    cable_load_direction: checked.Vector | None = None
 
     def __post_init__(self) -> None:
-        shapes: dict[str, tuple[int | None, ...]] = {
-            "exit_points_m": (None, 3),
-            "tilt_rad": (2,),
-            "gravity_direction": (3,),
-            "cable_load_direction": (3,),
-        }
-        for name, shape in shapes.items():
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, finite_array(name, getattr(self, name), *shape))
-        require_number("pulley_radius_m", self.pulley_radius_m)
-        require_number("tension_min_N", self.tension_min_N, least=0.0)
-        require_number("sag_max", self.sag_max, above=0.0)
-        require_number("family_sag_max", self.family_sag_max, above=0.0)
+        checked.check_fields(self)
         if not self.gravity_direction.any():
             raise ValueError("gravity_direction must not be zero")
         if self.attachments_m.shape[0] != self.n_cables:

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from designer import checked
 from designer.arrays import FloatArray, IntArray, finite_array, frozen_array
 from designer.model.region import Region
 
@@ -35,16 +37,13 @@ class Orientations:
         asked for [rad]; ``turns_rad`` are then samples of it.
     """
 
-    turns_rad: FloatArray = field(default_factory=lambda: frozen_array(np.zeros((1, 3))))
-    range_rad: FloatArray | None = None
+    turns_rad: checked.Points = field(default_factory=lambda: frozen_array(np.zeros((1, 3))))
+    range_rad: Annotated[FloatArray, checked.Shape((2, 3))] | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "turns_rad", finite_array("turns_rad", self.turns_rad, None, 3))
-        if self.range_rad is not None:
-            bounds = finite_array("range_rad", self.range_rad, 2, 3)
-            object.__setattr__(self, "range_rad", bounds)
-            if (bounds[0] > bounds[1]).any():
-                raise ValueError("range_rad must have its lowest components first")
+        checked.check_fields(self)
+        if self.range_rad is not None and (self.range_rad[0] > self.range_rad[1]).any():
+            raise ValueError("range_rad must have its lowest components first")
 
     @classmethod
     def within(cls, low_rad: ArrayLike, high_rad: ArrayLike) -> Orientations:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 
-from designer.arrays import FloatArray, require_number
+from designer import checked
+from designer.arrays import FloatArray
 
 Input = Literal["payload", "modulus", "linear_mass", "breaking_load", "exit_points"]
 INPUTS: tuple[Input, ...] = get_args(Input)
@@ -19,13 +20,10 @@ LEAST_DEVIATION = -0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Normal:
+class Normal(checked.Value):
     """A deviation that is normally distributed about zero."""
 
-    standard_deviation: float
-
-    def __post_init__(self) -> None:
-        require_number("standard_deviation", self.standard_deviation, least=0.0)
+    standard_deviation: checked.NotNegative
 
     @property
     def is_certain(self) -> bool:
@@ -43,12 +41,12 @@ class Normal:
 class Uniform:
     """A deviation that is as likely anywhere between two ends."""
 
-    low: float
-    high: float
+    low: checked.Finite
+    high: checked.Finite
 
     def __post_init__(self) -> None:
-        require_number("low", self.low)
-        require_number("high", self.high, least=self.low)
+        checked.check_fields(self)
+        checked.Number(least=self.low).require("high", self.high)
 
     @property
     def is_certain(self) -> bool:
@@ -88,18 +86,17 @@ class Uncertainty:
     linear_mass: Spread | None = None
     breaking_load: Spread | None = None
     exit_points_m: Spread | None = None
-    samples: int = 4096
-    seed: int = 0
+    samples: checked.Count = 4096
+    seed: Annotated[int, checked.Number(least=0)] = 0
 
     def __post_init__(self) -> None:
-        require_number("samples", self.samples, least=1)
-        require_number("seed", self.seed, least=0)
+        checked.check_fields(self)
         for name in INPUTS[:-1]:
             spread = getattr(self, name)
             if isinstance(spread, Normal):
-                require_number(name, spread.standard_deviation, most=MOST_DEVIATION)
+                checked.Number(most=MOST_DEVIATION).require(name, spread.standard_deviation)
             elif spread is not None:
-                require_number(name, spread.low, least=LEAST_DEVIATION)
+                checked.Number(least=LEAST_DEVIATION).require(name, spread.low)
 
     def spreads(self, modulus: Spread) -> Mapping[Input, Spread]:
         """Return what is not certain, with this of the modulus where the study says nothing."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 
-from designer.arrays import FloatArray, frozen_array, require_number, require_one_of
+from designer import checked
+from designer.arrays import FloatArray, frozen_array
 from designer.model.load_case import LoadCase
 from designer.model.region import CHUNK, Region, Sampling
 from designer.model.space import Orientations, Space
@@ -21,7 +22,7 @@ HangsBelow = Literal["include", "exclude"]
 
 
 @dataclass(frozen=True, slots=True)
-class Workspace:
+class Workspace(checked.Value):
     """Which poses the cable must serve.
 
     Parameters
@@ -48,27 +49,16 @@ class Workspace:
     """
 
     region: Region
-    samples: int = 20_000
+    samples: checked.Count = 20_000
     sampling: Sampling = "low_discrepancy"
-    seed: int = 0
+    seed: Annotated[int, checked.Number(least=0)] = 0
     hangs_below: HangsBelow = "include"
-    clearance_m: float | None = None
+    clearance_m: checked.NotNegative | None = None
     orientations: Orientations = field(default_factory=Orientations)
-    floor_m: float | None = None
-    sag_max: float | None = SAG_MAX
-    family_sag_max: float | None = None
-    proof_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_number("samples", self.samples, least=1)
-        require_number("seed", self.seed, least=0)
-        require_number("clearance_m", self.clearance_m, least=0.0)
-        require_number("floor_m", self.floor_m)
-        require_number("sag_max", self.sag_max, above=0.0)
-        require_number("family_sag_max", self.family_sag_max, above=0.0)
-        require_number("proof_s", self.proof_s, least=0.0)
-        require_one_of("sampling", [self.sampling], get_args(Sampling))
-        require_one_of("hangs_below", [self.hangs_below], get_args(HangsBelow))
+    floor_m: checked.Finite | None = None
+    sag_max: checked.Positive | None = SAG_MAX
+    family_sag_max: checked.Positive | None = None
+    proof_s: checked.NotNegative = 0.0
 
     @property
     def space(self) -> Space:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, VerdictArray
-from designer.model.cable import Cable, Cables, CablesByPose
+from designer.model.cable import Cable, Cables
 from designer.model.robot import Poses, Robot
 from designer.model.verdict import Verdict, hanging_cables
 from designer.physics import catenary
@@ -232,7 +232,7 @@ def solve_massless(robot: Robot, poses: Poses) -> MasslessStatics:
 def solve_sagging(
     robot: Robot,
     poses: Poses,
-    cable: Cable | Cables | CablesByPose,
+    cable: Cable | Cables,
     force_N: FloatArray | None = None,
     *,
     seeks_better: bool = True,
@@ -246,8 +246,8 @@ def solve_sagging(
     ----------
     robot, poses, cable
         The robot, with at least as many cables as degrees of freedom, its poses, and its cables:
-        one `Cable` for all, `Cables`, or those of each of poses (n_poses,). Of more cables than
-        that the internal forces are those with the smallest largest tension over the allowable one.
+        one `Cable` for all, or `Cables`. Of more cables than that the internal forces are those
+        with the smallest largest tension over the allowable one.
     force_N : array (..., 3), optional
         Force on the platform beside its weight, base frame [N].
     seeks_better : bool
@@ -258,9 +258,9 @@ def solve_sagging(
     ValueError
         If there are more or fewer `Cables` than exit points, or fewer than degrees of freedom.
     """
-    if isinstance(cable, Cables) and len(cable.each) != robot.n_cables:
-        raise ValueError(f"{len(cable.each)} cables do not fit {robot.n_cables} exit points")
     weight = np.atleast_1d(cable.weight_N_per_m)
+    if isinstance(cable, Cables) and weight.shape not in ((robot.n_cables,), (*poses.shape, 1)):
+        raise ValueError(f"{weight.shape[-1]} cables do not fit {robot.n_cables} exit points")
     heaviest = weight.max(axis=-1, keepdims=True)
     task = Task(
         kappa_per_m=weight / cable.axial_stiffness_N,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from designer.arrays import BoolArray, FloatArray, IntArray
-from designer.model.cable import Cable, CablesByPose, Material, MaterialsByPose
+from designer.model.cable import Cable, Cables, Material, MaterialsByPose
 from designer.model.load_case import Loaded
 from designer.model.robot import Poses, Robot
 from designer.model.space import Space
@@ -97,7 +97,7 @@ def rope_demands(
     """What each of several cables meets, as `rope_demand`."""
 
     def demand(places: FloatArray, search: IntArray) -> FloatArray:
-        cable = CablesByPose(cables, search)
+        cable = Cables(cables, search)
         statics = solve_sagging(robot, Poses.at(places), cable, seeks_better=seeks_better)
         tension = demand_of(statics.largest_tension_N, statics, hangs_below)
         return np.column_stack([tension, length_demand(statics, np.isfinite(tension))])

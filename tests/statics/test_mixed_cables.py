@@ -12,7 +12,7 @@ from twins.robots import FAST3, HALL6, TwinRobot
 
 from designer.arrays import FloatArray, frozen_array
 from designer.effects.design import AsBuilt
-from designer.model.cable import Cable, Cables, CablesByPose, Material, MaterialsByPose
+from designer.model.cable import Cable, Cables, Material, MaterialsByPose
 from designer.model.robot import Platform, Poses, Robot
 from designer.sizing.newton import size_poses
 from designer.statics.inverse import solve_sagging
@@ -151,7 +151,7 @@ def test_cables_that_differ_from_pose_to_pose_are_each_solved_with_their_own(
     robot, (_, at) = ours(twin, pulley_radius_m), poses(twin, 30)
     ropes = mixed(twin).each
     of_pose = np.random.default_rng(1).integers(len(ropes), size=30)
-    together = solve_sagging(robot, at, CablesByPose(ropes, of_pose))
+    together = solve_sagging(robot, at, Cables(ropes, of_pose))
     families = [Material(7000.0 + 500.0 * k, 1e11 / (1 + k), 3e8) for k in range(len(ropes))]
     sized = size_poses(robot, at, MaterialsByPose(families, of_pose))
     for k, (rope, family) in enumerate(zip(ropes, families, strict=True)):
