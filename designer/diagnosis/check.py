@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from designer.diagnosis.noise import first_noise
 from designer.diagnosis.problem import Problem
 from designer.diagnosis.statistics import block_of
 from designer.diagnosis.structure import Structure
-from designer.documents.plain import json_text
+from designer.documents.plain import json_text, record
 from designer.effects.effect import Setting
 from designer.model.measured_data import Measured, Noise
 from designer.model.measurements import Measurements
@@ -46,7 +46,7 @@ class Left:
         Of the size of each error.
     """
 
-    rms: Interval
+    rms: Interval = field(metadata={"json": record})
     median: float
 
 

@@ -28,9 +28,19 @@ _DRAWS = 400
 class Interval:
     """A root mean square with its 95 % interval by block bootstrap."""
 
-    value: float
-    low: float
-    high: float
+    also_in_files = ("interval",)
+    value: float = field(metadata={"json": "rms"})
+    low: float = field(metadata={"json": None})
+    high: float = field(metadata={"json": None})
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Both ends."""
+        return self.low, self.high
+
+
+def _heldout(interval: Interval) -> dict[str, object]:
+    return {"heldout_rms": interval.value, "heldout_interval": interval.interval}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +58,8 @@ class Error:
     """
 
     rms: float
-    heldout: Interval
-    heldout_of_cable: FloatArray
+    heldout: Interval = field(metadata={"json": _heldout})
+    heldout_of_cable: FloatArray = field(metadata={"json": "heldout_rms_of_cable"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,7 +77,7 @@ class Stage:
     """
 
     label: str
-    settings: tuple[Setting, ...]
+    settings: tuple[Setting, ...] = field(metadata={"json": None})
     length_m: Error | None
     tension_N: Error | None
 
@@ -162,8 +172,8 @@ class Foretold:
         Of the tensions at the winches [N]; None where none were measured.
     """
 
-    n_rows: int
-    n_solved: int
+    n_rows: int = field(metadata={"json": "rows"})
+    n_solved: int = field(metadata={"json": "solved"})
     position_m: Interval
     turn_rad: Interval | None
     tension_N: Interval | None

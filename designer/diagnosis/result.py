@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
@@ -32,6 +32,15 @@ class Estimate:
     std: float
 
 
+def _effect(effect: Effect) -> dict[str, object]:
+    return {**effect.identified(), "summary": effect.summary}
+
+
+def _rivals(keys: Sequence[str]) -> dict[str, object]:
+    ids = dict.fromkeys(key.split(" of cable ")[0] for key in keys)
+    return {"rivals": list(ids), "rival_keys": keys}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
     """An effect that the model lacked.
@@ -51,9 +60,9 @@ class Finding:
         What speaks against its values.
     """
 
-    effect: Effect
+    effect: Effect = field(metadata={"json": _effect})
     parameters: Mapping[str, Estimate]
-    rivals: tuple[str, ...]
+    rivals: tuple[str, ...] = field(metadata={"json": _rivals})
     heldout_gain: float
     heldout_gain_std: float
     warnings: tuple[str, ...]
@@ -150,8 +159,14 @@ class Use:
         Largest over allowable tension.
     """
 
+    also_in_files = ("holds",)
     max_tension_N: float
     utilisation: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stays within what is allowed."""
+        return self.utilisation <= 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

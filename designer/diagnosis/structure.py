@@ -6,7 +6,7 @@ Of a covariate that it goes with: in which reading, at which rows, and what is l
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
@@ -77,7 +77,12 @@ class Event:
 
     text: str
     fraction_of_variance: float
-    chance: float
+    chance: float = field(metadata={"json": None})
+
+
+def _strongest(carriers: Sequence[Carrier]) -> dict[str, object]:
+    name, fraction, chance = astuple(carriers[0]) if carriers else (None, None, None)
+    return {"strongest_covariate": name, "fraction_of_variance": fraction, "chance": chance}
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,9 +101,11 @@ class Structure:
         What explains more than any covariate does, and more than accident would.
     """
 
-    carriers: tuple[Carrier, ...]
-    excess: float
-    lasting: Lasting = INDEPENDENT
+    carriers: tuple[Carrier, ...] = field(metadata={"json": _strongest})
+    excess: float = field(metadata={"json": None})
+    lasting: Lasting = field(
+        default=INDEPENDENT, metadata={"json": lambda lasting: {"rows_alike": lasting.rows}}
+    )
     events: tuple[Event, ...] = ()
 
     @property

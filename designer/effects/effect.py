@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -234,6 +234,10 @@ class Effect:
         """Id, with the cable where it concerns only one."""
         return self.id if self.cable is None else f"{self.id} of cable {self.cable}"
 
+    def identified(self) -> dict[str, object]:
+        """Return by what files name it."""
+        return {"id": self.id, "cable": self.cable}
+
     @property
     def neutral(self) -> dict[str, float]:
         """Values at which it does nothing."""
@@ -285,7 +289,7 @@ class Effect:
 class Setting:
     """An effect with values for its parameters."""
 
-    effect: Effect
+    effect: Effect = field(metadata={"json": Effect.identified})
     values: Values
 
 
